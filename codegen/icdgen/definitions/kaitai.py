@@ -56,8 +56,8 @@ class Kaitai:
         network = Network(node_name(file), line(str(meta.get("title") or name), 100), {**ORDERS[order]})
         network.head["id_bits"] = _ID_BITS
         for struct in shared.structs.values():
-            kept = {key: struct[key] for key in ("name", "length")}
-            network.structs.append({**kept, "fields": _fields(struct["parts"], order)})
+            head = {key: struct[key] for key in ("name", "length")}
+            network.structs.append({**head, "fields": _fields(struct["parts"], order)})
         for layout, called in zip(layouts, _names(name, layouts), strict=True):
             if not any(part.is_whole for part in layout.parts):
                 to.left_out(called, "none of its fields is" if layout.parts else "it has no `seq`, and so no field")
@@ -110,18 +110,22 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
     """
     words = [" ".join([name, *(label.word for label in layout.labels if label.word)]) for layout in layouts]
     times = Counter(words)
-    said = [
-        text if times[text] == 1 else " ".join([name, *(f"{label.word} {label.value}".strip() for label in one.labels)])
-        for text, one in zip(words, layouts, strict=True)
+    candidates = [
+        (
+            text
+            if times[text] == 1
+            else " ".join([name, *(f"{label.word} {label.value}".strip() for label in layout.labels)])
+        )
+        for text, layout in zip(words, layouts, strict=True)
     ]
-    times = Counter(said)
-    made = []
-    for number, (text, one) in enumerate(zip(said, layouts, strict=True), 1):
-        last = next((label.word for label in reversed(one.labels) if label.word), "")
+    times = Counter(candidates)
+    result = []
+    for number, (text, layout) in enumerate(zip(candidates, layouts, strict=True), 1):
+        last = next((label.word for label in reversed(layout.labels) if label.word), "")
         if times[text] > 1 or len(text) > _LONGEST_NAME:
             text = f"{name} {last} {number}" if last and len(name) + len(last) <= _LONGEST_NAME else f"{name} {number}"
-        made.append(line(text, 200))
-    return made
+        result.append(line(text, 200))
+    return result
 
 
 def _fields(layout: Layout, order: str) -> list[Item]:
@@ -139,21 +143,21 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})
         elif not part.mask:
-            fields.append(again(item, {**_placed(part, part.at, part.bits, order), "name": name, **item}))
+            fields.append(again(item, {**_position(part, part.at, part.bits, order), "name": name, **item}))
         elif part.mask == (1 << part.bits) - 1:
             is_negative = item["type"] == "int" and part.value >> part.bits - 1
             value = part.value - (1 << part.bits) if is_negative else part.value
             kind = {"type": "uint"} if item["type"] == "bool" else {}  # a field of type `bool` cannot have a constant
-            said = {**_placed(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
-            fields.append(again(item, said))
+            keys = {**_position(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
+            fields.append(again(item, keys))
         else:
-            fields += _divided(part, name, order)
+            fields += _split_fields(part, name, order)
     return fields
 
 
-def _divided(part: Part, name: str, order: str) -> list[Item]:
+def _split_fields(part: Part, name: str, order: str) -> list[Item]:
     """Return a field for each run of decided or undecided bits, and an overlay field (`view`) for the complete part."""
-    made: list[Item] = []
+    fields: list[Item] = []
     low = 0
     is_lsb = part.place.order != "big"
     while low < part.bits:
@@ -163,16 +167,16 @@ def _divided(part: Part, name: str, order: str) -> list[Item]:
         width = high - low + 1
         at = part.at + (low if is_lsb else part.bits - 1 - high)
         called = f"{name} bit {low}" if width == 1 else f"{name} bits {low} to {high}"
-        one: Item = {**_placed(part, at, width, order), "name": called, "type": "uint"}
+        field: Item = {**_position(part, at, width, order), "name": called, "type": "uint"}
         if part.mask >> low & 1:
-            one["const"] = part.value >> low & (1 << width) - 1
-        made.append(one)
+            field["const"] = part.value >> low & (1 << width) - 1
+        fields.append(field)
         low = high + 1
-    whole = again(part.item, {**_placed(part, part.at, part.bits, order), "name": name, **part.item, "view": True})
-    return sorted([*made, whole], key=lambda one: one["at"])
+    overlay = again(part.item, {**_position(part, part.at, part.bits, order), "name": name, **part.item, "view": True})
+    return sorted([*fields, overlay], key=lambda field: field["at"])
 
 
-def _placed(part: Part, at: int, bits: int, order: str) -> Item:
+def _position(part: Part, at: int, bits: int, order: str) -> Item:
     """Return the keys for the position, and for the byte order if it differs from ``order`` of the message."""
     if not part.is_ordered:
         return {"at": at, "bits": bits}

@@ -44,44 +44,44 @@ class Equality(NamedTuple):
 
 def masked(text: object) -> Masked:
     """Parse an operand such as ``header.flags & 0x13``. Raises `NotHeld` for any other expression."""
-    found = _MASKED.match(str(text).strip()) if len(str(text)) <= _LONGEST else None
-    if found is None:
+    match = _MASKED.match(str(text).strip()) if len(str(text)) <= _LONGEST else None
+    if match is None:
         raise NotHeld(f"`{line(str(text), 80)}` is neither a field nor bits of a field")
     # `.to_i` converts an enumeration to its integer.
-    return Masked(found["path"].removesuffix(".to_i"), None if found["mask"] is None else integer(found["mask"]))
+    return Masked(match["path"].removesuffix(".to_i"), None if match["mask"] is None else integer(match["mask"]))
 
 
 def equalities(text: object) -> list[Equality]:
     """Parse a conjunction of comparisons such as ``a == 1 and flag``. Raises `NotHeld` for any other expression."""
-    said = str(text).strip()
-    found = []
-    for part in re.split(r"\band\b", said) if len(said) <= _LONGEST else [""]:
-        one = part.strip()
-        while one.startswith("(") and one.endswith(")") and one.count("(") == 1:
-            one = one[1:-1].strip()
-        is_negated = one.startswith("not ")
-        one = one.removeprefix("not ").strip()
-        if (compared := _COMPARED.match(one)) is not None:
+    condition = str(text).strip()
+    result = []
+    for part in re.split(r"\band\b", condition) if len(condition) <= _LONGEST else [""]:
+        term = part.strip()
+        while term.startswith("(") and term.endswith(")") and term.count("(") == 1:
+            term = term[1:-1].strip()
+        is_negated = term.startswith("not ")
+        term = term.removeprefix("not ").strip()
+        if (compared := _COMPARED.match(term)) is not None:
             left, right = compared["left"].strip(), compared["right"].strip()
             left, right = (right, left) if integer(left) is not None else (left, right)
-            found.append(Equality(_of(left, said), right, is_negated != (compared["sign"] == "!=")))
+            result.append(Equality(_operand(left, condition), right, is_negated != (compared["sign"] == "!=")))
         else:
-            found.append(Equality(_of(one, said), "true", is_negated))
-    return found
+            result.append(Equality(_operand(term, condition), "true", is_negated))
+    return result
 
 
-def _of(text: str, whole: str) -> Masked:
+def _operand(text: str, condition: str) -> Masked:
     """Parse the operand of a comparison. Raises `NotHeld` with the text of the complete condition, ``whole``."""
     try:
         return masked(text)
     except NotHeld:
-        raise NotHeld(f"it depends on `{line(whole, 80)}`, which is more than equalities of fields") from None
+        raise NotHeld(f"it depends on `{line(condition, 80)}`, which is more than equalities of fields") from None
 
 
 def number(text: str, members: Members) -> int:
     """Return the raw value of a literal or of a member of an enumeration. Raises `NotHeld` for any other text."""
-    if (found := {"true": 1, "false": 0}.get(text.lower(), integer(text))) is not None:
-        return found
+    if (literal := {"true": 1, "false": 0}.get(text.lower(), integer(text))) is not None:
+        return literal
     if (member := _ENUM.match(text)) is not None:
         for value, name in members(member["enum"]).items():
             if name == member["member"]:
@@ -89,18 +89,18 @@ def number(text: str, members: Members) -> int:
     raise NotHeld(f"it depends on whether a field is `{line(text, 60)}`")
 
 
-def line_of(text: object, is_integer: bool) -> tuple[str, str] | None:
+def linear_function(text: object, is_integer: bool) -> tuple[str, str] | None:
     """Return the field that an expression depends on, and its formula. None if it is not a linear function of one field.
 
     ``is_integer``: the field is an integer, so that a division by an integer drops the remainder and is not linear.
     """
-    said = str(text)
-    paths = set(_REFERENCE.findall(said)) if len(said) <= _LONGEST else set()
+    expression = str(text)
+    paths = set(_REFERENCE.findall(expression)) if len(expression) <= _LONGEST else set()
     if (
-        len(paths) != 1 or "^" in said or (is_integer and _WHOLE_DIVISION.search(said))
+        len(paths) != 1 or "^" in expression or (is_integer and _WHOLE_DIVISION.search(expression))
     ):  # `^` is the exclusive or in Kaitai Struct
         return None
-    plain = re.sub(r"\s*([*/])\s*", r"\1", " ".join(_REFERENCE.sub("raw", said).split()))
+    plain = re.sub(r"\s*([*/])\s*", r"\1", " ".join(_REFERENCE.sub("raw", expression).split()))
     try:
         terms = coefficients(plain)
     except FormulaError:
@@ -110,8 +110,8 @@ def line_of(text: object, is_integer: bool) -> tuple[str, str] | None:
 
 def counted(text: object) -> tuple[str, int] | None:
     """Return the field and the constant of an expression such as ``length - 4``. None for any other expression."""
-    found = line_of(text, is_integer=True)
-    if found is None:
+    linear = linear_function(text, is_integer=True)
+    if linear is None:
         return None
-    plus, slope = coefficients(found[1])
-    return (found[0], int(plus)) if slope == 1 and plus.denominator == 1 else None
+    plus, slope = coefficients(linear[1])
+    return (linear[0], int(plus)) if slope == 1 and plus.denominator == 1 else None

@@ -8,7 +8,7 @@ from typing import Any
 
 from icdgen.definitions.accounting import settle
 from icdgen.definitions.containers import AS_BYTES, Container, Counter
-from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, line_of, masked, number
+from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, linear_function, masked, number
 from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, Undecided, placed
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
@@ -54,43 +54,45 @@ class Layout(Container[Part]):
 
     def _sequence(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
         """Add the attributes of `seq`. Attributes that are not supported become bytes."""
-        for index, one in enumerate(type_.seq):
+        for index, attribute in enumerate(type_.seq):
             self.file.step()
             self.check_size()
-            name = str(one.get("id") or f"unnamed{index}")
+            name = str(attribute.get("id") or f"unnamed{index}")
             where = (*path, name)
-            known = False
+            is_present = False
             try:
                 if self.is_open:
                     raise NotHeld("it follows a part of variable size")
-                if "if" in one and not self._is_there(one, name, scope):
+                if "if" in attribute and not self._is_present(attribute, name, scope):
                     continue
-                known = True
-                self._attribute(one, name, where, scope, within)
+                is_present = True
+                self._attribute(attribute, name, where, scope, within)
             except TooMuch:
                 raise
             except NotHeld as why:
-                self._as_bytes(one, where, why, known)
+                self._as_bytes(attribute, where, why, is_present)
 
-    def _attribute(self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]) -> None:
+    def _attribute(
+        self, attribute: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]
+    ) -> None:
         """Add the parts of an attribute. ``where`` is its path, ``within`` the enclosing types. Raises `NotHeld`."""
-        if "process" in one:
-            raise NotHeld(f"its bytes are processed by `{line(str(one['process']), 60)}` before they are read")
-        if sized(one) == 0:
+        if "process" in attribute:
+            raise NotHeld(f"its bytes are processed by `{line(str(attribute['process']), 60)}` before they are read")
+        if sized(attribute) == 0:
             return  # `size: 0`: the attribute has no bytes, whatever its type
-        if (always := contents(one)) is not None:
-            self._constant(where, always, one)
+        if (always := contents(attribute)) is not None:
+            self._constant(where, always, attribute)
             return
-        name_of_type = one.get("type", "")
+        name_of_type = attribute.get("type", "")
         if isinstance(name_of_type, Map):
             chosen = self._switched(name_of_type, scope)
             if chosen is None:
                 return
             name_of_type = chosen
-        piece = built_in(str(name_of_type or ""), one, scope.type)
-        count = self._count(one, scope)
+        piece = built_in(str(name_of_type or ""), attribute, scope.type)
+        count = self._count(attribute, scope)
         if piece is not None:
-            part = self._place(where, piece, count, one, scope)
+            part = self._place(where, piece, count, attribute, scope)
             scope.names[name] = part
             return
         if "(" in str(name_of_type):
@@ -102,17 +104,19 @@ class Layout(Container[Part]):
         if len(within) >= _DEEPEST:
             raise NotHeld(f"more than {_DEEPEST} types contain each other")
         if count is not None:
-            self._structs(where, inner, count, one, within)
+            self._structs(where, inner, count, attribute, within)
             return
         below = Scope(inner, scope)
         scope.names[name] = below
-        self._within(one, inner, below, where, within)
+        self._within(attribute, inner, below, where, within)
 
-    def _within(self, one: Map, inner: Type, below: Scope, where: tuple[str, ...], within: tuple[Type, ...]) -> None:
+    def _within(
+        self, attribute: Map, inner: Type, below: Scope, where: tuple[str, ...], within: tuple[Type, ...]
+    ) -> None:
         """Add the fields of a type that is not repeated. If the attribute states a `size`, the next part begins behind it."""
-        if "size" in one and sized(one) is None:
-            raise NotHeld(f"its size is `{line(str(one['size']), 80)}`")
-        size = sized(one)
+        if "size" in attribute and sized(attribute) is None:
+            raise NotHeld(f"its size is `{line(str(attribute['size']), 80)}`")
+        size = sized(attribute)
         if size is None:
             self.type(inner, below, where, (*within, inner))
             return
@@ -131,53 +135,53 @@ class Layout(Container[Part]):
             raise NotHeld(f"it has more than the {size} bytes that are there for it")
         self.at = end
 
-    def _count(self, one: Map, scope: Scope) -> int | Counter | str | None:
+    def _count(self, attribute: Map, scope: Scope) -> int | Counter | str | None:
         """Return the number of repetitions: None without `repeat`, a number, a counter, or `rest` for `repeat: eos`.
 
         Raises `NotHeld` for any other expression.
         """
-        repeat = one.get("repeat")
+        repeat = attribute.get("repeat")
         if repeat is None:
             return None
         if repeat == "eos":
             if self.ends:
                 raise NotHeld("it is repeated to the end of what is around it")
             return REST
-        said = one.get("repeat-expr")
-        count = integer(said) if isinstance(said, str) else said
+        expression = attribute.get("repeat-expr")
+        count = integer(expression) if isinstance(expression, str) else expression
         if repeat != "expr" or not isinstance(count, int):
-            why = f"it is repeated as often as `{line(str(said or one.get('repeat-until')), 80)}` says"
-            return self._counter(said if repeat == "expr" else None, scope, why)
+            why = f"it is repeated as often as `{line(str(expression or attribute.get('repeat-until')), 80)}` says"
+            return self._counter(expression if repeat == "expr" else None, scope, why)
         if not 1 <= count <= MOST_ELEMENTS:
             raise NotHeld(f"it is repeated {count} times")
         return count
 
-    def _counter(self, said: object, scope: Scope, why: str) -> Counter:
+    def _counter(self, expression: object, scope: Scope, why: str) -> Counter:
         """Return the preceding integer that an expression refers to. Raises `NotHeld` with ``why`` for other expressions."""
-        found = counted(said)
-        if found is None:
+        linear = counted(expression)
+        if linear is None:
             raise NotHeld(why)
-        of = scope.find(found[0])
+        of = scope.find(linear[0])
         if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is part for part in self.parts):
             raise NotHeld(f"{why}, which is not a number in front of it")
-        made = Counter(of, found[1])
+        counter = Counter(of, linear[1])
         if self.ends:
             raise NotHeld(f"{why}, within a part that has a size of its own")
-        if made.most < 1:
+        if counter.most < 1:
             raise NotHeld(f"{why}, which is never positive")
-        return made
+        return counter
 
     def _align(self) -> None:
         """Move to the next byte: Kaitai Struct aligns after bit-sized integers."""
         self.at = -(-self.at // 8) * 8
 
     def _place(
-        self, where: tuple[str, ...], piece: Piece, count: int | Counter | str | None, one: Map, scope: Scope
+        self, where: tuple[str, ...], piece: Piece, count: int | Counter | str | None, attribute: Map, scope: Scope
     ) -> Part:
         """Add a number, a text or bytes behind the last part. Raises `NotHeld`."""
         counter = count if isinstance(count, Counter) else None
-        if not piece.bits and "size" in one:
-            counter = self._counter(one["size"], scope, f"its size is `{line(str(one['size']), 80)}`")
+        if not piece.bits and "size" in attribute:
+            counter = self._counter(attribute["size"], scope, f"its size is `{line(str(attribute['size']), 80)}`")
         if not piece.is_bits:
             self._align()
         elif self.at % 8 and self.parts and self.parts[-1].piece.is_bits and self.parts[-1].piece.order != piece.order:
@@ -186,16 +190,16 @@ class Layout(Container[Part]):
             piece.bits = self.ends[-1] - self.at
             if piece.bits <= 0:
                 raise NotHeld("no byte is left for it")
-        if "enum" in one:
-            reference = str(one["enum"])
+        if "enum" in attribute:
+            reference = str(attribute["enum"])
             named(piece.item, piece.bits, reference, scope.type, self.file.enums, self.file.heard(reference))
         if count is not None:
             if piece.item["type"] == "bytes" or not piece.bits:
                 raise NotHeld("its elements are not numbers")
             piece.item |= {"bits": piece.bits, "count": REST if isinstance(count, Counter) else count}
-        piece.item |= summary(str(one.get("doc") or "")) | unit(_unit(one))
+        piece.item |= summary(str(attribute.get("doc") or "")) | unit(_unit(attribute))
         part = placed(where, piece, self.at, counter)
-        self._valid(part, one.get("valid"), scope)
+        self._valid(part, attribute.get("valid"), scope)
         self._fit(part)
         return part
 
@@ -205,44 +209,44 @@ class Layout(Container[Part]):
             raise NotHeld("it is longer than the part that contains it")
         self.add(part)
 
-    def _valid(self, part: Part, said: Any, scope: Scope) -> None:
+    def _valid(self, part: Part, valid: Any, scope: Scope) -> None:
         """Apply the key `valid`: a single value becomes a constant, `min` and `max` become limits. Ignores other forms."""
         item = part.item
-        if said is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
+        if valid is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
             return
-        equal = said.get("eq") if isinstance(said, Map) else said
-        whole = (1 << part.bits) - 1
-        if isinstance(said, Map) and item["type"] in ("uint", "int"):
+        equal = valid.get("eq") if isinstance(valid, Map) else valid
+        all_bits = (1 << part.bits) - 1
+        if isinstance(valid, Map) and item["type"] in ("uint", "int"):
             low, high = raws(part.bits, item["type"] == "int")
             item |= {
-                key: said[key] for key in ("min", "max") if type(said.get(key)) is int and low <= said[key] <= high
+                key: valid[key] for key in ("min", "max") if type(valid.get(key)) is int and low <= valid[key] <= high
             }
         try:
             value = number(str(equal), scope.type.members)
         except NotHeld:
             return  # `valid` has an expression
-        part.mask, part.value = whole, value & whole
+        part.mask, part.value = all_bits, value & all_bits
 
-    def _constant(self, where: tuple[str, ...], always: bytes, one: Map) -> None:
+    def _constant(self, where: tuple[str, ...], always: bytes, attribute: Map) -> None:
         """Add the bytes of `contents` as constant integers of up to 8 bytes."""
         self._align()
         for start in range(0, len(always), _WORD):
             data = always[start : start + _WORD]
             name = where if len(always) <= _WORD else (*where, str(start // _WORD + 1))
-            item = {"type": "uint", **(summary(str(one.get("doc") or "")) if not start else {})}
+            item = {"type": "uint", **(summary(str(attribute.get("doc") or "")) if not start else {})}
             bits = 8 * len(data)
             part = placed(name, Piece(item, bits), self.at)
             part.mask, part.value = (1 << bits) - 1, int.from_bytes(data, "big")
             self.add(part)
 
     def _structs(
-        self, where: tuple[str, ...], inner: Type, count: int | Counter | str, one: Map, within: tuple[Type, ...]
+        self, where: tuple[str, ...], inner: Type, count: int | Counter | str, attribute: Map, within: tuple[Type, ...]
     ) -> None:
         """Add an array of structs. Raises `NotHeld` if the layout of the type depends on values or varies in size."""
         self._align()
         layout = Layout(self.file, {}, is_struct=True)
         try:
-            layout._within(one, inner, Scope(inner), (), (*within, inner) if sized(one) is None else within)
+            layout._within(attribute, inner, Scope(inner), (), (*within, inner) if sized(attribute) is None else within)
         except Undecided as error:
             raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
         if not layout.parts and not layout.at:
@@ -250,13 +254,19 @@ class Layout(Container[Part]):
         if layout.is_open or layout.at % 8:
             raise NotHeld("they are not of a fixed number of bytes")
         counter = count if isinstance(count, Counter) else None
-        item: Item = {"struct": inner.name, "count": REST if counter else count, **summary(str(one.get("doc") or ""))}
-        known = self.file.structs.setdefault(id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout})
-        if known["length"] != layout.at // 8:
+        item: Item = {
+            "struct": inner.name,
+            "count": REST if counter else count,
+            **summary(str(attribute.get("doc") or "")),
+        }
+        struct = self.file.structs.setdefault(
+            id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout}
+        )
+        if struct["length"] != layout.at // 8:
             raise NotHeld("they are not as long as elsewhere")
         self._fit(placed(where, Piece(item, layout.at), self.at, counter))
 
-    def _as_bytes(self, one: Map, where: tuple[str, ...], why: NotHeld, known: bool) -> None:
+    def _as_bytes(self, attribute: Map, where: tuple[str, ...], why: NotHeld, is_present: bool) -> None:
         """Add an attribute that is not supported as bytes, and report it (IMP081).
 
         An attribute without a fixed size takes all remaining bytes; then `Ended` is raised. Raises ``why`` in a struct.
@@ -264,26 +274,26 @@ class Layout(Container[Part]):
         if self.is_struct:
             raise why
         try:
-            size = sized(one) if known and "repeat" not in one else None
+            size = sized(attribute) if is_present and "repeat" not in attribute else None
         except NotHeld:
             size = None
         is_end = self.is_open or size is None
         if self.is_open:
-            held = "no part of it is imported"
+            effect = "no part of it is imported"
         elif size is not None:
-            held = "its bytes are imported"
+            effect = "its bytes are imported"
             self._bytes(where, 8 * size)
         elif self.ends:
-            held = "its bytes and all bytes behind it are imported"
+            effect = "its bytes and all bytes behind it are imported"
             self._align()
             if self.ends[-1] > self.at:
                 self._bytes(where, self.ends[-1] - self.at)
             self.at = self.ends[-1]
         else:
-            held = "the bytes up to the end of the frame are imported"
+            effect = "the bytes up to the end of the frame are imported"
             self._bytes(where, 0)
-        settle(one)
-        self.file.note(AS_BYTES, f"`{' '.join(where)}` is not imported: {why}", held, "error", one.place.line)
+        settle(attribute)
+        self.file.note(AS_BYTES, f"`{' '.join(where)}` is not imported: {why}", effect, "error", attribute.place.line)
         if is_end:
             raise Ended
 
@@ -297,17 +307,17 @@ class Layout(Container[Part]):
 
     # Branches: `if` and `switch-on`.
 
-    def _is_there(self, one: Map, name: str, scope: Scope) -> bool:
+    def _is_present(self, attribute: Map, name: str, scope: Scope) -> bool:
         """Return whether this message contains an attribute with `if`. Raises `NotHeld` if the condition is not supported."""
-        asked = equalities(one["if"])
-        if len(asked) > 1 and any(each.is_negated for each in asked):
-            raise NotHeld(f"it depends on `{line(str(one['if']), 80)}`, which is more than equalities of fields")
-        for each in asked:
-            value = number(each.value, scope.type.members)
-            found, is_new = self._choose(each.of, [value], scope, is_else=True)
-            is_met = (found is not None) != each.is_negated
+        conditions = equalities(attribute["if"])
+        if len(conditions) > 1 and any(condition.is_negated for condition in conditions):
+            raise NotHeld(f"it depends on `{line(str(attribute['if']), 80)}`, which is more than equalities of fields")
+        for condition in conditions:
+            value = number(condition.value, scope.type.members)
+            chosen, is_new = self._choose(condition.of, [value], scope, is_else=True)
+            is_met = (chosen is not None) != condition.is_negated
             if is_new:
-                self.labels.append(Label(f"with {name}" if is_met else "", "" if found is None else f"{value}"))
+                self.labels.append(Label(f"with {name}" if is_met else "", "" if chosen is None else f"{value}"))
             if not is_met:
                 return False
         return True
@@ -319,10 +329,10 @@ class Layout(Container[Part]):
             raise NotHeld("a switch has no cases")
         types = {number(key, scope.type.members): str(of) for key, of in cases.items() if key != "_"}
         of = masked(switch.get("switch-on"))
-        found, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
-        chosen = str(cases["_"]) if found is None and "_" in cases else None if found is None else types[found]
+        value, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
+        chosen = str(cases["_"]) if value is None and "_" in cases else None if value is None else types[value]
         if is_new and chosen is not None:
-            self.labels.append(Label(chosen, "other" if found is None else f"{found}"))
+            self.labels.append(Label(chosen, "other" if value is None else f"{value}"))
         return chosen
 
     def _choose(self, of: Masked, options: list[int], scope: Scope, is_else: bool) -> tuple[int | None, bool]:
@@ -335,9 +345,9 @@ class Layout(Container[Part]):
         item = part.item
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"it depends on `{of.path}`, which is not an integer")
-        whole = (1 << part.bits) - 1
-        mask = whole if of.mask is None else of.mask & whole
-        raw = {option & mask: option for option in options if option in (option & mask, (option & mask) - whole - 1)}
+        all_bits = (1 << part.bits) - 1
+        mask = all_bits if of.mask is None else of.mask & all_bits
+        raw = {option & mask: option for option in options if option in (option & mask, (option & mask) - all_bits - 1)}
         if part.mask & mask == mask:
             return raw.get(part.value & mask), False
         common = part.mask & mask
@@ -361,66 +371,66 @@ class Layout(Container[Part]):
     def _instances(self, type_: Type, scope: Scope, path: tuple[str, ...]) -> None:
         """Add the formulas of `instances`, and the fields of instances at a fixed `pos`. Reports instances not imported."""
         instances = type_.instances.items()
-        for name, one in instances if type_.seq else sorted(instances, key=_position):
-            if not isinstance(one, Map) or self._stands_at(name, one, type_, scope):
+        for name, instance in instances if type_.seq else sorted(instances, key=_position):
+            if not isinstance(instance, Map) or self._add_positioned(name, instance, type_, scope):
                 continue
             where = " ".join((*path, name))
-            if "value" not in one:
-                settle(one)
+            if "value" not in instance:
+                settle(instance)
                 text = f"`{where}` is not imported: an expression gives its position"
-                self.file.note(AS_BYTES, text, "the fields of the sequence are imported", "error", one.place.line)
+                self.file.note(AS_BYTES, text, "the fields of the sequence are imported", "error", instance.place.line)
                 continue
-            if not self._formula(one, scope):
-                settle(one)
-                said = line(str(one["value"]), 80)
-                text = f"`{where}`: `{said}` is not a linear function of one field"
+            if not self._formula(instance, scope):
+                settle(instance)
+                expression = line(str(instance["value"]), 80)
+                text = f"`{where}`: `{expression}` is not a linear function of one field"
                 self.file.note(
-                    RAW_ONLY, text, "the fields that it is computed from are imported", "warning", one.place.line
+                    RAW_ONLY, text, "the fields that it is computed from are imported", "warning", instance.place.line
                 )
 
-    def _stands_at(self, name: str, one: Map, type_: Type, scope: Scope) -> bool:
+    def _add_positioned(self, name: str, instance: Map, type_: Type, scope: Scope) -> bool:
         """Add an instance with a fixed `pos` as a field, and return whether it is one.
 
         This is supported for the root type of a format without `seq`.
         """
-        at = one.get("pos")
-        if not isinstance(at, int) or "io" in one or type_.outer is not None or type_.seq:
+        at = instance.get("pos")
+        if not isinstance(at, int) or "io" in instance or type_.outer is not None or type_.seq:
             return False
         if self.is_open or 8 * at < self.at or at > MOST_BYTES:
             return False
         self.at = 8 * at
         try:
-            self._attribute(one, name, (name,), scope, (type_,))
+            self._attribute(instance, name, (name,), scope, (type_,))
         except TooMuch:
             raise
         except NotHeld as why:
-            self._as_bytes(one, (name,), why, known=True)
+            self._as_bytes(instance, (name,), why, is_present=True)
         return True
 
-    def _formula(self, one: Map, scope: Scope) -> bool:
+    def _formula(self, instance: Map, scope: Scope) -> bool:
         """Add the formula of an instance to the field it depends on, and return whether that is possible."""
-        if isinstance(one["value"], (int, float)):
+        if isinstance(instance["value"], (int, float)):
             return True  # a constant of the definition; the frame does not contain it
-        found = line_of(one["value"], is_integer=False)
-        if found is None:
+        linear = linear_function(instance["value"], is_integer=False)
+        if linear is None:
             return False
         try:
-            part = scope.find(found[0])
+            part = scope.find(linear[0])
         except NotHeld:
             return False
         item = part.item
         if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:
             return False
-        if any(one.counter is not None and one.counter.part is part for one in self.parts):
+        if any(other.counter is not None and other.counter.part is part for other in self.parts):
             return False  # a counter cannot have a formula
-        if item["type"] != "float" and line_of(one["value"], is_integer=True) is None:
+        if item["type"] != "float" and linear_function(instance["value"], is_integer=True) is None:
             return False
-        if found[1] != "raw":
+        if linear[1] != "raw":
             for raw in ("min", "max"):  # in an ICD, limits apply to the physical value
                 item.pop(raw, None)
-            item |= {"formula": found[1], **unit(_unit(one))}
+            item |= {"formula": linear[1], **unit(_unit(instance))}
             if "summary" not in item:
-                item |= summary(str(one.get("doc") or ""))
+                item |= summary(str(instance.get("doc") or ""))
         return True
 
 
@@ -430,6 +440,6 @@ def _position(instance: tuple[str, Any]) -> float:
     return at if isinstance(at, int) else math.inf
 
 
-def _unit(one: Map) -> str:
+def _unit(attribute: Map) -> str:
     """Return the unit from the key `-unit`, a convention of Kaitai Struct files; the language itself has no units."""
-    return str(one.get("-unit") or "")
+    return str(attribute.get("-unit") or "")

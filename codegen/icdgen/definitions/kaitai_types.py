@@ -45,12 +45,12 @@ class Type:
     @property
     def seq(self) -> list[Map]:
         """Attributes in their order; empty without a `seq`. Raises `NotHeld` if `seq` is not a list of mappings."""
-        found = self.body.get("seq")
-        if found is None:
+        attributes = self.body.get("seq")
+        if attributes is None:
             return []
-        if not isinstance(found, Seq) or not all(isinstance(one, Map) for one in found):
+        if not isinstance(attributes, Seq) or not all(isinstance(attribute, Map) for attribute in attributes):
             raise NotHeld(f"the `seq` of `{self.name}` is not a list of attributes")
-        return found
+        return attributes
 
     @property
     def instances(self) -> Map | dict[str, Any]:
@@ -59,37 +59,37 @@ class Type:
 
     def find(self, reference: str) -> Type:
         """Return the type that a reference names in this type or an enclosing one. Raises `NotHeld` if it is missing."""
-        first, *rest = reference.split("::")
-        around: Type | None = self
-        while around is not None:
-            found = around.types.get(first) or (around if around.outer is None and around.name == first else None)
-            for inner in rest:
-                found = found.types.get(inner) if found else None
-            if found is not None:
-                return found
-            around = around.outer
+        first, *inner_names = reference.split("::")
+        scope: Type | None = self
+        while scope is not None:
+            result = scope.types.get(first) or (scope if scope.outer is None and scope.name == first else None)
+            for inner_name in inner_names:
+                result = result.types.get(inner_name) if result else None
+            if result is not None:
+                return result
+            scope = scope.outer
         raise NotHeld(f"there is no type `{line(reference, 60)}`")
 
     def members(self, reference: str) -> dict[int, str]:
         """Return the members of an enumeration by value. Raises `NotHeld` if this and the enclosing types lack it."""
         *path, name = reference.split("::")
-        around: Type | None = self.find("::".join(path)) if path else self
-        while around is not None:
-            found = mapping(around.body, "enums").get(name)
-            if isinstance(found, Map):
+        scope: Type | None = self.find("::".join(path)) if path else self
+        while scope is not None:
+            enumeration = mapping(scope.body, "enums").get(name)
+            if isinstance(enumeration, Map):
                 return {
-                    value: str(said.get("id", "") if isinstance(said, Map) else said)
-                    for key, said in found.items()
+                    value: str(member.get("id", "") if isinstance(member, Map) else member)
+                    for key, member in enumeration.items()
                     if (value := integer(key)) is not None
                 }
-            around = around.outer
+            scope = scope.outer
         raise NotHeld(f"there is no enumeration `{line(reference, 60)}`")
 
 
 def mapping(body: Map, key: str) -> Map | dict[str, Any]:
     """Return the mapping of a key, an empty one if the key is missing or has no mapping."""
-    found = body.get(key)
-    return found if isinstance(found, Map) else {}
+    value = body.get(key)
+    return value if isinstance(value, Map) else {}
 
 
 def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) -> Type:
@@ -99,11 +99,11 @@ def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) ->
     if "endian" in meta:
         endian = _ORDERS.get(str(meta["endian"]))
     bits = _ORDERS.get(str(meta.get("bit-endian")), outer.bit_endian if outer else BIG)
-    made = Type(name, body, outer, endian, bits)
+    result = Type(name, body, outer, endian, bits)
     for inner, of in mapping(body, "types").items() if depth < _DEEPEST else ():
         if isinstance(of, Map):
-            made.types[inner] = declared(inner, of, made, depth + 1)
-    return made
+            result.types[inner] = declared(inner, of, result, depth + 1)
+    return result
 
 
 def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
@@ -113,10 +113,10 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
     Raises `NotHeld` if the type is not supported.
     """
     if (number := _NUMBER.match(name)) is not None:
-        kind, size, said = number.groups()
+        kind, size, suffix = number.groups()
         if kind == "f" and size in "12":
             raise NotHeld(f"there is no type `{name}`")
-        order = _ORDERS[said] if said else within.endian
+        order = _ORDERS[suffix] if suffix else within.endian
         if order is None and size != "1":
             raise NotHeld(f"the byte order of `{name}` is not stated")
         return Piece({"type": _KINDS[kind]}, 8 * int(size), order or BIG)
@@ -144,8 +144,8 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
 
 def sized(attribute: Map) -> int | None:
     """Return the `size` of an attribute in bytes, None if it is not a number. Raises `NotHeld` if it is out of range."""
-    said = attribute.get("size")
-    size = integer(said.strip()) if isinstance(said, str) else said
+    stated = attribute.get("size")
+    size = integer(stated.strip()) if isinstance(stated, str) else stated
     if not isinstance(size, int) or isinstance(size, bool):
         return None
     if not 0 <= size <= MOST_BYTES:
@@ -155,22 +155,22 @@ def sized(attribute: Map) -> int | None:
 
 def contents(attribute: Map) -> bytes | None:
     """Return the constant bytes of an attribute (`contents`), None without the key. Raises `NotHeld` for bad values."""
-    said = attribute.get("contents")
-    if said is None:
+    stated = attribute.get("contents")
+    if stated is None:
         return None
-    parts = said if isinstance(said, Seq) else [said]
-    made = b""
+    parts = stated if isinstance(stated, Seq) else [stated]
+    result = b""
     for part in parts:
         value = integer(part) if isinstance(part, str) and integer(part) is not None else part
         if isinstance(value, int) and 0 <= value <= 255:
-            made += bytes([value])
+            result += bytes([value])
         elif isinstance(part, str):
-            made += part.encode()
+            result += part.encode()
         else:
             raise NotHeld(f"its contents are `{line(str(part), 60)}`")
-    if not 1 <= len(made) <= MOST_BYTES:
-        raise NotHeld(f"its contents are {len(made)} bytes")
-    return made
+    if not 1 <= len(result) <= MOST_BYTES:
+        raise NotHeld(f"its contents are {len(result)} bytes")
+    return result
 
 
 def named(item: Item, bits: int, reference: str, within: Type, enums: Enumerations, to: Definitions) -> None:
@@ -183,9 +183,9 @@ def named(item: Item, bits: int, reference: str, within: Type, enums: Enumeratio
 
 def _encoding(within: Type) -> object:
     """Return the default text encoding (`meta.encoding`) of a type or the nearest enclosing one."""
-    around: Type | None = within
-    while around is not None:
-        if (said := mapping(around.body, "meta").get("encoding")) is not None:
-            return said
-        around = around.outer
+    scope: Type | None = within
+    while scope is not None:
+        if (encoding := mapping(scope.body, "meta").get("encoding")) is not None:
+            return encoding
+        scope = scope.outer
     return None

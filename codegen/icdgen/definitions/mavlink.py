@@ -78,7 +78,7 @@ class MavLink2:
         )  # fmt: skip
         seeds = network.seeds = network.protocol["checksums"]["x25"]["seeds"]  # type: ignore[index]
         for path, root in roots.items():
-            versions = (one.text or "" for one in root.iter("version"))
+            versions = (node.text or "" for node in root.iter("version"))
             version = next((int(text) for text in versions if text.strip().isdigit()), 2)
             for element in root.iterfind("messages/message"):
                 name, id = element.get("name", ""), _number(element.get("id", ""))
@@ -89,17 +89,17 @@ class MavLink2:
                 try:
                     if id is None or id >> self.id_bits:
                         raise NotHeld(f"its id is `{element.get('id', '')}`")
-                    seeds[name], made = self._message(element, name, id, enums, version, to)
+                    seeds[name], item = self._message(element, name, id, enums, version, to)
                 except NotHeld as why:
                     to.left_out(name, why)
                     settle(element)
                     continue
-                network.messages.append(made if len(roots) == 1 else {**made, "group": Path(path).stem})
-        network.messages.sort(key=lambda one: int(one["id"]))
+                network.messages.append(item if len(roots) == 1 else {**item, "group": Path(path).stem})
+        network.messages.sort(key=lambda message: int(message["id"]))
         in_order = {message["name"]: seeds[message["name"]] for message in network.messages}
         seeds.clear()
         seeds |= in_order
-        network.declare(one for _, one in sorted(enums.items()))
+        network.declare(enum for _, enum in sorted(enums.items()))
         to.networks.append(network)
         for root in roots.values():
             account.elements(root)
@@ -113,28 +113,28 @@ class MavLink2:
         base: list[_Field] = []
         more: list[_Field] = []
         is_more = False
-        for one in element:
-            tag = safe_xml.local(one.tag)
+        for child in element:
+            tag = safe_xml.local(child.tag)
             if tag == "extensions":
                 is_more = True
-                settle(one)
+                settle(child)
             if tag == "field":
-                (more if is_more else base).append(_field(one))
+                (more if is_more else base).append(_field(child))
         base.sort(
-            key=lambda one: -_BITS[one.type]
+            key=lambda field: -_BITS[field.type]
         )  # wire order; the sort is stable for fields of equal width, as MAVLink requires
         item: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
         if self.has_extensions:
             item["may_end_early"] = "zeros"
-        item |= summary(_said(element))
+        item |= summary(_description(element))
         fields, at = [], 0
         for field in (*base, *(more if self.has_extensions else ())):
-            fields.append({"at": at, **_held(name, field, enums, version, to)})
+            fields.append({"at": at, **_icd_field(name, field, enums, version, to)})
             at += field.bits
         item["length"] = at // 8
         if at <= 8:
             item.pop("may_end_early", None)  # MAVLink 2 never truncates the first byte of the payload
-        return _extra(name, base), {**item, "fields": fields} if fields else item
+        return _crc_extra(name, base), {**item, "fields": fields} if fields else item
 
     def envelope(self) -> Item:
         """Return the section `protocol`. Commands have the ids of a ground station (255, 190), telemetry of an autopilot (1, 1)."""
@@ -152,7 +152,7 @@ class MavLink2:
             {"bits": self.id_bits, "role": "id"},
         ]
         places = accumulate((part["bits"] for part in parts), initial=0)
-        header = [{"at": at, **one} for at, one in zip(places, parts, strict=False)]
+        header = [{"at": at, **part} for at, part in zip(places, parts, strict=False)]
         trailer = [{"at": 0, "bits": 16, "role": "checksum", "checksum": "x25"}]
         checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
         return {
@@ -179,10 +179,10 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
 
     Raises `Findings` for circular includes, and for files that are missing or in another folder.
     """
-    found: dict[str, Element] = {}
+    roots: dict[str, Element] = {}
 
     def read(path: str, content: bytes, stack: tuple[str, ...]) -> None:
-        root = found[path] = safe_xml.parse(path, content, account=account)
+        root = roots[path] = safe_xml.parse(path, content, account=account)
         for element in root.iterfind("include"):
             name = (element.text or "").strip()
             target = os.path.join(os.path.dirname(path), name)
@@ -191,16 +191,16 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
             if target in (*stack, path):
                 circle = " -> ".join(map(os.path.basename, (*(*stack, path)[(*stack, path).index(target) :], target)))
                 raise unreadable(path, f"files include each other in a circle: {circle}", "take one `include` out")
-            if target in found:
+            if target in roots:
                 continue
-            if len(found) >= MOST_FILES:
+            if len(roots) >= MOST_FILES:
                 raise unreadable(file, f"it includes more than {MOST_FILES} files", "import it in parts")
             if not os.path.isfile(target):
                 raise unreadable(path, f"`{name}`, which it includes, is not in its folder", "put it there")
             read(target, kinds.contents(Path(target)), (*stack, path))
 
     read(file, data, ())
-    yield from found.items()
+    yield from roots.items()
 
 
 def _field(element: Element) -> _Field:
@@ -214,7 +214,7 @@ def _field(element: Element) -> _Field:
     return _Field(element.get("name", ""), type_, int(match[2] or 0), element)
 
 
-def _extra(name: str, fields: list[_Field]) -> int:
+def _crc_extra(name: str, fields: list[_Field]) -> int:
     """Return CRC_EXTRA, a checksum of the name and the base fields of a message in 8 bits. It excludes extensions."""
     data = f"{name} ".encode()
     for field in fields:
@@ -228,33 +228,33 @@ def _extra(name: str, fields: list[_Field]) -> int:
     return checksum & 0xFF ^ checksum >> 8
 
 
-def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: Definitions) -> Item:
+def _icd_field(owner: str, field: _Field, enums: dict[str, Item], version: int, to: Definitions) -> Item:
     """Return the field of the ICD without its position."""
-    of = field.element
+    element = field.element
     if field.type == "char":
-        return {"bits": field.bits, "name": field.name, "type": "text", **summary(_text(of))}
+        return {"bits": field.bits, "name": field.name, "type": "text", **summary(_text(element))}
     kind = "float" if field.type in ("float", "double") else "uint" if field.type[0] == "u" else "int"
     bits = _BITS[field.type]
-    one: Item = {"bits": bits, "name": field.name, "type": kind}
-    one |= {"count": field.elements} if field.elements else {}
-    if of.get("type") == _VERSION_FIELD:
-        one["const"] = version
-    symbol = of.get("units", "")
-    as_it_is = (_SPELLED.get(symbol, symbol), "1")
-    held, factor = as_it_is if kind == "float" else _SCALED.get(symbol, as_it_is)
-    one |= unit(held)
-    if kind != "float" and (formula := _formula(factor, of.get("multiplier", ""))):
-        one["formula"] = formula
-    enum = enums.get(of.get("enum", ""))
+    item: Item = {"bits": bits, "name": field.name, "type": kind}
+    item |= {"count": field.elements} if field.elements else {}
+    if element.get("type") == _VERSION_FIELD:
+        item["const"] = version
+    symbol = element.get("units", "")
+    unscaled = (_SPELLED.get(symbol, symbol), "1")
+    base_unit, factor = unscaled if kind == "float" else _SCALED.get(symbol, unscaled)
+    item |= unit(base_unit)
+    if kind != "float" and (formula := _formula(factor, element.get("multiplier", ""))):
+        item["formula"] = formula
+    enum = enums.get(element.get("enum", ""))
     if enum and kind != "float":
-        _name_values(one, enum, bits, f"message `{owner}`, `{field.name}`", to)
-    invalid = _invalid(of.get("invalid", ""), kind, bits)
-    if invalid and "const" not in one:
-        named = {member["value"] for member in enum["members"]} if enum and one["type"] == "enum" else set()
-        named |= {each["value"] for each in one.get("special", ())}
+        _name_values(item, enum, bits, f"message `{owner}`, `{field.name}`", to)
+    invalid = _invalid(element.get("invalid", ""), kind, bits)
+    if invalid and "const" not in item:
+        named = {member["value"] for member in enum["members"]} if enum and item["type"] == "enum" else set()
+        named |= {value["value"] for value in item.get("special", ())}
         if invalid["value"] not in named:
-            one["special"] = [*one.get("special", ()), invalid]
-    return {**one, **summary(_text(of))}
+            item["special"] = [*item.get("special", ()), invalid]
+    return {**item, **summary(_text(element))}
 
 
 def _formula(factor: str, multiplier: str) -> str:
@@ -269,21 +269,23 @@ def _formula(factor: str, multiplier: str) -> str:
     return f"raw{text}" + (f"/{match[2]}" if match and match[2] else "") if text else ""
 
 
-def _name_values(one: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
+def _name_values(item: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
     """Add an enumeration to an integer field, or its members as special values if the field cannot have all of them."""
-    low, high = raws(bits, one["type"] == "int")
-    named = [each for each in enum["members"] if low <= each["value"] and each.get("to", each["value"]) <= high]
+    low, high = raws(bits, item["type"] == "int")
+    named = [
+        member for member in enum["members"] if low <= member["value"] and member.get("to", member["value"]) <= high
+    ]
     if len(named) < len(enum["members"]):
-        beyond = next(each["value"] for each in enum["members"] if each not in named)
+        beyond = next(member["value"] for member in enum["members"] if member not in named)
         text = f"{where}: it never has the value {beyond} of `{enum['name']}`"
         to.warn(BEYOND, text, "the names of values that it can have are special values")
-    elif is_enumeration(one, bits, named):
-        one.pop("unit", None)
-        one |= {"type": "enum", "enum": enum["name"]}
+    elif is_enumeration(item, bits, named):
+        item.pop("unit", None)
+        item |= {"type": "enum", "enum": enum["name"]}
         return
-    if "const" not in one:
-        one |= special(
-            [{key: each[key] for key in ("value", "to", "name") if key in each} for each in named], where, to
+    if "const" not in item:
+        item |= special(
+            [{key: member[key] for key in ("value", "to", "name") if key in member} for member in named], where, to
         )
 
 
@@ -302,13 +304,13 @@ def _invalid(text: str, kind: str, bits: int) -> Item:
 
 def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]:
     """Return the enumerations by name. Entries from several files are merged."""
-    found: dict[str, dict[int, tuple[str, str]]] = {}
-    said: dict[str, str] = {}
+    enums: dict[str, dict[int, tuple[str, str]]] = {}
+    descriptions: dict[str, str] = {}
     for root in roots.values():
         for enum in root.iterfind("enums/enum"):
             name = enum.get("name", "")
-            said[name] = said.get(name) or _said(enum)
-            entries = found.setdefault(name, {})
+            descriptions[name] = descriptions.get(name) or _description(enum)
+            entries = enums.setdefault(name, {})
             for entry in enum.iterfind("entry"):
                 # As in pymavlink, an entry without a value continues from the highest one.
                 value = _number(entry.get("value", str(max(entries, default=0) + 1)))
@@ -316,39 +318,39 @@ def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]
                 if value is None:
                     text = f"enumeration `{name}`: `{label}` has the value `{entry.get('value')}`"
                     to.warn(BEYOND, text, "the name is left out")
-                elif entries.setdefault(value, (label, _said(entry)))[0] != label:
+                elif entries.setdefault(value, (label, _description(entry)))[0] != label:
                     text = f"enumeration `{name}`: {value} is `{entries[value][0]}` and `{label}`"
                     to.warn(TWICE, text, "the first name is imported")
-    return {name: _enumeration(name, entries, said[name], to) for name, entries in found.items() if entries}
+    return {name: _enumeration(name, entries, descriptions[name], to) for name, entries in enums.items() if entries}
 
 
-def _enumeration(name: str, entries: dict[int, tuple[str, str]], said: str, to: Definitions) -> Item:
+def _enumeration(name: str, entries: dict[int, tuple[str, str]], description: str, to: Definitions) -> Item:
     """Return an enumeration. Its members lose the words that are common to all of them."""
     labels = [label for label, _ in entries.values()]
-    prefix = f"{name}_" if len(labels) < 2 else _begins_alike(min(labels), max(labels))
+    prefix = f"{name}_" if len(labels) < 2 else _common_prefix(min(labels), max(labels))
     short = {value: label.removeprefix(prefix) or label for value, (label, _) in entries.items()}
     named = members(short, -(2**63), 2**64 - 1, f"enumeration `{name}`", to)
-    for one in named:
-        if "to" not in one:
-            one |= summary(entries[one["value"]][1])
-    return {"name": name, **summary(said), "members": named}
+    for member in named:
+        if "to" not in member:
+            member |= summary(entries[member["value"]][1])
+    return {"name": name, **summary(description), "members": named}
 
 
-def _begins_alike(one: str, other: str) -> str:
+def _common_prefix(first: str, second: str) -> str:
     """Return the common first words of two names, up to an underscore.
 
     All names between the two in alphabetical order begin with them, too.
     """
-    alike = next((at for at, pair in enumerate(zip(one, other, strict=False)) if pair[0] != pair[1]), len(one))
-    return one[: one.rfind("_", 0, alike) + 1]
+    end = next((at for at, pair in enumerate(zip(first, second, strict=False)) if pair[0] != pair[1]), len(first))
+    return first[: first.rfind("_", 0, end) + 1]
 
 
-def _said(element: Element) -> str:
+def _description(element: Element) -> str:
     """Return the description of a message, enumeration or entry, with its deprecation."""
-    text = line(next((_text(one) for one in element.iterfind("description")), ""))
-    for gone in element.iterfind("deprecated"):
-        by = f", replaced by {gone.get('replaced_by')}" if gone.get("replaced_by") else ""
-        text = f"{text} Deprecated since {gone.get('since', '?')}{by}.".strip()
+    text = line(next((_text(child) for child in element.iterfind("description")), ""))
+    for deprecation in element.iterfind("deprecated"):
+        by = f", replaced by {deprecation.get('replaced_by')}" if deprecation.get("replaced_by") else ""
+        text = f"{text} Deprecated since {deprecation.get('since', '?')}{by}.".strip()
     return text
 
 

@@ -75,7 +75,7 @@ class SunSpec:
         to.networks.append(network)
         enums = Enumerations()
         left = [_MOST_POINTS]
-        for tree in sorted(models, key=lambda one: int(one["id"])):
+        for tree in sorted(models, key=lambda tree: int(tree["id"])):
             to.total += 1
             model = _Model(tree, enums, to, left, {struct["name"] for struct in network.structs})
             try:
@@ -133,7 +133,7 @@ class _Model:
         end = self.block(self.group, fields, 0, "", 0)
         if not fields:
             raise NotHeld("it has no points")
-        item: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _said(self.group)
+        item: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _summary(self.group)
         if self.scaled:
             shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
             text = f"message `{self.name}`: the factors of {len(self.scaled)} points are in other registers: {shown}"
@@ -175,54 +175,54 @@ class _Model:
         called = f"{before}{name}"
         called = f"{self.name} {called}" if called in self.taken else called
         self.taken.add(called)
-        struct: Item = {"name": called, **_said(group), "length": length, "fields": parts}
+        struct: Item = {"name": called, **_summary(group), "length": length, "fields": parts}
         self.structs.append(struct)
-        one = {"at": at, "name": f"{before}{name}", "struct": struct["name"]}
+        item = {"at": at, "name": f"{before}{name}", "struct": struct["name"]}
         if not is_open:
-            return {**one, "count": count}
+            return {**item, "count": count}
         if count != 0 and not any(part["name"] == count for part in fields):
             raise NotHeld(f"`{name}` is counted by `{line(str(count), 60)}`, which is not in front of it")
         count = count or REST
-        return {**one, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
+        return {**item, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
 
     def point(self, point: dict[str, Any], before: str, at: int, is_head: bool) -> Item:
         """Return the field of a point. ``is_head``: id or length of the model. Raises `NotHeld` if it is not supported."""
         self.left[0] -= 1
         if self.left[0] < 0:
             raise NotHeld(f"the file has more than {_MOST_POINTS:,} points")
-        name, said = f"{before}{_text(point, 'name')}", _text(point, "type")
-        kind = _KINDS.get(said)
+        name, type_name = f"{before}{_text(point, 'name')}", _text(point, "type")
+        kind = _KINDS.get(type_name)
         size = point.get("size")
         registers = kind.registers or size if kind else 0
         if kind is None or type(registers) is not int or not 0 < registers <= _MOST_REGISTERS:
             sized = f" and size {size}" if kind else ""
-            raise NotHeld(f"`{line(name, 80)}` is of the type `{line(said, 40)}`{sized}")
-        one: Item = {"at": at, "bits": _REGISTER * registers, "name": name, "type": kind.type}
-        none = _special(kind, said) if not is_head else {}
-        symbols = _symbols(point, is_bits=said.startswith("bitfield"))
+            raise NotHeld(f"`{line(name, 80)}` is of the type `{line(type_name, 40)}`{sized}")
+        item: Item = {"at": at, "bits": _REGISTER * registers, "name": name, "type": kind.type}
+        none = _special(kind, type_name) if not is_head else {}
+        symbols = _symbols(point, is_bits=type_name.startswith("bitfield"))
         if type(point.get("value")) is int and kind.type in ("int", "uint") and not symbols:
-            one |= {"const": point["value"], **_said(point)}
-            return one
-        one |= self.scale(point, name, kind)
+            item |= {"const": point["value"], **_summary(point)}
+            return item
+        item |= self.scale(point, name, kind)
         if symbols:
-            self.enums.hold(one, one["bits"], symbols, name, self.name, f"model `{self.name}`, `{name}`", self.to)
+            self.enums.hold(item, item["bits"], symbols, name, self.name, f"model `{self.name}`, `{name}`", self.to)
         if none and none["special"][0]["value"] not in symbols:
-            one["special"] = [*one.pop("special", ()), *none["special"]]
-        return one  # not a copy: `Enumerations` adds the name of the enumeration to this mapping later
+            item["special"] = [*item.pop("special", ()), *none["special"]]
+        return item  # not a copy: `Enumerations` adds the name of the enumeration to this mapping later
 
     def scale(self, point: dict[str, Any], name: str, kind: _Kind) -> Item:
         """Return unit, formula and summary. If another register has the scale factor, the summary names unit and factor."""
-        power, symbol, said = point.get("sf"), _text(point, "units"), _said(point)
+        power, symbol, keys = point.get("sf"), _text(point, "units"), _summary(point)
         symbol = _SPELLED.get(symbol, symbol)
         if isinstance(power, str) and kind.type in ("int", "uint"):
             self.scaled.append(name)
-            told = f"{f'In {symbol} times' if symbol else 'Times'} 10 to the power of {line(power, 60)}."
-            return summary(f"{said['summary'].rstrip('. ')}. {told}" if said else told)
+            hint = f"{f'In {symbol} times' if symbol else 'Times'} 10 to the power of {line(power, 60)}."
+            return summary(f"{keys['summary'].rstrip('. ')}. {hint}" if keys else hint)
         if kind.type not in ("int", "uint", "float"):
-            return said
+            return keys
         is_power = type(power) is int and -20 <= power <= 20 and kind.type != "float"
         scaled = formula(printed(Decimal(10) ** power)) if is_power and power is not None else {}
-        return {**unit(symbol), **scaled, **said}
+        return {**unit(symbol), **scaled, **keys}
 
 
 def _fixed_number_help(group: str, counter: object) -> str:
@@ -234,34 +234,34 @@ def _fixed_number_help(group: str, counter: object) -> str:
 def _symbols(point: dict[str, Any], is_bits: bool) -> dict[int, str]:
     """Return the names of values. The symbols of a bit field are bit numbers, which become values with this bit set."""
     result: dict[int, str] = {}
-    for one in _list(point, "symbols"):
-        value = one.get("value")
+    for symbol in _list(point, "symbols"):
+        value = symbol.get("value")
         if type(value) is int and 0 <= value < 1 << 32 and (not is_bits or value < 64):
-            result.setdefault(1 << value if is_bits else value, _text(one, "name"))
+            result.setdefault(1 << value if is_bits else value, _text(symbol, "name"))
     return result
 
 
-def _special(kind: _Kind, said: str) -> Item:
+def _special(kind: _Kind, type_name: str) -> Item:
     """Return the special value of a point type, empty if it has none."""
     if kind.none is None:
         return {}
-    return {"special": [{"value": kind.none, "meaning": _NOT_COUNTED if said.startswith("acc") else _NONE}]}
+    return {"special": [{"value": kind.none, "meaning": _NOT_COUNTED if type_name.startswith("acc") else _NONE}]}
 
 
-def _said(of: dict[str, Any]) -> dict[str, str]:
+def _summary(of: dict[str, Any]) -> dict[str, str]:
     """Return the summary of a label and a description, without the label if the description contains it."""
     label, text = _text(of, "label"), _text(of, "desc")
-    same = label.casefold() in text.casefold()
-    return summary(text if same else f"{label}. {text}" if text else label)
+    is_contained = label.casefold() in text.casefold()
+    return summary(text if is_contained else f"{label}. {text}" if text else label)
 
 
 def _list(of: dict[str, Any], key: str) -> Iterator[dict[str, Any]]:
     """Yield the mappings in the list of a key."""
-    found = of.get(key)
-    yield from (one for one in found if isinstance(one, dict)) if isinstance(found, list) else ()
+    value = of.get(key)
+    yield from (entry for entry in value if isinstance(entry, dict)) if isinstance(value, list) else ()
 
 
 def _text(of: dict[str, Any], key: str) -> str:
     """Return the text of a key on one line, empty if the key has no text."""
-    found = of.get(key)
-    return line(found) if isinstance(found, str) else ""
+    value = of.get(key)
+    return line(value) if isinstance(value, str) else ""

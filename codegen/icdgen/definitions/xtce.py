@@ -15,8 +15,8 @@ from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, Source
 from icdgen.definitions.wording import line, node_name
-from icdgen.definitions.xtce_layout import Layout, Part, Told
-from icdgen.definitions.xtce_names import Names, beside, called
+from icdgen.definitions.xtce_layout import Layout, Part, RequiredValue
+from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
 from icdgen.definitions.xtce_types import Types, described
 from icdgen.diagnostics import Findings
 
@@ -79,33 +79,35 @@ def _define(roots: Mapping[str, Element], to: Definitions, name: str) -> Definit
     """Add the network of one database, which may consist of several files, to its definitions and return them."""
     names = Names(roots, to)
     types = Types(to, names)
-    found = _identified(list(_all(names, types, to)), to)
+    messages = _identified(list(_all(names, types, to)), to)
     types.report_raw_only()
     root = next(iter(roots.values()))
-    title = line(called(root), 100) if len(roots) == 1 else ""
+    title = line(name_of(root), 100) if len(roots) == 1 else ""
     network = Network(name, title or name, {**ORDERS[BIG], **(described(root) if title else {})})
-    packets.fill(network, found, to)
+    packets.fill(network, messages, to)
     network.messages = _paired(network.messages)
     network.name_messages_apart(to)
     network.declare(types.enums.declared())
     to.networks.append(network)
-    for file, one in roots.items():
+    for file, tree in roots.items():
         account, part = Account(_WITHOUT_EFFECT), Definitions(file)
-        account.elements(one)
+        account.elements(tree)
         account.report(part)
         to.take(part)
     return to
 
 
-class _Found:
+class _Candidate:
     """Container or command with its layout."""
 
     def __init__(self, kind: str, element: Element, layout: Layout, more: Item, is_base: bool = False) -> None:
         """``more`` are further keys of the message. ``is_base`` is true for a container that others inherit."""
         self.is_base = is_base
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
-        self.name = called(element)
-        self.told: dict[Hashable, int] = {one.reference: layout.tell(one) for one in layout.told}
+        self.name = name_of(element)
+        self.told: dict[Hashable, int] = {
+            required.reference: layout.fix_value(required) for required in layout.required_values
+        }
         self.header = packets.header((part.at, part.bits, part.item.get("const")) for part in layout.parts)
         first = next(iter(layout.parts), None)
         is_id = first is not None and first.is_message_id
@@ -116,13 +118,13 @@ class _Found:
 
         Reports parts between the primary header and ``start``, which have no place in an ICD.
         """
-        made = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
+        head = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
         lost = [part for part in self.layout.parts if part.at < start and not self._is_ahead(part, start)]
         if lost:
-            shown = ", ".join(f"`{one.path[-1]}`" for one in lost)
+            shown = ", ".join(f"`{part.path[-1]}`" for part in lost)
             text = f"message `{self.name}`: {shown} lies within the header"
             to.warn(IN_HEADER, text, "it is left out: the parts of a header have their own meaning", "error")
-        message = self.layout.laid_out(made, start, BIG, to)
+        message = self.layout.laid_out(head, start, BIG, to)
         if self.layout.lost is not None:
             self.layout.lost.report(self.name, to, *self.layout.names.place(self.element))
         return message
@@ -133,17 +135,17 @@ class _Found:
         return packets.is_of_header(at, bits) if self.header is not None else (at, bits) == (0, start)
 
 
-def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
+def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
     """Return the telemetry containers and commands in the order of the file. Reports unsupported ones."""
     bases = _used(names, "BaseContainer")
     for element in _containers(names, bases):
         to.total += 1
-        types.message = called(element)
+        types.message = name_of(element)
         layout = Layout(names, types)
         try:
             layout.read(element)
             more = {**_group(names, element), **described(element)}
-            yield _Found(_TELEMETRY, element, layout, more, id(element) in bases)
+            yield _Candidate(_TELEMETRY, element, layout, more, id(element) in bases)
         except NotHeld as why:
             to.left_out(element.get("name", ""), why, *names.place(element))
             settle(element)
@@ -151,7 +153,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
         if element.tag != "MetaCommand" or element.get("abstract") == "true":
             continue
         to.total += 1
-        types.message = called(element)
+        types.message = name_of(element)
         try:
             chain = names.commands(element)
             layout = Layout(names, types, _arguments(chain))
@@ -161,49 +163,57 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
             layout.read(container)
             assigned: dict[str, str] = {}
             for base in chain:
-                for one in base.iterfind("BaseMetaCommand/ArgumentAssignmentList/ArgumentAssignment"):
-                    assigned.setdefault(one.get("argumentName", ""), one.get("argumentValue", ""))
+                for assignment in base.iterfind("BaseMetaCommand/ArgumentAssignmentList/ArgumentAssignment"):
+                    assigned.setdefault(assignment.get("argumentName", ""), assignment.get("argumentValue", ""))
             for name, value in assigned.items():
-                layout.told.append(Told(layout.argument(name), value, is_raw=False))
+                layout.required_values.append(RequiredValue(layout.argument(name), value, is_raw=False))
             more = {**_group(names, element), **_hazard(chain), **described(element)}
-            yield _Found(_TELECOMMAND, element, layout, more)
+            yield _Candidate(_TELECOMMAND, element, layout, more)
         except NotHeld as why:
             to.left_out(element.get("name", ""), why, *names.place(element))
             settle(element)
 
 
-def _identified(found: list[_Found], to: Definitions) -> list[_Found]:
+def _identified(candidates: list[_Candidate], to: Definitions) -> list[_Candidate]:
     """Remove base containers without an application process identifier (APID), and report them (IMP087).
 
     Applies only to databases of space packets. The containers that inherit the base ones are the messages.
     """
-    is_packet = any(one.header is not None for one in found)
-    bases = [one for one in found if is_packet and one.is_base and (one.header is None or one.header.apid is None)]
+    is_packet = any(candidate.header is not None for candidate in candidates)
+    bases = [
+        candidate
+        for candidate in candidates
+        if is_packet and candidate.is_base and (candidate.header is None or candidate.header.apid is None)
+    ]
     if bases:
         shown = ", ".join(f"`{base.name}`" for base in bases[:3]) + (" ..." if len(bases) > 3 else "")
         what = "1 container is" if len(bases) == 1 else f"{len(bases)} containers are"
         text = f"{what} without an application process: {shown}"
         to.warn(BASE_ONLY, text, "others are based on them, which are messages", "note")
         to.total -= len(bases)
-    return [one for one in found if one not in bases]
+    return [candidate for candidate in candidates if candidate not in bases]
 
 
 def _containers(names: Names, bases: set[int]) -> list[Element]:
     """Return the containers that are messages: not abstract, and not only a base or a part of others."""
     parts = bases | _used(names, "EntryList/ContainerRefEntry")
     concrete = (
-        one for one in names.all("container") if one.tag == "SequenceContainer" and one.get("abstract") != "true"
+        container
+        for container in names.all("container")
+        if container.tag == "SequenceContainer" and container.get("abstract") != "true"
     )
-    return [one for one in concrete if one.find("BaseContainer") is not None or id(one) not in parts]
+    return [
+        container for container in concrete if container.find("BaseContainer") is not None or id(container) not in parts
+    ]
 
 
 def _used(names: Names, path: str) -> set[int]:
     """Return `id` of each container that an element at ``path`` of another container refers to."""
     used: set[int] = set()
-    for one in (*names.all("container"), *names.all("command container")):
-        for reference in one.iterfind(path):
+    for container in (*names.all("container"), *names.all("command container")):
+        for reference in container.iterfind(path):
             try:
-                used.add(id(names.container(reference.get("containerRef", ""), one)))
+                used.add(id(names.container(reference.get("containerRef", ""), container)))
             except NotHeld:
                 continue  # reported where it is read
     return used
@@ -221,21 +231,21 @@ def _arguments(chain: list[Element]) -> dict[str, Element]:
 def _paired(messages: list[Item]) -> list[Item]:
     """Merge each telecommand and telemetry frame with equal name, group and fields into one configuration message."""
     sent = {(message["name"], message.get("group")): message for message in messages if message["kind"] == _TELECOMMAND}
-    made: list[Item] = []
-    gone: set[int] = set()
-    for one in messages:
-        other = sent.get((one["name"], one.get("group"))) if one["kind"] == _TELEMETRY else None
-        if other is None or id(other) in gone or not _is_same(one, other):
-            made.append(one)
+    result: list[Item] = []
+    merged: set[int] = set()
+    for message in messages:
+        command = sent.get((message["name"], message.get("group"))) if message["kind"] == _TELEMETRY else None
+        if command is None or id(command) in merged or not _is_same(message, command):
+            result.append(message)
             continue
-        gone.add(id(other))
-        head = {"name": one["name"], "kind": "configuration", "set_id": other["id"], "get_id": one["id"]}
-        rest = {key: value for key, value in {**other, **one}.items() if key not in ("name", "kind", "id")}
-        made.append({**head, **rest})
-    return [one for one in made if id(one) not in gone]
+        merged.add(id(command))
+        head = {"name": message["name"], "kind": "configuration", "set_id": command["id"], "get_id": message["id"]}
+        body = {key: value for key, value in {**command, **message}.items() if key not in ("name", "kind", "id")}
+        result.append({**head, **body})
+    return [message for message in result if id(message) not in merged]
 
 
-def _is_same(one: Item, other: Item) -> bool:
+def _is_same(first: Item, second: Item) -> bool:
     """Whether the fields of two messages are equal.
 
     Ignores overlay fields. Compares constants by position and raw value, as only telemetry has their type.
@@ -245,12 +255,12 @@ def _is_same(one: Item, other: Item) -> bool:
         fields = (field for field in message.get("fields", ()) if not field.get("view"))
         return [{"at": f["at"], "bits": f["const"] & (1 << f["bits"]) - 1} if "const" in f else f for f in fields]
 
-    return one["length"] == other["length"] and plain(one) == plain(other)
+    return first["length"] == second["length"] and plain(first) == plain(second)
 
 
 def _group(names: Names, element: Element) -> Item:
     """Return the group of a message: that of its ICD if icdgen wrote the file, else the path below the root system."""
-    if group := beside(element).get("group"):
+    if group := ancillary_data(element).get("group"):
         return {"group": line(group, 200)}
     inner = names.system(element).split("/")[2:]
     return {"group": line(" ".join(inner), 200)} if inner else {}
@@ -258,9 +268,10 @@ def _group(names: Names, element: Element) -> Item:
 
 def _hazard(chain: list[Element]) -> Item:
     """Return the hazard of a command with a `DefaultSignificance` of vital, critical or severe consequences."""
-    said = next((element for command in chain for element in command.iterfind("DefaultSignificance")), None)
-    if said is None or said.get("consequenceLevel", "none") not in _HAZARDOUS:
+    significance = next((element for command in chain for element in command.iterfind("DefaultSignificance")), None)
+    if significance is None or significance.get("consequenceLevel", "none") not in _HAZARDOUS:
         return {}
     return {
-        "hazard": line(said.get("reasonForWarning"), 400) or f"Its consequences are {said.get('consequenceLevel')}."
+        "hazard": line(significance.get("reasonForWarning"), 400)
+        or f"Its consequences are {significance.get('consequenceLevel')}."
     }

@@ -29,10 +29,10 @@ def calibration(encoding: Element) -> dict[str, Any]:
     calibrator = encoding.find("DefaultCalibrator")
     if calibrator is None:
         return {}
-    found = calibrated(calibrator)
-    if found is None:
+    keys = calibrated(calibrator)
+    if keys is None:
         raise ValueError("it is calibrated by an algorithm")
-    return found
+    return keys
 
 
 def calibrated(calibrator: Element) -> dict[str, Any] | None:
@@ -41,18 +41,18 @@ def calibrated(calibrator: Element) -> dict[str, Any] | None:
     Raises `ValueError` if it is not supported.
     """
     if terms := calibrator.findall("PolynomialCalibrator/Term"):
-        return _said(polynomial(terms))
+        return _formula_key(polynomial(terms))
     spline = calibrator.find("SplineCalibrator")
     if spline is None:
         return None
     points = spline.findall("SplinePoint")
-    if {one.get("order", "1") for one in (spline, *points)} != {"1"}:
+    if {element.get("order", "1") for element in (spline, *points)} != {"1"}:
         raise ValueError(f"it is calibrated by a table of {len(points)} points that are not joined by lines")
     goes_on = spline.get("extrapolate", "false") == "true"
-    return _said(through(points)) if len(points) == 2 and goes_on else _table(points, goes_on)
+    return _formula_key(line_through(points)) if len(points) == 2 and goes_on else _table(points, goes_on)
 
 
-def _said(text: str) -> dict[str, Any]:
+def _formula_key(text: str) -> dict[str, Any]:
     """Return the key of a formula, no key for the raw value."""
     return {"formula": text} if text else {}
 
@@ -62,30 +62,30 @@ def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
 
     Raises `ValueError` if the points are not a valid table, or are too many.
     """
-    found = [[decimal(one.get(key, "")) for key in ("raw", "calibrated")] for one in points]
-    found.sort(key=lambda point: Fraction(point[0]))
+    pairs = [[decimal(point.get(key, "")) for key in ("raw", "calibrated")] for point in points]
+    pairs.sort(key=lambda point: Fraction(point[0]))
     try:
-        curve.table(curve.doubles(found), "")
+        curve.table(curve.doubles(pairs), "")
     except FormulaError as error:
         raise ValueError(f"it is calibrated by a table that cannot be used: {error}") from None
-    if len(found) > curve.MOST_POINTS:
-        raise ValueError(f"it is calibrated by a table of {len(found):,} points")
+    if len(pairs) > curve.MOST_POINTS:
+        raise ValueError(f"it is calibrated by a table of {len(pairs):,} points")
     return {
-        "points": [[_number(text) for text in point] for point in found],
+        "points": [[_number(text) for text in point] for point in pairs],
         "outside": curve.EXTRAPOLATE if goes_on else curve.REFUSE,
     }
 
 
-def ended(said: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
+def simplified_table(table: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
     """Return the keys of a lookup table of an integer, simplified if it covers all raw values.
 
     Horizontal segments at the ends become `outside: clamp`. A table that covers all values needs no `outside`.
     """
     low, high = raws(bits, is_signed)
-    points = list(said["points"])
+    points = list(table["points"])
     (first, *_), (last, *_) = points[0], points[-1]
     if not (Fraction(first) <= low and high <= Fraction(last)):
-        return said
+        return table
     starts_level = len(points) > 2 and Fraction(first) == low and Fraction(points[0][1]) == Fraction(points[1][1])
     points = points[1:] if starts_level else points
     ends_level = len(points) > 2 and Fraction(last) == high and Fraction(points[-1][1]) == Fraction(points[-2][1])
@@ -124,15 +124,15 @@ def fixed(element: Element | None, default: int | None = None) -> int | None:
 
 def polynomial(terms: list[Element]) -> str:
     """Return the formula of a polynomial. Raises `ValueError` for exponents above 15 and repeated ones."""
-    found: dict[int, str] = {}
+    coefficients: dict[int, str] = {}
     for term in terms:
         power = number(term.get("exponent", ""), "an exponent")
         if not 0 <= power <= _MOST_POWER:
             raise ValueError(f"it is calibrated by raw^{power}")
-        if power in found:
+        if power in coefficients:
             raise ValueError(f"raw^{power} has two coefficients")
-        found[power] = decimal(term.get("coefficient", ""))
-    return formula(found)
+        coefficients[power] = decimal(term.get("coefficient", ""))
+    return formula(coefficients)
 
 
 def formula(terms: dict[int, str]) -> str:
@@ -155,7 +155,7 @@ def _binary(text: str) -> str:
     return f"2^-{bottom.bit_length() - 1}" if top == 1 and is_rounded else text
 
 
-def through(points: list[Element]) -> str:
+def line_through(points: list[Element]) -> str:
     """Return the formula of the line through two points. Raises `ValueError` if their raw values are equal."""
     (x0, y0), (x1, y1) = ([decimal(point.get(key, "")) for key in ("raw", "calibrated")] for point in points)
     across, up = Fraction(x1) - Fraction(x0), Fraction(y1) - Fraction(y0)

@@ -35,10 +35,10 @@ def sets(roots: Mapping[str, Element]) -> list[dict[str, Element]]:
                 if other != file and candidates & named[other]:
                     ends = sorted((first_of(file), first_of(other)), key=list(roots).index)
                     owner[ends[1]] = ends[0]
-    made: dict[str, dict[str, Element]] = {}
+    result: dict[str, dict[str, Element]] = {}
     for file, root in roots.items():
-        made.setdefault(first_of(file), {})[file] = root
-    return list(made.values())
+        result.setdefault(first_of(file), {})[file] = root
+    return list(result.values())
 
 
 def _systems(root: Element) -> Iterator[tuple[str, Element]]:
@@ -48,17 +48,19 @@ def _systems(root: Element) -> Iterator[tuple[str, Element]]:
         above, system = left.pop()
         path = f"{above}/{Element.get(system, 'name', '')}"
         yield path, system
-        left += [(path, one) for one in system if safe_xml.local(one.tag) == "SpaceSystem"]
+        left += [(path, child) for child in system if safe_xml.local(child.tag) == "SpaceSystem"]
 
 
 def _names(root: Element) -> set[str]:
     """Return the paths of all named elements of a file."""
-    return {f"{path}/{Element.get(one, 'name', '')}" for path, system in _systems(root) for one in _within(system)}
+    return {
+        f"{path}/{Element.get(element, 'name', '')}" for path, system in _systems(root) for element in _within(system)
+    }
 
 
 def _within(system: Element) -> Iterator[Element]:
     """Yield the elements of a system without nested systems."""
-    left = [one for one in system if safe_xml.local(one.tag) != "SpaceSystem"]
+    left = [child for child in system if safe_xml.local(child.tag) != "SpaceSystem"]
     while left:
         element = left.pop()
         yield element
@@ -74,10 +76,10 @@ def _references(root: Element) -> Iterator[frozenset[str]]:
                 reference = Element.get(element, key)
                 if reference and (path, reference) not in seen:
                     seen.add((path, reference))
-                    yield frozenset(_meant(path, reference))
+                    yield frozenset(_targets(path, reference))
 
 
-def _meant(path: str, reference: str) -> Iterator[str]:
+def _targets(path: str, reference: str) -> Iterator[str]:
     """Yield the paths that a reference within the system ``path`` can mean.
 
     The target can be in the system or in an enclosing one. The last names may be members of an aggregate.

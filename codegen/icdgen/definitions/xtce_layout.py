@@ -21,8 +21,8 @@ from icdgen.definitions.model import Definitions, Item, NotHeld, again
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
-from icdgen.definitions.xtce_names import Names, beside, called
-from icdgen.definitions.xtce_types import Piece, Types, described, meant, repeated
+from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
+from icdgen.definitions.xtce_types import Piece, Types, described, repeated, special_values
 from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
@@ -56,7 +56,7 @@ class Part(containers.Part):
     conditions: list[tuple[Part, object]] = field(default_factory=list)
 
 
-class Told(NamedTuple):
+class RequiredValue(NamedTuple):
     """Parameter, argument or member that has a constant value in a message."""
 
     reference: Reference
@@ -71,7 +71,7 @@ class Layout(Container[Part]):
     names: Names
     types: Types
     arguments: dict[str, Element] = field(default_factory=dict)  # of a command
-    told: list[Told] = field(default_factory=list)
+    required_values: list[RequiredValue] = field(default_factory=list)
     jumps: bool = False  # whether a part has an explicit position
     behind: str = ""  # the previous entry, if it is optional
     size: int = 0  # bits of every frame if the container states a size, else 0
@@ -82,8 +82,8 @@ class Layout(Container[Part]):
         ``within`` are the enclosing containers. Positions of an included container are relative to its own start.
         Raises `NotHeld` if an entry is not supported and the frame cannot end there.
         """
-        if any(container is one for one in within):
-            circle = " -> ".join(one.get("name", "") for one in (*within, container))
+        if any(container is element for element in within):
+            circle = " -> ".join(element.get("name", "") for element in (*within, container))
             raise NotHeld(f"containers contain or inherit each other in a circle: {line(circle, 200)}")
         if len(within) >= _DEEPEST:
             raise NotHeld(f"more than {_DEEPEST} containers inherit or contain each other")
@@ -94,7 +94,7 @@ class Layout(Container[Part]):
             self.read(extended, within, is_included)
         if (base := container.find("BaseContainer")) is not None:
             if (criteria := base.find("RestrictionCriteria")) is not None:
-                self.told += self._told(criteria, container)
+                self.required_values += self._required_values(criteria, container)
         if not is_included and (size := fixed(container.find("BinaryEncoding/SizeInBits"))):
             self.size = size
         entries = container.find("EntryList")
@@ -130,16 +130,16 @@ class Layout(Container[Part]):
     def _move(self, entry: Element, start: int) -> None:
         """Move to the position of an entry in a container that begins at bit ``start``. Raises `NotHeld`."""
         location = entry.find("LocationInContainerInBits")
-        said = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
-        if self.behind and said == "previousEntry":
+        origin = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
+        if self.behind and origin == "previousEntry":
             raise NotHeld(f"`{_named(entry)}` follows `{self.behind}`, which is present only on a condition")
         self.behind = ""
         if location is None:
             return
         bits = fixed(location)
-        if bits is None or said not in ("previousEntry", "containerStart"):
+        if bits is None or origin not in ("previousEntry", "containerStart"):
             raise NotHeld(f"where `{_named(entry)}` is located is not a number of bits from the previous entry")
-        self.at = (self.at if said == "previousEntry" else start) + bits
+        self.at = (self.at if origin == "previousEntry" else start) + bits
         self.jumps = True
         if self.at < 0:
             raise NotHeld(f"`{_named(entry)}` is located in front of its container")
@@ -167,13 +167,13 @@ class Layout(Container[Part]):
             piece = self.types.array(type_, dimensions, where)
         else:
             piece = self.types.piece(type_, where)
-        said = {**meant(of), **described(of, type_)}
-        said |= {"view": True} if "view" in beside(of) else {}
-        said |= {"const": number(constant, "a constant")} if (constant := beside(of).get("constant")) else {}
-        name = " ".join((called(of), *reference.path))
-        self._place(reference, name, repeated(piece, count, where), said)
+        keys = {**special_values(of), **described(of, type_)}
+        keys |= {"view": True} if "view" in ancillary_data(of) else {}
+        keys |= {"const": number(constant, "a constant")} if (constant := ancillary_data(of).get("constant")) else {}
+        name = " ".join((name_of(of), *reference.path))
+        self._place(reference, name, repeated(piece, count, where), keys)
 
-    def _place(self, reference: Reference, name: str, piece: Piece, said: Item) -> None:
+    def _place(self, reference: Reference, name: str, piece: Piece, keys: Item) -> None:
         """Add a field at the current position, or the members of an aggregate in their order. Raises `NotHeld`."""
         of, path = reference
         if len(path) > _DEEPEST:
@@ -193,9 +193,9 @@ class Layout(Container[Part]):
             self.jumps = (
                 True  # little-endian within a byte: bits are counted from the least significant one, as in Yamcs
             )
-        item = again(piece.item, {**piece.item, **said})
+        item = again(piece.item, {**piece.item, **keys})
         part = Part((name,), item, self.at, piece.bits, piece.order, item.get("bits", 8), piece=piece)
-        part.reference, part.is_reserved = reference, "reserved" in beside(of)
+        part.reference, part.is_reserved = reference, "reserved" in ancillary_data(of)
         self.add(part)
 
     def _fixed(self, entry: Element) -> None:
@@ -226,85 +226,97 @@ class Layout(Container[Part]):
             raise NotHeld(f"there is no argument `{line(name, 100)}`")
         return Reference(self.arguments[first], tuple(path))
 
-    def _told(self, criteria: Element, seen_from: Element) -> Iterator[Told]:
+    def _required_values(self, criteria: Element, seen_from: Element) -> Iterator[RequiredValue]:
         """Yield the equalities of a conjunction. Raises `NotHeld` for any other condition."""
-        for told in self._all_of(criteria, seen_from, "it depends on"):
-            if len(told) > 1:
+        for alternatives in self._all_of(criteria, seen_from, "it depends on"):
+            if len(alternatives) > 1:
                 raise NotHeld("it depends on more than equalities that must all be true")
-            yield told[0]
+            yield alternatives[0]
 
     def _conditions(self, condition: Element, seen_from: Element, named: str, before: int) -> list[tuple[Part, object]]:
         """Return the parts in front of an entry on which it depends, with the values that they must have. Raises `NotHeld`."""
         conditions: list[tuple[Part, object]] = []
         for alternatives in self._all_of(condition, seen_from, f"`{named}` is present only if there is"):
-            part, *others = [self._part(told, before) for told in alternatives]
-            if any(other is not part for other in others) or any(of is part for of, _ in conditions):
+            part, *other_parts = [self._part(equality, before) for equality in alternatives]
+            if any(other is not part for other in other_parts) or any(of is part for of, _ in conditions):
                 raise NotHeld(f"`{named}` is present on a condition of several fields")
-            raws = [self._raw(part, told) for told in alternatives]
+            raws = [self._raw(part, equality) for equality in alternatives]
             conditions.append((part, raws if len(raws) > 1 else raws[0]))
         if not conditions:
             raise NotHeld(f"`{named}` is present only on a condition that is empty")
         return conditions
 
-    def _all_of(self, criteria: Iterable[Element], seen_from: Element, said: str) -> Iterator[list[Told]]:
+    def _all_of(self, criteria: Iterable[Element], seen_from: Element, prefix: str) -> Iterator[list[RequiredValue]]:
         """Yield the terms of a conjunction, each a list of alternative equalities.
 
-        Raises `NotHeld` for any other condition, with a message that begins with the given words.
+        Raises `NotHeld` for any other condition, with a message that begins with ``prefix``.
         """
-        for one in criteria:
-            if one.tag == "Comparison":
-                yield [self._compared(one, one.get("comparisonOperator", "=="), one.get("value", ""), seen_from, said)]
-            elif one.tag in ("ComparisonList", "BooleanExpression", "ANDedConditions"):
-                yield from self._all_of(one, seen_from, said)
-            elif one.tag == "ORedConditions":
-                each = [list(self._all_of([inner], seen_from, said)) for inner in one]
+        for criterion in criteria:
+            if criterion.tag == "Comparison":
+                yield [
+                    self._compared(
+                        criterion,
+                        criterion.get("comparisonOperator", "=="),
+                        criterion.get("value", ""),
+                        seen_from,
+                        prefix,
+                    )
+                ]
+            elif criterion.tag in ("ComparisonList", "BooleanExpression", "ANDedConditions"):
+                yield from self._all_of(criterion, seen_from, prefix)
+            elif criterion.tag == "ORedConditions":
+                each = [list(self._all_of([inner], seen_from, prefix)) for inner in criterion]
                 if any(len(alternative) != 1 for alternative in each):
-                    raise NotHeld(f"{said} one of several things that must hold together")
-                yield [told for (alternative,) in each for told in alternative]
-            elif one.tag == "Condition":
-                if len([inner for inner in one if inner.tag.endswith("InstanceRef")]) != 1:
-                    raise NotHeld(f"{said} a comparison of two parameters")
-                operator, value = one.findtext("ComparisonOperator", ""), one.findtext("Value", "")
-                yield [self._compared(one, operator, value, seen_from, said)]
+                    raise NotHeld(f"{prefix} one of several things that must hold together")
+                yield [equality for (alternative,) in each for equality in alternative]
+            elif criterion.tag == "Condition":
+                if len([inner for inner in criterion if inner.tag.endswith("InstanceRef")]) != 1:
+                    raise NotHeld(f"{prefix} a comparison of two parameters")
+                operator, value = criterion.findtext("ComparisonOperator", ""), criterion.findtext("Value", "")
+                yield [self._compared(criterion, operator, value, seen_from, prefix)]
             else:
-                raise NotHeld(f"{said} a `{line(one.tag, 60)}`")
+                raise NotHeld(f"{prefix} a `{line(criterion.tag, 60)}`")
 
-    def _compared(self, one: Element, operator: str, value: str, seen_from: Element, said: str) -> Told:
+    def _compared(
+        self, comparison: Element, operator: str, value: str, seen_from: Element, prefix: str
+    ) -> RequiredValue:
         """Return an equality of a parameter or argument and a value. Raises `NotHeld` for other operators."""
-        of = next((inner for inner in one if inner.tag.endswith("InstanceRef")), one)
+        of = next((inner for inner in comparison if inner.tag.endswith("InstanceRef")), comparison)
         is_argument = "argumentRef" in of.attrib
         name = of.get("argumentRef" if is_argument else "parameterRef", "")
         if operator.strip() != "==":
             compared = f"`{line(name, 60)} {line(operator, 5)} {line(value, 60)}`"
-            raise NotHeld(f"{said} {compared}, which is not an equality")
+            raise NotHeld(f"{prefix} {compared}, which is not an equality")
         reference = self._parameter(name, seen_from, is_argument)
-        return Told(reference, value, of.get("useCalibratedValue") == "false")
+        return RequiredValue(reference, value, of.get("useCalibratedValue") == "false")
 
-    def tell(self, told: Told) -> int:
+    def fix_value(self, required: RequiredValue) -> int:
         """Make the value of a parameter or argument constant, and return its raw value. Raises `NotHeld`."""
-        part = self._part(told)
-        raw = self._raw(part, told)
-        check_only_value(part.item, raw, told.reference.name)
+        part = self._part(required)
+        raw = self._raw(part, required)
+        check_only_value(part.item, raw, required.reference.name)
         part.item["const"] = raw
         return raw
 
-    def _part(self, told: Told, end: int | None = None) -> Part:
+    def _part(self, required: RequiredValue, end: int | None = None) -> Part:
         """Return the last of the first ``end`` parts that an equality refers to. Raises `NotHeld` if it does not exist."""
-        part = next((one for one in reversed(self.parts[:end]) if one.reference == told.reference), None)
+        part = next(
+            (candidate for candidate in reversed(self.parts[:end]) if candidate.reference == required.reference), None
+        )
         if part is None:
-            raise self.missing(told.reference.name)
+            raise self.missing(required.reference.name)
         return part
 
-    def _raw(self, part: Part, told: Told) -> int:
+    def _raw(self, part: Part, required: RequiredValue) -> int:
         """Return the raw value of an equality. Raises `NotHeld` if the part is calibrated, not an integer, or too narrow."""
-        item, text, name = part.item, told.value.strip(), told.reference.name
+        item, text, name = part.item, required.value.strip(), required.reference.name
         if part.piece.is_raw:
             raise NotHeld(f"it depends on `{name}`, of which only the raw bits are imported")
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"it depends on `{name}`, which is of the type {item['type']}")
-        if item.keys() & {"formula", "points"} and not told.is_raw:
+        if item.keys() & {"formula", "points"} and not required.is_raw:
             raise NotHeld(f"it depends on the calibrated value of `{name}`")
-        if text in part.piece.values and not told.is_raw:
+        if text in part.piece.values and not required.is_raw:
             return part.piece.values[text]
         try:
             raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
@@ -347,7 +359,7 @@ class Layout(Container[Part]):
         else:
             fields = [fixed_field(part, names[id(part)], part.at - start) for part in closed]
             last = max((part.end for part in closed), default=start) - start
-            message |= {"reserved": rest} if (rest := message["length"] - -(-last // 8)) else {}
+            message |= {"reserved": padding} if (padding := message["length"] - -(-last // 8)) else {}
         for part in parts:
             if not part.bits:
                 if end % 8:
@@ -377,8 +389,8 @@ def _count(part: Part, name: str, at: int, parts: list[Part], message: str, to: 
     """Set the counter of a variable-length part, if another part can count it, and its maximum number of elements."""
     item, piece = part.item, part.piece
     most = min(item["up_to"], (8 * MOST_BYTES - at) // part.element)
-    if part.reference is not None and (said := beside(part.reference.of).get("up_to")) is not None:
-        most = min(most, max(1, number(said, "a size")))
+    if part.reference is not None and (limit := ancillary_data(part.reference.of).get("up_to")) is not None:
+        most = min(most, max(1, number(limit, "a size")))
     counter = next((other for other in parts if _is_named(other, piece.size)), None)
     counted = _counted(counter, piece, most) if counter is not None else 0
     if counter is not None and counted:

@@ -48,10 +48,10 @@ class Names:
             if depth > _DEEPEST:
                 raise unreadable(file, f"more than {_DEEPEST} systems are nested", "make them flat")
             path = f"{above}/{system.get('name', '')}"
-            for meta in (one for one in system if one.tag in ("TelemetryMetaData", "CommandMetaData")):
+            for meta in (child for child in system if child.tag in ("TelemetryMetaData", "CommandMetaData")):
                 for group in meta:
-                    for one in group if group.tag in _SETS else ():
-                        self._note(_SETS[group.tag], one, path, file)
+                    for element in group if group.tag in _SETS else ():
+                        self._note(_SETS[group.tag], element, path, file)
             left += [(element, path, depth + 1) for element in reversed(system.findall("SpaceSystem"))]
 
     def _note(self, kind: str, element: Element, path: str, file: str) -> None:
@@ -80,7 +80,7 @@ class Names:
 
     def all(self, kind: str) -> list[Element]:
         """Return the elements of a kind in the order of the files."""
-        return [one for (of, _), one in self._found.items() if of == kind]
+        return [element for (element_kind, _), element in self._found.items() if element_kind == kind]
 
     def system(self, element: Element) -> str:
         """Return the path of the system that contains an element."""
@@ -90,15 +90,15 @@ class Names:
         """Return a command and its base commands, the derived one first. Raises `NotHeld` for circular inheritance."""
         chain = [element]
         while (base := chain[-1].find("BaseMetaCommand")) is not None:
-            found = self.find("command", base.get("metaCommandRef", ""), chain[-1])
-            if any(found is one for one in chain):
+            parent = self.find("command", base.get("metaCommandRef", ""), chain[-1])
+            if any(parent is command for command in chain):
                 raise NotHeld("commands are based on each other in a circle")
-            chain.append(found)
+            chain.append(parent)
         return chain
 
     def container_of(self, command: Element) -> Element | None:
         """Return the container of a command or of its nearest base command, None without a container. Raises `NotHeld`."""
-        containers = (one.find("CommandContainer") for one in self.commands(command))
+        containers = (element.find("CommandContainer") for element in self.commands(command))
         return next((container for container in containers if container is not None), None)
 
     def base_of(self, container: Element) -> Element | None:
@@ -145,9 +145,9 @@ class Names:
         """Return the element that a reference names in the system or an enclosing one. Raises `NotHeld` if it does not exist."""
         path = self.system(seen_from)
         while True:
-            found = self._found.get((kind, posixpath.normpath(posixpath.join(path, reference))))
-            if found is not None:
-                return found
+            target = self._found.get((kind, posixpath.normpath(posixpath.join(path, reference))))
+            if target is not None:
+                return target
             if not path or reference.startswith("/"):
                 raise NotHeld(f"there is no {kind} `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
             path = path.rpartition("/")[0]
@@ -158,18 +158,18 @@ def line_of(element: Element) -> int | None:
     return getattr(element, "line", None)
 
 
-def called(element: Element) -> str:
+def name_of(element: Element) -> str:
     """Return the name of an element: that in its ICD if icdgen wrote the file, else the XTCE name."""
     return alias(element) or element.get("name", "")
 
 
 def alias(element: Element) -> str:
     """Return the name of an element in its ICD, from an alias that icdgen wrote. Empty without one."""
-    aliases = (one for one in element.iterfind("AliasSet/Alias") if one.get("nameSpace") == ICD)
-    return next((said for one in aliases if (said := line(one.get("alias"), 200))), "")
+    aliases = (entry for entry in element.iterfind("AliasSet/Alias") if entry.get("nameSpace") == ICD)
+    return next((text for entry in aliases if (text := line(entry.get("alias"), 200))), "")
 
 
-def beside(element: Element) -> dict[str, str]:
+def ancillary_data(element: Element) -> dict[str, str]:
     """Return the ancillary data that icdgen wrote for an element, by key: `group`, `reserved`, `special 255`."""
-    found = ((one.get("name", ""), one.text or "") for one in element.iterfind("AncillaryDataSet/AncillaryData"))
-    return {name.removeprefix(f"{ICD} "): line(text, 400) for name, text in found if name.startswith(f"{ICD} ")}
+    pairs = ((data.get("name", ""), data.text or "") for data in element.iterfind("AncillaryDataSet/AncillaryData"))
+    return {name.removeprefix(f"{ICD} "): line(text, 400) for name, text in pairs if name.startswith(f"{ICD} ")}

@@ -15,8 +15,8 @@ from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line, summary, unit, without_type
-from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, ended, fixed, formula, number
-from icdgen.definitions.xtce_names import Names, alias, beside
+from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, fixed, formula, number, simplified_table
+from icdgen.definitions.xtce_names import Names, alias, ancillary_data
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 _MOST_NAMED = 1024  # values that one label can cover
@@ -55,25 +55,27 @@ class Types(Reading):
         chain = self._chain(element)
         kind = re.sub("(Parameter|Argument)Type$", "", element.tag)
         if kind == "Aggregate":
-            listed = [one for type_ in chain for one in type_.iterfind("MemberList/Member")]
-            found = [(one.get("name", ""), self.names.type_of(one.get("typeRef", ""), element)) for one in listed]
-            return Piece({}, 0, members=found)
+            listed = [member for type_ in chain for member in type_.iterfind("MemberList/Member")]
+            members = [
+                (member.get("name", ""), self.names.type_of(member.get("typeRef", ""), element)) for member in listed
+            ]
+            return Piece({}, 0, members=members)
         if kind == "Array":
             return self.array(element, element.find("DimensionList"), where)
-        encoding = next((one for one in _below(chain) if one.tag in _ENCODINGS), None)
+        encoding = next((child for child in _below(chain) if child.tag in _ENCODINGS), None)
         try:
-            made = self._encoded(chain, kind, encoding)
+            piece = self._encoded(chain, kind, encoding)
         except NotHeld as why:
             return self._raw(chain, encoding, where, why)
         if kind == "Enumerated":
-            self._labels(made, chain, element, where)
+            self._labels(piece, chain, element, where)
         elif kind == "Boolean":
-            self._flag(made, chain, element)
-        elif made.item["type"] in ("uint", "int", "float"):
-            is_held = self._calibrated(made, chain, encoding, kind, where)
-            made.item |= _unit(chain) if is_held else {}
-            made.item |= self._limits(made.item, chain) if is_held else {}
-        return made
+            self._flag(piece, chain, element)
+        elif piece.item["type"] in ("uint", "int", "float"):
+            is_supported = self._calibrated(piece, chain, encoding, kind, where)
+            piece.item |= _unit(chain) if is_supported else {}
+            piece.item |= self._limits(piece.item, chain) if is_supported else {}
+        return piece
 
     def member(self, element: Element, name: str, where: str) -> Element:
         """Return the type of a member of an aggregate. Raises `NotHeld` if it does not exist."""
@@ -105,12 +107,12 @@ class Types(Reading):
         """Return a type and its base types, the derived one first. Raises `NotHeld` for circular or too deep inheritance."""
         chain = [element]
         while (base := chain[-1].get("baseType")) is not None:
-            found = self.names.type_of(base, chain[-1])
-            if any(found is one for one in chain):
+            base_type = self.names.type_of(base, chain[-1])
+            if any(base_type is type_ for type_ in chain):
                 raise NotHeld(f"the type `{element.get('name', '')}` is based on itself")
             if len(chain) >= _DEEPEST:
                 raise NotHeld(f"the type `{element.get('name', '')}` is based on more than {_DEEPEST} others")
-            chain.append(found)
+            chain.append(base_type)
         return chain
 
     def _encoded(self, chain: list[Element], kind: str, encoding: Element | None) -> Piece:
@@ -124,16 +126,16 @@ class Types(Reading):
         if encoding.get("bitOrder", "mostSignificantBitFirst") != "mostSignificantBitFirst":
             raise NotHeld("its least significant bit is sent first")
         if encoding.tag == "IntegerDataEncoding":
-            said = encoding.get("encoding", "unsigned")
+            encoding_name = encoding.get("encoding", "unsigned")
             # XTCE 1.1 spells the value `twosCompliment`, 1.2 `twosComplement`.
-            type_ = {"unsigned": "uint", "twosComplement": "int", "twosCompliment": "int"}.get(said)
+            type_ = {"unsigned": "uint", "twosComplement": "int", "twosCompliment": "int"}.get(encoding_name)
             if type_ is None:
-                raise NotHeld(f"an integer is encoded as `{line(said, 60)}`")
+                raise NotHeld(f"an integer is encoded as `{line(encoding_name, 60)}`")
             return _numbers(type_, number(encoding.get("sizeInBits", "8"), "a size"), _order(encoding))
         if encoding.tag == "FloatDataEncoding":
-            said = encoding.get("encoding", "IEEE754_1985")
-            if not said.startswith("IEEE754"):
-                raise NotHeld(f"a float is encoded as `{line(said, 60)}`")
+            encoding_name = encoding.get("encoding", "IEEE754_1985")
+            if not encoding_name.startswith("IEEE754"):
+                raise NotHeld(f"a float is encoded as `{line(encoding_name, 60)}`")
             return _numbers("float", number(encoding.get("sizeInBits", "32"), "a size"), _order(encoding))
         return _bytes(encoding, "text" if encoding.tag == "StringDataEncoding" else "bytes")
 
@@ -152,70 +154,73 @@ class Types(Reading):
             settle(type_)
         return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
 
-    def _labels(self, made: Piece, chain: list[Element], element: Element, where: str) -> None:
+    def _labels(self, piece: Piece, chain: list[Element], element: Element, where: str) -> None:
         """Add the enumeration of a type with labels. Raises `NotHeld` if it is not an integer, or a label covers too much."""
-        if made.item["type"] not in ("uint", "int"):
-            raise NotHeld(f"{where} has labels, and is encoded as {made.item['type']}")
+        if piece.item["type"] not in ("uint", "int"):
+            raise NotHeld(f"{where} has labels, and is encoded as {piece.item['type']}")
         choices: dict[int, str] = {}
-        for one in (one for type_ in chain for one in type_.iterfind("EnumerationList/Enumeration")):
-            first = number(one.get("value", ""), "the value of a label")
-            last = number(one.get("maxValue") or str(first), "the value of a label")
+        for enumeration in (
+            enumeration for type_ in chain for enumeration in type_.iterfind("EnumerationList/Enumeration")
+        ):
+            first = number(enumeration.get("value", ""), "the value of a label")
+            last = number(enumeration.get("maxValue") or str(first), "the value of a label")
             if not 0 <= last - first < _MOST_NAMED:
                 raise NotHeld(f"{where} has a label for the values {first} to {last}")
             self.step(last - first + 1)
             for value in range(first, last + 1):
-                choices.setdefault(value, one.get("label", ""))
-        made.values = {label: value for value, label in reversed(choices.items())}
+                choices.setdefault(value, enumeration.get("label", ""))
+        piece.values = {label: value for value, label in reversed(choices.items())}
         notes = self.heard(f"labels of {id(element)}")  # report once per type
-        called = _called(element)
-        self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", notes)
+        called = _enumeration_name(element)
+        self.enums.hold(piece.item, piece.bits, choices, called, self._owner(element), f"`{called}`", notes)
 
     def _owner(self, element: Element) -> str:
         """Return the name of the system that contains a type."""
         return self.names.system(element).rsplit("/", 1)[-1]
 
-    def _flag(self, made: Piece, chain: list[Element], element: Element) -> None:
+    def _flag(self, piece: Piece, chain: list[Element], element: Element) -> None:
         """Make a field a flag, or an enumeration of two members if it has several bits. Raises `NotHeld`."""
-        if made.item["type"] not in ("uint", "int"):
-            raise NotHeld(f"a flag is encoded as {made.item['type']}")
-        zero, one = _attribute(chain, "zeroStringValue", "False"), _attribute(chain, "oneStringValue", "True")
-        made.values = {zero: 0, one: 1, "false": 0, "true": 1}
-        if made.bits == 1:
-            made.item["type"] = "bool"
+        if piece.item["type"] not in ("uint", "int"):
+            raise NotHeld(f"a flag is encoded as {piece.item['type']}")
+        label_of_0 = _attribute(chain, "zeroStringValue", "False")
+        label_of_1 = _attribute(chain, "oneStringValue", "True")
+        piece.values = {label_of_0: 0, label_of_1: 1, "false": 0, "true": 1}
+        if piece.bits == 1:
+            piece.item["type"] = "bool"
             return
-        choices, called = {0: line(zero, 60), 1: line(one, 60)}, _called(element)
-        self.enums.hold(made.item, made.bits, choices, called, self._owner(element), f"`{called}`", self.to)
+        choices, called = {0: line(label_of_0, 60), 1: line(label_of_1, 60)}, _enumeration_name(element)
+        self.enums.hold(piece.item, piece.bits, choices, called, self._owner(element), f"`{called}`", self.to)
 
-    def _calibrated(self, made: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
+    def _calibrated(self, piece: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
         """Add the calibration of a number, and return whether it is supported. If not, the raw value is imported."""
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
-            said = _time(made.item, chain) if is_time else {} if encoding is None else calibration(encoding)
+            keys = _time(piece.item, chain) if is_time else {} if encoding is None else calibration(encoding)
         except ValueError as error:
             self.raw_only(where, str(error), "its raw values are imported, without the unit")
             for type_ in chain:
                 settle(type_)
             return False
-        if "points" in said and made.item["type"] != "float":
-            said = ended(said, made.bits, made.item["type"] == "int")
-        made.item |= said
+        if "points" in keys and piece.item["type"] != "float":
+            keys = simplified_table(keys, piece.bits, piece.item["type"] == "int")
+        piece.item |= keys
         return True
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """Return the limits of the valid range. Empty if there are several, or it applies to raw values of a calibrated number."""
         ranges = [element for type_ in chain for path in _RANGES for element in type_.iterfind(path)]
-        owners = [one for type_ in chain if (one := type_.find("ValidRangeSet")) is not None]
-        of_raw = any(one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners))
+        owners = [owner for type_ in chain if (owner := type_.find("ValidRangeSet")) is not None]
+        of_raw = any(owner.get("validRangeAppliesToCalibrated") == "false" for owner in (*ranges, *owners))
         if len(ranges) != 1 or (of_raw and item.keys() & {"formula", "points"}):
             return {}
-        found: Item = {}
-        for said, key in _LIMITS.items():
-            if match := NUMBER.match(ranges[0].get(said, "")):
+        result: Item = {}
+        for attribute, key in _LIMITS.items():
+            if match := NUMBER.match(ranges[0].get(attribute, "")):
                 value = Fraction(match[1])
                 exact = value.numerator if value.denominator == 1 else float(value)
                 if "e" not in str(exact):
-                    found[key] = exact
-        return found
+                    result[key] = exact
+        return result
 
 
 def repeated(piece: Piece, count: int, where: str) -> Piece:
@@ -245,20 +250,20 @@ def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
     return Piece(piece.item, 0, piece.order, size=name, plus=intercept + 1)
 
 
-def meant(element: Element) -> Item:
+def special_values(element: Element) -> Item:
     """Return the special values of a parameter or argument, which icdgen writes as ancillary data."""
-    found = []
-    for name, text in beside(element).items():
+    result = []
+    for name, text in ancillary_data(element).items():
         kind, _, value = name.partition(" ")
         if kind == "special" and text and (value in ("nan", "inf", "-inf") or NUMBER.match(value)):
             number = value if value[-1] in "nf" else float(value) if set(value) & set(".e") else int(value)
-            found.append({"value": number, "meaning": text})
-    return {"special": found[:_MOST_NAMED]} if found else {}
+            result.append({"value": number, "meaning": text})
+    return {"special": result[:_MOST_NAMED]} if result else {}
 
 
-def said(element: Element) -> str:
+def _description(element: Element) -> str:
     """Return the short and the long description of an element, without repetition."""
-    parts = (element.get("shortDescription"), next((one.text for one in element.iterfind("LongDescription")), None))
+    parts = (element.get("shortDescription"), next((child.text for child in element.iterfind("LongDescription")), None))
     texts = [text for text in map(line, parts) if text]
     if len(texts) == 2 and (texts[0] in texts[1] or texts[1] in texts[0]):
         texts = [max(texts, key=len)]
@@ -280,7 +285,7 @@ def _time(item: Item, chain: list[Element]) -> dict[str, Any]:
 
 def described(*elements: Element) -> dict[str, str]:
     """Return the summary of the first element that has a description."""
-    return summary(next((text for text in map(said, elements) if text), ""))
+    return summary(next((text for text in map(_description, elements) if text), ""))
 
 
 def _below(chain: list[Element]) -> Iterator[Element]:
@@ -301,14 +306,14 @@ def _numbers(type_: str, bits: int, order: str) -> Piece:
 
 def _order(encoding: Element) -> str:
     """Return the byte order of an encoding: an attribute in XTCE 1.2, a list of bytes in 1.1. Raises `NotHeld`."""
-    said = encoding.get("byteOrder", "mostSignificantByteFirst")
+    order = encoding.get("byteOrder", "mostSignificantByteFirst")
     bytes_ = [
         number(element.get("byteSignificance", ""), "a byte") for element in encoding.iterfind("ByteOrderList/Byte")
     ]
-    if said == "leastSignificantByteFirst" or (len(bytes_) > 1 and bytes_ == sorted(bytes_)):
+    if order == "leastSignificantByteFirst" or (len(bytes_) > 1 and bytes_ == sorted(bytes_)):
         return LITTLE
-    if said != "mostSignificantByteFirst" or bytes_ != sorted(bytes_, reverse=True):
-        raise NotHeld(f"its bytes are sent in the order {bytes_ or line(said, 60)}")
+    if order != "mostSignificantByteFirst" or bytes_ != sorted(bytes_, reverse=True):
+        raise NotHeld(f"its bytes are sent in the order {bytes_ or line(order, 60)}")
     return BIG
 
 
@@ -349,26 +354,26 @@ def _adjusted(dynamic: Element) -> tuple[str, int, int | None]:
 
     The factor is 0 and the offset None if one of them is not an integer. The name is empty without a reference.
     """
-    reference = next((one for one in dynamic if one.tag.endswith("InstanceRef")), None)
+    reference = next((child for child in dynamic if child.tag.endswith("InstanceRef")), None)
     if reference is None:
         return "", 0, None
     name = reference.get("parameterRef") or reference.get("argumentRef") or ""
-    adjusted, said = dynamic.find("LinearAdjustment"), []
+    adjustment, terms = dynamic.find("LinearAdjustment"), []
     for key, default in _LINE:
-        match = NUMBER.match(default if adjusted is None else adjusted.get(key, default))
+        match = NUMBER.match(default if adjustment is None else adjustment.get(key, default))
         if match is None or (value := Fraction(match[1])).denominator != 1:
             return name, 0, None
-        said.append(value.numerator)
-    return name, said[0], said[1]
+        terms.append(value.numerator)
+    return name, terms[0], terms[1]
 
 
 def _unit(chain: list[Element]) -> dict[str, str]:
     """Return the unit of the first type that has one: `m` and `s` to the power of -2 are `m/s^2`."""
     sets = [element for type_ in chain for element in type_.iterfind("UnitSet")]  # many are empty
-    units = next((found for one in sets if (found := one.findall("Unit"))), [])
+    units = next((matches for unit_set in sets if (matches := unit_set.findall("Unit"))), [])
     parts = ""
-    for one in units:
-        power, text = one.get("power", "1"), line("".join(one.itertext()), 60)
+    for element in units:
+        power, text = element.get("power", "1"), line("".join(element.itertext()), 60)
         try:
             exponent = float(power)
         except ValueError:
@@ -385,6 +390,6 @@ def _attribute(chain: list[Element], name: str, default: str) -> str:
     return next((type_.attrib[name] for type_ in chain if name in type_.attrib), default)
 
 
-def _called(element: Element) -> str:
+def _enumeration_name(element: Element) -> str:
     """Return the name of the enumeration of a type."""
     return alias(element) or without_type(element.get("name", ""))
