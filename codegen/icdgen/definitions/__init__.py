@@ -1,1 +1,1 @@
-"""Definitions of messages that exist, in the forms that others have given them -> ICDs. One reader a kind: see `kinds`."""
+"""Import of existing message definitions, such as DBC or XTCE, as ICDs. The module `kinds` lists the readers."""

@@ -1,14 +1,14 @@
-"""Account of what a reader used of its source, so that nothing of a definition is dropped without a finding.
+"""Record which parts of a source a reader uses, so that no part of a definition is dropped without a finding.
 
-A reader reads its source through the wrappers of this module: `safe_xml.parse` with an `Account` makes XML elements of the
-class `AccountedElement`, `accounted` makes mappings of JSON and YAML `AccountedMap`. They behave like what they wrap and
-record what is read. At the end, `Account.elements` and `Account.mappings` walk through the source once more,
-and `Account.report` adds a finding (IMP085) for each kind of attribute, element or key that was never read.
+`safe_xml.parse` with an `Account` creates XML elements of the class `AccountedElement`. `accounted` creates mappings
+of JSON and YAML of the class `AccountedMap`. Both behave like the types that they extend, and record each read
+access. After reading, `Account.elements` and `Account.mappings` walk through the source. `Account.report` then adds
+a finding (IMP085) for each kind of attribute, element or key that was never read.
 
-An element counts as used if it was found by name (`find`, `iterfind`, `iter`), or if an attribute or the text of it,
-or of an element within, was read. Iterating over all children uses none of them, nor does reading a tag. A key
-counts as used if it was looked up, or if all items or values were iterated. Of what is unused the outermost part
-is reported.
+An element counts as used if a reader found it by name (`find`, `iterfind`, `iter`). It also counts as used if an
+attribute or text of the element, or of a descendant, was read. Iterating over all children marks no child as used,
+and reading a tag does not count. A key counts as used if it was looked up, or if all items or values were iterated.
+Only the outermost unused part is reported.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from icdgen.icd.located import Map, Seq
 
 UNUSED = "IMP085"
 _LONGEST_NAME = 60
-_TEXT: Any = Element.__dict__["text"]  # what `AccountedElement` overrides
+_TEXT: Any = Element.__dict__["text"]  # descriptor of the C class, which `AccountedElement` overrides
 
 
 @dataclass
 class _Entry:
-    """Occurrences of one kind of key."""
+    """Number of occurrences of one kind of key, with the first place."""
 
     times: int
     line: int | None
@@ -41,23 +41,24 @@ class _Entry:
 class Account:
     """Tally of unused parts by owner and key.
 
-    ``ignored`` names what carries nothing that an ICD could contain (history, layout of an editor): `key` of any owner, or
-    `owner.key`. Attributes of XML are keys as they stand in the file, and so are the names of elements.
+    ``ignored`` lists keys without content for an ICD, such as history or editor layout. An item is `key` for any
+    owner, or `owner.key`. Attributes and elements of XML are keys, spelled as in the file.
     """
 
     ignored: frozenset[str] = frozenset()
     entries: dict[tuple[str, str], _Entry] = field(default_factory=dict)
 
     def add(self, owner: str, key: str, place: str = "", line: int | None = None) -> None:
-        """Count an unused key of an owner. ``place`` names the first for people (`group.points[3]`)."""
+        """Count an unused key of an owner. ``place`` names the first occurrence in reports (`group.points[3]`)."""
         if key in self.ignored or f"{owner}.{key}" in self.ignored:
             return
         entry = self.entries.setdefault((owner, key), _Entry(0, line, place))
         entry.times += 1
 
     def elements(self, root: Element) -> None:
-        """Count what was not read below an element that `safe_xml.parse` made with an account."""
+        """Count unread parts below an element that `safe_xml.parse` created with an account."""
         used = _used(cast(AccountedElement, root))
+        # Through `Element` itself, because the overridden methods would record the access.
         stack = [cast(AccountedElement, root)]
         while stack:
             element = stack.pop()
@@ -79,7 +80,7 @@ class Account:
             stack += reversed(inner)
 
     def mappings(self, root: object) -> None:
-        """Count the keys that were not read in a tree that `accounted` made."""
+        """Count unread keys in a tree that `accounted` created."""
         stack = [root]
         while stack:
             value = stack.pop()
@@ -98,6 +99,7 @@ class Account:
         for key in () if of.is_settled else dir(of.object):
             if key.startswith("_") or key in of.read_keys:
                 continue
+            # Attributes with an empty value carry no information that could get lost.
             value = getattr(of.object, key)
             if not callable(value) and value is not None and value is not False and value not in ("", [], {}, ()):
                 self.add(owner, key, place)
@@ -115,13 +117,16 @@ class Account:
 
 
 def settle(part: object) -> None:
-    """Mark an element or mapping with all within as read, if reads are recorded, because a finding names it already."""
+    """Mark an element or mapping, including its contents, as read, because another finding already names it.
+
+    Other objects are ignored.
+    """
     if isinstance(part, (AccountedElement, AccountedMap)):
         part.settle()
 
 
 class AccountedElement(Element):
-    """XML element that records which of its attributes were read, and whether its text and itself were."""
+    """XML element that records access to its attributes, its text and itself."""
 
     __slots__ = ("is_found", "is_text_read", "line", "read_keys")
 
@@ -132,7 +137,7 @@ class AccountedElement(Element):
         self.is_found = self.is_text_read = False
 
     def settle(self) -> None:
-        """Mark the element with all within as read, because a finding names it already."""
+        """Mark the element and its descendants as read, because another finding already names it."""
         for one in cast(Iterator[AccountedElement], Element.iter(self)):
             one.is_found = one.is_text_read = True
             one.read_keys.update(Element.keys(one))
@@ -182,7 +187,7 @@ class AccountedElement(Element):
 
 
 class _Attributes(Mapping[str, str]):
-    """The attributes of an element; looking one up counts as reading it."""
+    """Attributes of an element as a mapping. A look-up counts as reading the attribute."""
 
     def __init__(self, element: AccountedElement) -> None:
         self.element = element
@@ -201,7 +206,7 @@ class _Attributes(Mapping[str, str]):
 
 
 class AccountedObject:
-    """Object of a library that records which of its attributes were read."""
+    """Wrapper of a library object that records which attributes are read."""
 
     def __init__(self, object: Any) -> None:
         self.object = object
@@ -209,7 +214,7 @@ class AccountedObject:
         self.is_settled = False
 
     def settle(self) -> None:
-        """Mark the object as read, because a finding names it already."""
+        """Mark the object as read, because another finding already names it."""
         self.is_settled = True
 
     def __getattr__(self, name: str) -> Any:
@@ -218,7 +223,7 @@ class AccountedObject:
 
 
 class AccountedMap(Map):
-    """Mapping that records which of its keys were read. ``owner`` is what it is called in a report, ``path`` its place."""
+    """Mapping that records which keys are read. ``owner`` is its name in reports, and ``path`` its place."""
 
     __slots__ = ("owner", "path", "read_keys")
 
@@ -240,7 +245,7 @@ class AccountedMap(Map):
         self.read_keys.add(key)
         return super().__contains__(key)
 
-    def __iter__(self) -> Iterator[str]:  # without it, `{**mapping}` would not call `__getitem__`
+    def __iter__(self) -> Iterator[str]:  # otherwise, `{**mapping}` copies without `__getitem__`
         return super().__iter__()
 
     def items(self) -> ItemsView[str, Any]:  # type: ignore[override]
@@ -252,7 +257,7 @@ class AccountedMap(Map):
         return super().values()
 
     def settle(self) -> None:
-        """Mark the mapping with all within as read, because a finding names it already."""
+        """Mark the mapping and its contents as read, because another finding already names it."""
         stack: list[object] = [self]
         while stack:
             value = stack.pop()
@@ -265,8 +270,8 @@ class AccountedMap(Map):
 def accounted(tree: Any, named: frozenset[str] = frozenset(), owner: str = "", path: str = "") -> Any:
     """Return a copy of a tree of JSON or YAML whose mappings are `AccountedMap`.
 
-    Below the keys ``named`` the keys are names of the author (`types`, `enums`): a mapping there is reported as one of
-    that key, any other under the key that it stands at.
+    Keys below the keys in ``named`` are user-defined names (`types`, `enums`). A mapping below such a key is
+    reported under the key in ``named``. Any other mapping is reported under its own key.
     """
     if isinstance(tree, dict):
         made = AccountedMap(owner, path, tree)
@@ -286,12 +291,14 @@ def accounted(tree: Any, named: frozenset[str] = frozenset(), owner: str = "", p
 
 
 def _used(root: AccountedElement) -> set[AccountedElement]:
-    """Return the elements that were read or that contain one that was read. Iterative,
-    because files may nest arbitrarily deep.
+    """Return the elements that were read and their ancestors.
+
+    The search is iterative, because files may nest arbitrarily deep.
     """
     listed = cast("list[AccountedElement]", list(Element.iter(root)))
     used: set[AccountedElement] = set()
-    for element in reversed(listed):  # those within come behind
+    # In reverse document order, children come before their parents.
+    for element in reversed(listed):
         if isinstance(element, AccountedElement):
             is_read = element.is_found or element.is_text_read or bool(element.read_keys)
             if is_read or any(child in used for child in element):

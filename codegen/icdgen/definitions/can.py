@@ -1,4 +1,4 @@
-"""CAN databases, as cantools reads them: DBC, KCD, SYM and ARXML."""
+"""Readers of CAN databases (DBC, KCD, SYM and ARXML), based on cantools."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_S
 
 BEYOND_FRAME = "IMP072"
 _UNHEARD = logging.NullHandler()
-# What an ICD has no use for: how cantools sees a signal or message, and what is used under another name.
+# Attributes of cantools objects without meaning for an ICD, and attributes that are used under another name.
 _WITHOUT_MEANING = frozenset(
     {
         "conversion", "is_multiplexer", "minimum", "maximum", "initial", "invalid", "comments", "signal_tree", "codecs",
@@ -26,12 +26,13 @@ _WITHOUT_MEANING = frozenset(
         "is_extended_frame", "bus_name", "message.receivers", "contained_messages",
     }
 )  # fmt: skip
-_NOBODY = ("", "Vector__XXX")  # as a DBC names a sender that is not known
+_NOBODY = ("", "Vector__XXX")  # placeholder of DBC files for an unknown sender
 
 
 class _Database:
-    """Reader shared by the four database formats. ``name`` is the format name of
-    cantools; ``begins`` is a pattern that recognizes a file of the format.
+    """Reader shared by the four database formats.
+
+    ``name`` is the format name of cantools; ``begins`` is a pattern that recognizes a file of the format.
     """
 
     needs: tuple[str, ...] = ("cantools",)
@@ -52,14 +53,14 @@ class _Database:
         return to
 
     def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
-        """Count what cantools or `can` do not use of the file, except for lines that a finding names."""
+        """Count unused parts of the file, except in lines of ``reported``, which have a finding."""
         raise NotImplementedError
 
     def database(self, file: str, data: bytes, to: Definitions) -> Any:
-        """Return the database that cantools parses."""
+        """Return the database that cantools parses. Raises `Findings` if cantools raises an exception."""
         try:
             return self.load(_text(data), to)
-        except Exception as error:  # its parsers raise whatever comes up
+        except Exception as error:  # the parsers of cantools raise exceptions of many classes
             match = re.search(r"at line (\d+)", str(error))
             said = line(str(error), 300) or type(error).__name__
             raise unreadable(file, f"not {self.title}: {said}", "", int(match[1]) if match else 1) from None
@@ -68,7 +69,7 @@ class _Database:
         """Parse the text with cantools."""
         from cantools import database
 
-        # What it notes by the way is found again, and said as a finding.
+        # Warnings of cantools are suppressed, because the import reports the same faults as findings.
         logging.getLogger("cantools").addHandler(_UNHEARD)
         return database.load_string(text, self.name, strict=False)
 
@@ -128,7 +129,7 @@ class Arxml(_Xml):
 
     name, root = "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
-    most_bytes = 64_000_000  # it says everything at length
+    most_bytes = 64_000_000  # larger than for other kinds, because the format is verbose
 
     def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
         can_accounting.account_for_arxml(safe_xml.parse(file, data, account=Account()), account)
@@ -150,6 +151,7 @@ def _buses(database: Any) -> dict[str, list[Any]]:
 
 
 def _network(title: str, messages: list[Any], account: Account, to: Definitions) -> Network:
+    # With both frame formats on a bus, bit 31 of the id marks extended frames.
     formats = {bool(message.is_extended_frame) for message in messages}
     id_bits = CAN_BOTH if len(formats) > 1 else CAN_EXTENDED if True in formats else CAN_STANDARD
     order = frames.usual(signal_place(signal) for message in messages for signal in message.signals)
@@ -203,12 +205,14 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
             to.without_field(message.name, signal.name, why)
             signal.settle()
             continue
+        # SYM declares a signal of several multiplexer values several times. These become one field.
         same = next((one for one, other in placed if other == place and _is_alternative(one, field)), None)
         if same is None:
             placed.append((field, place))
         else:
             (by,) = field["when"]
             same["when"] = {by: [*frames.listed(same["when"][by]), *frames.listed(field["when"][by])]}
+    # A multiplexer that was left out takes the signals that depend on it along.
     missing = {name for field, _ in placed for name in field.get("when", ())} - {field["name"] for field, _ in placed}
     for field, _ in placed:
         if missing & set(field.get("when", ())):
@@ -223,16 +227,15 @@ def _sentences(*texts: str | None) -> str:
 
 
 def _is_alternative(one: Item, other: Item) -> bool:
-    """Return whether two fields are the same signal, declared for several values of a
-    multiplexer (SYM).
-    """
+    """Return whether two fields are the same signal, declared for several values of a multiplexer (SYM)."""
     plain = [{key: value for key, value in each.items() if key not in ("when", "enum")} for each in (one, other)]
     return plain[0] == plain[1] and "when" in one and one["when"].keys() == other.get("when", {}).keys()
 
 
 def signal_place(signal: Any) -> frames.Place:
-    """Return the position of a signal. DBC numbers the bits of a byte from the least
-    significant bit in both byte orders.
+    """Return the position of a signal.
+
+    DBC numbers the bits of a byte from the least significant bit in both byte orders.
     """
     if signal.byte_order == "little_endian":
         return frames.Place(signal.start, signal.length, frames.LITTLE)
@@ -245,6 +248,7 @@ def _field(message: Any, signal: Any, signals: list[Any], enums: Enumerations, t
     one: Item = {"name": signal.name, "type": kind, **unit(signal.unit), **summary(_sentences(signal.comment, start))}
     factor, offset = printed(signal.scale), printed(signal.offset)
     first, last = _range(signal)
+    # A negative factor swaps the ends.
     ends = sorted(Fraction(factor) * value + Fraction(offset) for value in (first, last))
     low, high = (None if end is None else Fraction(printed(end)) for end in (signal.minimum, signal.maximum))
     one |= formula(factor, offset) | limits(low, high, ends[0], ends[1])

@@ -1,8 +1,7 @@
-"""Account for the parts of SYM, KCD and ARXML files that cantools ignores without a
-warning.
+"""Account for the parts of SYM, KCD and ARXML files that cantools ignores without a warning.
 
-The tables list the parts that cantools reads and `can` uses, and those without meaning
-for an ICD. All other parts are counted.
+The tables list the parts that cantools reads and `can` uses, and parts without meaning for an ICD. All other parts
+are counted.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from xml.etree.ElementTree import Element
 
 from icdgen.definitions.accounting import Account, AccountedElement
 
-# KCD: the attributes and elements of each element.
+# KCD: the attributes and child elements of each element.
 _KCD: Mapping[str, frozenset[str]] = {
     "NetworkDefinition": frozenset({"Bus", "Node", "Document", "schemaLocation", "noNamespaceSchemaLocation"}),
     "Document": frozenset({"name", "author", "company", "date", "version", "text"}),
@@ -77,7 +76,7 @@ def account_for_kcd(root: Element, account: Account) -> None:
 
 
 def account_for_sym(text: str, account: Account) -> None:
-    """Count keys and attributes of a symbol file that are not used, and types that are read as numbers."""
+    """Count unused keys and attributes of a symbol file, and types that are imported as numbers."""
     symbol = ""
     for number, line in enumerate(text.splitlines(), 1):
         if begin := re.match(r'\s*\["?([^"\]]*)"?\]', line):
@@ -95,7 +94,7 @@ def account_for_sym(text: str, account: Account) -> None:
 
 
 def account_for_arxml(root: Element, account: Account) -> None:
-    """Count elements of packages of a kind that describes no frame, PDU or signal on CAN."""
+    """Count package elements of ARXML kinds that do not describe frames, PDUs or signals on CAN."""
     for element in root.iter():
         if isinstance(element.tag, str) and _local(element.tag) == "ELEMENTS":
             for child in element:

@@ -16,9 +16,7 @@ _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 
 
 def report(reads: Sequence[Read], colour: bool = False) -> str:
-    """Return the findings of each definition, followed by its statistics and the
-    renamed identifiers.
-    """
+    """Return the findings of each definition, followed by its statistics and the renamed identifiers."""
     shown = [
         read for read in reads if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.troubles
     ]
@@ -49,9 +47,10 @@ def _summary(read: Read) -> list[str]:
 
 
 def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[Finding]) -> str:
-    """The report for programs; ``checked`` are the findings of `icdgen check` for the files.
+    """Return the report as JSON. ``checked`` are the findings of `icdgen check` for the generated files.
 
-    The keys of a single definition stand beside the files, those of several in a list `definitions`.
+    The keys of a single definition are at the top level. Several definitions form a list under the key
+    `definitions`.
     """
     listed = [_as_item(read) for read in reads]
     head = listed[0] if len(listed) == 1 else {"definitions": listed}

@@ -1,8 +1,8 @@
-"""Containers of frames: entries in their places, as XTCE, electronic data sheets and Kaitai Struct describe them.
+"""Layout of frames as entries in sequence, shared by the readers of XTCE, electronic data sheets and Kaitai Struct.
 
-A reader walks its source and adds a part for each entry. This module has what the readers share: the places of parts, parts whose
-length varies and what counts them, raw values that conditions fix, the entry from which on only bytes are imported, and the fields
-of the ICD.
+A reader walks through its source and adds a part for each entry. This module handles the positions of parts,
+variable-length parts with their counters, and constants that conditions require. If an entry cannot be imported, the
+remaining bytes become one field. The module also creates the fields of the ICD.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _ID_BITS = (8, 16, 24, 32)
 
 @dataclass
 class Piece:
-    """Field that a type makes, without name and place. ``bits`` is 0 if its length varies."""
+    """Field of a type, without name and position. ``bits`` is 0 if the length varies."""
 
     item: Item
     bits: int
@@ -31,9 +31,10 @@ class Piece:
 
 @dataclass
 class Part:
-    """Entry of a container in its place. ``bits`` are those of all elements; 0 if their number varies.
+    """Entry of a container with its position ``at``, in bits from the start of the frame.
 
-    ``path`` are the names of the entries that lead to it. ``item`` has the keys of the field in the ICD, without name and place.
+    ``path`` contains the names of the enclosing entries and of the entry itself. ``item`` has the keys of the ICD
+    field, without name and position. ``bits`` is the size of all elements, or 0 if their number varies.
     """
 
     path: tuple[str, ...]
@@ -42,34 +43,37 @@ class Part:
     bits: int
     order: str = BIG
     element: int = 8  # bits of an element, if their number varies
-    counter: Counter | None = None  # of a part whose length varies; without one it goes on to the end of the frame
+    counter: Counter | None = None  # of a variable-length part, which extends to the end of the frame without one
 
     @property
     def end(self) -> int:
-        """The bit behind the part."""
+        """Position of the first bit after the part."""
         return self.at + self.bits
 
     @property
     def is_message_id(self) -> bool:
-        """Whether a header can have the part as the id of the message: a whole number at the beginning of the frame."""
+        """Return whether a header can use the part as message id.
+
+        An id is a big-endian integer of 1 to 4 bytes at bit 0, without formula.
+        """
         is_placed = self.at == 0 and self.bits in _ID_BITS and self.order == BIG
         return is_placed and self.item.get("type") in ("uint", "enum") and "formula" not in self.item
 
 
 class Counter(NamedTuple):
-    """Part that gives the number of elements, or bytes, of another one, which has ``plus`` more."""
+    """Part whose value plus ``plus`` is the number of elements, or bytes, of a variable-length part."""
 
     part: Part
     plus: int = 0
 
     @property
     def most(self) -> int:
-        """The greatest number that it can give."""
+        """Largest number that the counter can represent."""
         return (1 << self.part.bits) - 1 + self.plus
 
 
 class Lost(NamedTuple):
-    """Entry from which on only bytes are imported, and the reason."""
+    """First entry that cannot be imported, with the reason. The frame is imported as bytes from this entry on."""
 
     name: str
     why: NotHeld
@@ -86,7 +90,10 @@ AnyPart = TypeVar("AnyPart", bound=Part)
 
 @dataclass(kw_only=True)
 class Container(Generic[AnyPart]):
-    """Parts of a container one after another, those that it inherits and includes among them. The next part stands at ``at``."""
+    """Parts of a container in sequence, including inherited and nested parts.
+
+    ``at`` is the position of the next part, in bits.
+    """
 
     parts: list[AnyPart] = field(default_factory=list)
     at: int = 0
@@ -94,23 +101,24 @@ class Container(Generic[AnyPart]):
 
     @property
     def is_open(self) -> bool:
-        """Whether the length of the last part varies: nothing can stand behind it."""
+        """Return whether the last part has a variable length, so that no part can follow."""
         return bool(self.parts) and not self.parts[-1].bits
 
     def add(self, part: AnyPart) -> None:
-        """Add a part; the next one stands behind it."""
+        """Add a part, and move ``at`` to its end."""
         self.parts.append(part)
         self.at = part.end
 
     def check_size(self) -> None:
-        """Raise `NotHeld` if the container has more fields or bytes than an ICD can have."""
+        """Raise `NotHeld` if the container exceeds the fields or bytes that an ICD supports."""
         if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
             raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
 
     def lose(self, rest: AnyPart, why: NotHeld, before: int) -> None:
         """Replace all but the first ``before`` parts by ``rest``, the bytes up to the end of the frame.
 
-        Raises ``why`` if it does not stand behind whole bytes of a fixed number.
+        Raises ``why`` if ``rest`` does not begin at a byte boundary, or if the part in front of it is missing or has
+        a variable length. Also raises ``why`` if parts were replaced before.
         """
         if self.lost is not None or not before or rest.at % 8 or not self.parts[before - 1].bits:
             raise why
@@ -120,7 +128,7 @@ class Container(Generic[AnyPart]):
         self.at, self.lost = rest.at, Lost(rest.path[-1], why)
 
     def missing(self, name: str) -> NotHeld:
-        """Return the reason why a condition on a part cannot be imported that the container does not have."""
+        """Return the error for a condition on a part that the container does not contain."""
         if self.lost is None:
             return NotHeld(f"it depends on `{name}`, which it does not have")
         text = f"it depends on `{name}`, which is in or behind `{self.lost.name}`: {self.lost.why}"
@@ -128,25 +136,29 @@ class Container(Generic[AnyPart]):
 
 
 def check_only_value(item: Item, raw: int, name: str) -> None:
-    """Raise `NotHeld` if a field has another constant than the raw value that a condition asks for."""
+    """Raise `NotHeld` if a field has a constant that differs from the raw value of a condition."""
     if item.get("const", raw) != raw:
         raise NotHeld(f"it depends on `{name}`, which is both {item['const']} and {raw}")
 
 
 def fixed_field(part: Part, name: str, at: int) -> Item:
-    """Return the field of a part in a message whose order is big-endian. ``at``: its bit in the message."""
+    """Return the ICD field of a fixed-length part, in a big-endian message.
+
+    ``at`` is its position in the message, in bits.
+    """
     if "struct" in part.item:
         return again(part.item, {"at": at, "name": name, **part.item})
     bits = int(part.item.get("bits", part.bits))
     is_number = part.item["type"] not in ("bytes", "text")
+    # Byte order has no meaning for a single byte, bytes and texts.
     order = {"byte_order": LITTLE} if part.order == LITTLE and bits > 8 and is_number else {}
     return again(part.item, {"at": at, "bits": bits, "name": name, **part.item, **order})
 
 
 def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> Item:
-    """Return the field of a part whose length varies. ``names``: of the parts of the message, by `id`.
+    """Return the ICD field of a variable-length part. ``names`` maps the `id` of each part of the message to its name.
 
-    Raises `NotHeld` if it begins within a byte, or a part counts it that is not in the message.
+    Raises `NotHeld` if the field does not begin at a byte boundary, or if its counter is not in the message.
     """
     if at % 8:
         raise NotHeld(f"`{name}`, whose length is not fixed, begins within a byte")
@@ -156,6 +168,7 @@ def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> 
         if counter is None:
             raise NotHeld(f"`{name}` is counted by a field of the header")
         size = {"field": counter, "plus": part.counter.plus} if part.counter.plus else counter
+    # The largest frame leaves room for this number of elements after the preceding fields.
     room = max(1, (8 * MOST_BYTES - at) // part.element)
     key = "count" if part.item.keys() & {"bits", "struct"} else "size"
     return again(part.item, {"at": at, "name": name, **part.item, key: size, "up_to": min(part.item["up_to"], room)})

@@ -1,5 +1,6 @@
-"""Repair of DBC files that cantools rejects as a whole: faulty statements are dropped,
-the remaining ones are read.
+"""Repair of DBC files that cantools rejects completely.
+
+The module removes invalid statements, so that cantools can read the remaining ones.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ REPAIRED = "IMP076"
 MOST = 50  # faults of one file
 _LONGEST_NAME = 400
 
-_EXTENDED = 0x80000000
+_EXTENDED = 0x80000000  # bit 31 of an id in a DBC marks an extended frame
 _WITH_ID = re.compile(
     r'^(\s*(?:BO_|BO_TX_BU_|VAL_|SIG_VALTYPE_|SIG_GROUP_|SG_MUL_VAL_|CM_\s+(?:BO_|SG_)|BA_\s+"[^"\n]*"\s+(?:BO_|SG_))\s+)(\d+)\b',
     re.MULTILINE,
 )
 _MESSAGE = re.compile(r"\s*BO_\s+(\d+)\s+(\w+)")
-_NO_MESSAGE = 0xC0000000  # stands for signals that are in no message
+_NO_MESSAGE = 0xC0000000  # VECTOR__INDEPENDENT_SIG_MSG: pseudo message for signals without a message
 _SYNTAX = re.compile(r"Invalid syntax at line (\d+), column (\d+)")
 _UNUSED = re.compile(r'^\s*(VAL_|SIG_VALTYPE_) (\d+) (\w+)"?$', re.MULTILINE)
 _STATEMENT = re.compile(r"\s*[A-Z][A-Z_]*_\b")
@@ -48,13 +49,11 @@ _USED_ATTRIBUTES = frozenset(
     {"GenMsgCycleTime", "GenSigStartValue", "GenMsgSendType", "SPN", "VFrameFormat", "SystemNodeLongSymbol"}
     | {_LONG_SIGNAL, _LONG_MESSAGE}
 )
-_HELD_BACK = " of a DBC"  # behind the name of an attribute that cantools shall not interpret
+_HELD_BACK = " of a DBC"  # suffix for attributes that cantools must not interpret
 
 
 class _Statement(NamedTuple):
-    """Statement with its first line, counted from 1. Each signal is a separate
-    statement.
-    """
+    """Statement with its first line, counted from 1. Each signal is a separate statement."""
 
     keyword: str
     text: str
@@ -62,9 +61,7 @@ class _Statement(NamedTuple):
 
 
 def account_for(text: str, account: Account, reported: Container[int | None]) -> None:
-    """Count unused statements and attributes of a DBC, except in lines that already
-    have a finding.
-    """
+    """Count unused statements and attributes of a DBC, except in lines of ``reported``, which have a finding."""
     for statement in _statements(text):
         if statement.line in reported:
             continue
@@ -100,9 +97,9 @@ def _statements(text: str) -> Iterator[_Statement]:
 
 
 def with_short_names(text: str) -> str:
-    """Return the text with renamed attributes for long names, so that cantools does not
-    interpret them. Otherwise cantools would use long names for signals but short names
-    for their multiplexers.
+    """Return the text with the attributes for long names renamed, so that cantools does not interpret them.
+
+    Otherwise cantools uses long names for signals but short names for their multiplexers.
     """
     for name in (_LONG_SIGNAL, _LONG_MESSAGE):
         text = text.replace(f'"{name}"', f'"{name}{_HELD_BACK}"')
@@ -110,9 +107,7 @@ def with_short_names(text: str) -> str:
 
 
 def give_long_names(messages: list[Any]) -> None:
-    """Rename messages and signals to the names in their long-name attributes, unless
-    these are empty or duplicate.
-    """
+    """Rename messages and signals to the names in their long-name attributes, unless these are empty or duplicate."""
     names = {message.name for message in messages}
     for message in messages:
         taken = {signal.name for signal in message.signals}
@@ -126,9 +121,7 @@ def give_long_names(messages: list[Any]) -> None:
 
 
 def _long_name(of: Any, attribute: str, taken: set[str]) -> str:
-    """Return the long name, or the short name if there is no long name or it is already
-    taken.
-    """
+    """Return the long name, or the short name if there is no long name or it is already taken."""
     found = of.dbc.attributes.get(attribute + _HELD_BACK) if of.dbc is not None and of.dbc.attributes else None
     name = one_line(str(found.value), _LONGEST_NAME) if found is not None else ""
     if not name or name in taken:
@@ -138,9 +131,7 @@ def _long_name(of: Any, attribute: str, taken: set[str]) -> str:
 
 
 def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """Return the result of ``load`` for the repaired text. Reports a last line that may
-    be truncated.
-    """
+    """Return the result of ``load`` for the repaired text. Reports a last line that may be truncated."""
     database = _mended(text, load, to)
     last = text.count("\n") + 1
     if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(finding.spot.line != last for finding in to.troubles):
@@ -150,15 +141,16 @@ def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
 
 
 def _mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """Return the result of ``load`` for the repaired text. Raises the exception of
-    ``load`` if the fault cannot be repaired.
+    """Return the result of ``load`` for the repaired text.
+
+    Raises the exception of ``load`` if the fault cannot be repaired.
     """
     text = _without_impossible(_widened(text, to), to)
     try:
         for _ in range(MOST):
             try:
                 return load(text)
-            except Exception as error:  # of its own for some, of its parser for others
+            except Exception as error:  # cantools raises its own exceptions and exceptions of its parser
                 reason = str(error)
                 repaired = _without_line(text, reason, to) or _without_unused(text, reason, to)
                 if repaired is None:
@@ -173,9 +165,7 @@ def _mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
 
 
 def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """Load each message separately with its attributes and comments, and return the
-    messages that can be read.
-    """
+    """Load each message separately with its attributes and comments, and return the messages that can be read."""
     shared, blocks = "", []
     of_message: defaultdict[str, str] = defaultdict(str)
     block: list[_Statement] = []
@@ -203,9 +193,7 @@ def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) 
 
 
 def _widened(text: str, to: Definitions) -> str:
-    """Set the flag of extended frames (bit 31) in ids that exceed the 11 bits of a
-    standard frame.
-    """
+    """Set the flag of extended frames (bit 31) in ids that exceed the 11 bits of a standard frame."""
     told = set()
 
     def widen(found: re.Match[str]) -> str:
@@ -237,9 +225,7 @@ def _without_impossible(text: str, to: Definitions) -> str:
 
 
 def _end(lines: list[str], number: int) -> int:
-    """Return the index of the line after a message with its signals, or after another
-    statement.
-    """
+    """Return the index of the line after a message with its signals, or after another statement."""
     end = number + 1
     while lines[number].lstrip().startswith("BO_ ") and end < len(lines) and lines[end].lstrip().startswith("SG_"):
         end += 1
@@ -247,33 +233,35 @@ def _end(lines: list[str], number: int) -> int:
 
 
 def _without_line(text: str, said: str, to: Definitions) -> str | None:
-    """Return the text without the line with the syntax error; a message is removed with
-    its signals.
+    """Return the text without the statement that the syntax error ``said`` refers to, or None if it cannot be located.
+
+    A message is removed together with its signals.
     """
     match = _SYNTAX.search(said)
     if match is None:
         return None
     lines = text.split("\n")
     number, column = int(match[1]) - 1, int(match[2])
-    if number >= len(lines) or not "".join(lines[number:]).strip():  # it ends where more should follow
+    if number >= len(lines) or not "".join(lines[number:]).strip():  # the parser reached the end of the file
         number, column = max((at for at, line in enumerate(lines) if line.strip()), default=0), 0
     if column == 1 + len(lines[number]) - len(lines[number].lstrip()) and _STATEMENT.match(lines[number]):
         before = next((at for at in range(number - 1, -1, -1) if lines[at].strip()), None)
         if before is None:
             return None
-        number = before  # it did not end
+        number = before  # the previous statement lacks its end
     end = _end(lines, number)
     shown = lines[number].strip()
     shown = shown if len(shown) <= 80 else shown[:77] + "..."
     more = f", nor are the {end - number - 1} signals below it" if end - number > 1 else ""
     what = f"`{shown}` is not understood{more}"
     to.warn(NOT_UNDERSTOOD, what, "it is left out: correct the line", "error", number + 1)
+    # Empty lines keep the line numbers of later findings.
     lines[number:end] = [""] * (end - number)
     return "\n".join(lines)
 
 
 def _without_unused(text: str, said: str, to: Definitions) -> str | None:
-    """Return the text without statements about signals that do not exist."""
+    """Return the text without value statements about missing signals, or None if there is no such statement."""
     for keyword, id, name in _UNUSED.findall(said):
         statement = rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
         match = re.search(statement, text, re.MULTILINE)

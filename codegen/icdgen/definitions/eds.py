@@ -1,4 +1,7 @@
-"""CCSDS SOIS electronic data sheets (876.0-B-1): containers that components send, in space packets if they begin with a header."""
+"""Reader of electronic data sheets (SEDS, CCSDS 876.0-B-1).
+
+Containers become messages, as space packets if they begin with a primary header.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +23,12 @@ PROCESS, UNSENT = "IMP083", "IMP084"
 _SPACE = "ccsds.org/schema/sois/seds"
 _WITHOUT_EFFECT = frozenset({
     "schemaLocation", "Device.name", "ContainerDataType.abstract",
-    "Variable.type", "Variable.readOnly",  # the values of variables are read, which tell the topics of interfaces
+    "Variable.type", "Variable.readOnly",  # the initial values of variables give the topic ids of interfaces
 })  # fmt: skip
 
 
 class Eds:
-    """Package files and data sheets of devices, with the packages in files beside them."""
+    """Reader of package files and device data sheets. References may lead to other files in the folder."""
 
     name = "eds"
     title = "an electronic data sheet (CCSDS SOIS)"
@@ -36,9 +39,7 @@ class Eds:
         return root == eds_sheets.PARAMETERS or (root in eds_sheets.ROOTS and _SPACE in start)
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Read a data sheet. Raises `Findings` if the file, or an XML file in its
-        folder, cannot be read.
-        """
+        """Read a data sheet. Raises `Findings` if the file, or an XML file in its folder, cannot be read."""
         account = Account(_WITHOUT_EFFECT)
         to = Definitions(file)
         sheets = Sheets(safe_xml.parse(file, data, account=account), eds_sheets.beside(file, len(data)), to)
@@ -48,9 +49,7 @@ class Eds:
         return to
 
     def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
-        """Return the definitions of each file. Types and design parameters are shared
-        by all files and their folders.
-        """
+        """Return the definitions of each file. All files and their folders share types and design parameters."""
         made = [Definitions(one.file) for one in sources]
         roots: dict[str, Element] = {}
         for source, to in zip(sources, made, strict=True):
@@ -61,6 +60,7 @@ class Eds:
         for to in made:
             if (root := roots.get(to.file)) is None:
                 continue
+            # Files of the import take precedence over other files of the folder.
             others = [(path, other) for path, other in roots.items() if path != to.file]
             others += [(path, other) for path, other in eds_sheets.beside(to.file, 0) if path not in roots]
             sheets = Sheets(root, others, to)
@@ -75,7 +75,7 @@ class Eds:
 
 
 def _define(sheets: Sheets, to: Definitions) -> None:
-    """Add the ICD of the packages of a file."""
+    """Add the ICD with the messages of all packages of a file."""
     types, structs = Types(to, sheets), Structs()
     sent, alone = Interfaces(sheets).sent()
     found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
@@ -91,7 +91,7 @@ def _define(sheets: Sheets, to: Definitions) -> None:
 
 
 class _Found:
-    """Container with its layout."""
+    """Container with its layout, kind and header, ready to become a message."""
 
     def __init__(self, sending: Sending, layout: Layout, more: Item, sheets: Sheets) -> None:
         self.container, self.layout, self.more = sending.container, layout, more
@@ -99,6 +99,7 @@ class _Found:
         self.line = sheets.line(sending.container)
         self.told = layout.told
         self.front = layout.front()
+        # The type flag of the header takes precedence over the direction of the interface.
         head = layout.header()
         self.kind = (head.kind if head is not None else None) or sending.kind or packets.TELEMETRY
         sending.kind = self.kind
@@ -108,9 +109,10 @@ class _Found:
         self.header = head._replace(apid=apid) if head is not None and head.apid is None else head
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """Return the message of the ICD. Raises `NotHeld` if it is not supported."""
+        """Return the ICD message from the bit ``start`` on. Raises `NotHeld` if it is not supported."""
         fields = self.layout.fields(start)
         covered = max((part.end for part in self.layout.parts), default=start)
+        # Trailing padding belongs to the length, but no field covers it.
         length, covered = -(-(self.layout.at - start) // 8), -(-(max(covered, start) - start) // 8)
         item: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
         if self.layout.lost is not None:
@@ -121,9 +123,7 @@ class _Found:
 
 
 def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Found | None:
-    """Read the layout of a container. Returns None and adds a finding if it cannot be
-    imported.
-    """
+    """Read the layout of a container. Returns None and adds a finding if the container cannot be imported."""
     to.total += 1
     container = sending.container
     types.message = line(container.get("name"), 200)
@@ -138,7 +138,7 @@ def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: 
 
 
 def _title(sheets: Sheets) -> str:
-    """Return the name of the device, or the short description of the package."""
+    """Return the short description or name of the device, or else of the package."""
     device = sheets.root.find("Device")
     of = device if device is not None else sheets.root.find("Package")
     return "" if of is None else line(of.get("shortDescription") or of.get("name"), 100)
@@ -163,7 +163,7 @@ def _used(structs: list[Item], messages: list[Item]) -> list[Item]:
 
 
 def _say_process(found: list[_Found], to: Definitions) -> None:
-    """That application processes are what a parameter of the interface usually stands for."""
+    """Report (IMP083) that application process ids are derived from interface parameters by convention."""
     if not found:
         return
     parameters = "`, `".join(sorted({one.parameter for one in found}))

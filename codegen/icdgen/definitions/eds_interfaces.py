@@ -1,6 +1,4 @@
-"""Interfaces of data sheets: the containers that components send, their direction and
-the number that identifies them.
-"""
+"""Interfaces of data sheets: containers that components send, with direction and identifying number."""
 
 from __future__ import annotations
 
@@ -15,27 +13,31 @@ from icdgen.definitions.eds_values import whole
 from icdgen.definitions.model import NotHeld, unreadable
 
 _SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
-MOST_STEPS = 200_000  # containers that interfaces carry, and those on which they are based
+MOST_STEPS = 200_000  # containers that interfaces carry, with their base containers
 _DEEPEST = 20  # interfaces that are based on each other
 _APID_MASK = (1 << packets.APID_BITS) - 1
-_TOPIC_BITS, _GLOBAL = 8, 0x60  # as the library of cFS puts topics into application processes, for the first processor
+_TOPIC_BITS, _GLOBAL = (
+    8,
+    0x60,
+)  # topic ids as application process ids in the EDS library of cFS, for the first processor
 _TOPICS = {packets.TELECOMMAND: ("TELECOMMAND", "GLOBAL_CMD"), packets.TELEMETRY: ("TELEMETRY", "GLOBAL_TLM")}
 
 
 @dataclass
 class Sending:
-    """Container that is sent. ``kind`` and ``number`` are None if no interface states
-    them.
-    """
+    """Container that an interface carries. ``kind`` and ``number`` are None if no interface states them."""
 
     container: Element
     kind: str | None = None
     number: int | None = None  # the value of a parameter of the interface
     parameter: str = ""
-    interface: str = ""  # that carries it, where several do with numbers of their own
+    interface: str = ""  # only for a container with several interfaces and numbers
 
     def apid(self, sheets: Sheets) -> int | None:
-        """The application process that the number stands for, as usual; None where that is not known."""
+        """Return the application process id that the number stands for, or None if it is unknown.
+
+        Topic ids are converted like in the EDS library of cFS, for the first processor.
+        """
         if self.number is None or self.kind is None:
             return None
         if self.parameter.lower() != "topicid":
@@ -57,7 +59,7 @@ class Interfaces:
         self._is_own = set(self.own)
         self._steps = 0
         self._derived: dict[Element, list[Element]] = {}
-        self._uses: dict[Element, set[Element]] = {}  # what a type holds or is based on
+        self._uses: dict[Element, set[Element]] = {}  # types of the entries, elements and base of a type
         for package in sheets.all:
             for one in sheets.types(package):
                 base = self._type(one, "baseType")
@@ -74,15 +76,17 @@ class Interfaces:
             reference = self.sheets.attribute(of, key)
             return self.sheets.find("type", reference, of) if reference else None
         except NotHeld:
-            return None  # said where it is read
+            return None  # reported when the container is read
 
     def sent(self) -> tuple[list[Sending], list[Element]]:
-        """What is sent, in the order of the file; and containers that stand by themselves, and no interface carries.
+        """Return carried containers in file order, and independent containers that no interface carries.
 
-        Raises `Findings` where that is too much.
+        If no interface carries a container, all independent containers are returned as sent. Raises `Findings` above
+        `MOST_STEPS` containers.
         """
         found: dict[Element, dict[int | None, Sending]] = {}
-        for is_mapped in (True, False):  # what an interface is made for tells more than what it can carry
+        # A generic type mapping is specific to an interface, so it takes precedence over the argument type.
+        for is_mapped in (True, False):
             for one in self._carried(is_mapped):
                 for container in self._leaves(one.container):
                     ways = found.setdefault(container, {})
@@ -98,8 +102,9 @@ class Interfaces:
         return sent, alone
 
     def _leaves(self, container: Element) -> list[Element]:
-        """Return the most derived containers of the file that are based on a container,
-        or the container itself.
+        """Return the most derived containers of the file that are based on a container, or the container itself.
+
+        Raises `Findings` above `MOST_STEPS` containers in total.
         """
         left, seen = [container], {container}
         leaves: list[Element] = []
@@ -117,11 +122,12 @@ class Interfaces:
         return leaves
 
     def _circles(self) -> set[Element]:
-        """Return the types in cycles of uses, and the types that use these."""
+        """Return the types in reference cycles, and the types that use these directly or indirectly."""
         users: dict[Element, list[Element]] = {}
         for one, used in self._uses.items():
             for other in used:
                 users.setdefault(other, []).append(one)
+        # Topological sort. Types that remain depend on a cycle.
         waiting = {one: len(used) for one, used in self._uses.items()}
         left = [one for one, count in waiting.items() if not count]
         while left:
@@ -140,9 +146,7 @@ class Interfaces:
             return False
 
     def _carried(self, is_mapped: bool) -> Iterator[Sending]:
-        """Yield the containers that command arguments carry, either mapped to a generic
-        type or named as the type.
-        """
+        """Yield the containers of command arguments: mapped to a generic type if ``is_mapped``, else named directly."""
         for package in self.sheets.own:
             for component in package.iterfind("ComponentSet/Component"):
                 numbers = self._numbers(component)
@@ -164,6 +168,7 @@ class Interfaces:
                 if container is None or container.tag != CONTAINER or (not is_mapped and type_ in maps):
                     continue
                 mode = argument.get("mode", "in").lower()
+                # A required interface sends its `in` arguments, a provided interface receives them.
                 goes_out = (mode == "in") == is_required
                 kind = packets.TELEMETRY if goes_out else packets.TELECOMMAND
                 ways.setdefault(container, set()).update([kind] if mode in ("in", "out") else _TOPICS)
@@ -193,7 +198,7 @@ class Interfaces:
         return result
 
     def _maps(self, interface: Element) -> dict[str, Element]:
-        """Return the types by the generic type that they replace."""
+        """Return the concrete types of an interface by the generic type that they replace."""
         result: dict[str, Element] = {}
         for element in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
             if (type_ := self._type(element, "type")) is not None:
@@ -201,7 +206,10 @@ class Interfaces:
         return result
 
     def _numbers(self, component: Element) -> dict[str, tuple[str, int]]:
-        """Return the parameter with a constant number, and the number, by interface."""
+        """Return the constant parameter of each interface, with name and value.
+
+        Names that end with `id` take precedence.
+        """
         values: dict[str, int] = {}
         for variable in component.iterfind("Implementation/VariableSet/Variable"):
             try:

@@ -1,4 +1,4 @@
-"""Containers of electronic data sheets as fields one after the other, with what they inherit and hold, and what constrains them."""
+"""Containers of electronic data sheets as sequences of fields, with inheritance, nesting and constraints."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from icdgen.definitions.wording import line, shortest
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
 UNCHECKED = "IMP082"
-_DEEPEST = 30  # containers that inherit or hold each other, and arrays of arrays
+_DEEPEST = 30  # levels of inheritance, nesting, and arrays of arrays
 _FIELDS = ("Entry", "FixedValueEntry", "LengthEntry", "ErrorControlEntry")
-_PACKET = Line(Fraction(1), Fraction(7))  # by which the length of a space packet makes that of its container
+_PACKET = Line(Fraction(1), Fraction(7))  # packet data length of CCSDS 133.0-B: bytes after the 6-byte header, minus 1
 
 
 @dataclass
 class Structs:
-    """Containers of which there are arrays, by themselves."""
+    """Structs of the ICD by container, for containers that are elements of arrays."""
 
     items: dict[Element, Item] = field(default_factory=dict)
     names: set[str] = field(default_factory=set)
@@ -35,17 +35,20 @@ class Structs:
 
 @dataclass
 class Layout(Container[Part]):
-    """Parts of a container, its own and inherited ones, with their constraints."""
+    """Parts of a container, including inherited ones, with their constraints."""
 
     sheets: Sheets
     types: Types
     structs: Structs
     constraints: list[Told] = field(default_factory=list)
-    told: dict[Hashable, int] = field(default_factory=dict)  # by what is constrained: its only raw value
+    told: dict[Hashable, int] = field(default_factory=dict)  # raw value required by a constraint, by path and entry
     within: tuple[Element, ...] = ()  # containers in which this one is repeated
 
     def read(self, container: Element) -> None:
-        """Raises `NotHeld`."""
+        """Add the parts of a container and apply its constraints.
+
+        Raises `NotHeld` if the container is not supported.
+        """
         self._add(container, (), self.within)
         for constraint in self.constraints:
             part = next((part for part in self.parts if part.path == constraint.path), None)
@@ -54,18 +57,20 @@ class Layout(Container[Part]):
             raw = eds_parts.constrain(part, constraint, self.sheets, self.types)
             if raw is not None and part is not None:
                 self.told[part.path, part.entry] = raw
+        # The length entry of a fixed-length container is a constant.
         if self.parts and self.parts[-1].bits:
             for part in self.parts:
                 if part.entry.tag == "LengthEntry" and len(part.path) == 1:
                     eds_parts.measure(part, -(-self.at // 8), self.sheets)
 
     def _add(self, container: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
-        """What a container and those that it is based on have, and then what they end with."""
+        """Add the entries of a container and its base containers, base first, then the trailers in reverse order."""
         chain = self.chain(container)
         if any(one in within for one in chain) or len(within) > _DEEPEST:
             circle = " -> ".join(one.get("name", "") for one in (*within[-5:], container))
             raise NotHeld(f"containers contain each other in a circle, or too deep: {line(circle, 200)}")
-        users = {one: (*within, *chain[: number + 1]) for number, one in enumerate(chain)}  # who has its entries
+        # Entries of a base container may not contain a container that derives from it.
+        users = {one: (*within, *chain[: number + 1]) for number, one in enumerate(chain)}
         for one in reversed(chain):
             self._entries(one, "EntryList", path, users[one])
         for one in chain:
@@ -75,7 +80,10 @@ class Layout(Container[Part]):
                 self.constraints.append(Told((*path, *entry.replace("/", ".").split(".")), constraint))
 
     def chain(self, container: Element) -> list[Element]:
-        """A container, and those that it is based on. Raises `NotHeld` for a circle."""
+        """Return a container, followed by its base containers.
+
+        Raises `NotHeld` if a base is not a container, or for a circular or too deep inheritance.
+        """
         chain = [container]
         while base := self.sheets.attribute(chain[-1], "baseType"):
             self.types.step()
@@ -95,14 +103,14 @@ class Layout(Container[Part]):
             before, at = len(self.parts), self.at
             try:
                 self._placed(entry, path, within)
-            except TooMuch:
+            except TooMuch:  # the limit applies to the file, so the rest cannot become bytes
                 raise
             except NotHeld as why:
                 name = line(entry.get("name"), 100) or f"unnamed {at}"
                 self.lose(Part((*path, name), {}, at, 0, entry=entry), why, before)
 
     def _placed(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
-        """Puts an entry where the last one ended. Raises `NotHeld`."""
+        """Add an entry at the current position. Raises `NotHeld` if the entry is not supported."""
         self.types.step()
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
         if entry.find("PresentWhen") is not None:
@@ -147,7 +155,10 @@ class Layout(Container[Part]):
         self.add(part)
 
     def _said(self, entry: Element, name: str) -> dict[str, str]:
-        """What it is for; of an error control also how it is computed, for nothing else says so."""
+        """Return the summary of an entry.
+
+        For an error control it includes the kind of checksum, which no other key states.
+        """
         found = described(entry)
         if entry.tag != "ErrorControlEntry":
             return found
@@ -160,12 +171,15 @@ class Layout(Container[Part]):
         return {"summary": f"{text}{'' if text.endswith(('.', '!', '?')) else '.'} {kind}." if text else f"{kind}."}
 
     def _is_one(self, container: Element, name: str) -> None:
-        """Refuses what may be any of several containers. Raises `NotHeld`."""
+        """Raise `NotHeld` if a container is abstract, because the entry could then contain any derived container."""
         if self.sheets.says(container, "abstract"):
             raise NotHeld(f"`{name}` is any container that is based on `{container.get('name', '')}`")
 
     def _element(self, entry: Element, name: str) -> tuple[Element, int]:
-        """The type of an entry, or of its elements, and how many there are. Raises `NotHeld`."""
+        """Return the element type of an entry and the number of elements.
+
+        Raises `NotHeld` if an array is too large or too deep.
+        """
         type_ = self.sheets.find("type", self.sheets.attribute(entry, "type"), entry)
         count, depth = self._count(entry, "ArrayDimensions/Dimension", name), 0
         while type_.tag == ARRAY:
@@ -179,7 +193,10 @@ class Layout(Container[Part]):
         return type_, count
 
     def _count(self, owner: Element, path: str, name: str) -> int:
-        """Of several dimensions all elements; the index of the last one runs fastest."""
+        """Return the number of elements over all dimensions.
+
+        Elements are in row-major order: the last index varies fastest.
+        """
         count = 1
         for element in owner.iterfind(path):
             if index := self.sheets.attribute(element, "indexTypeRef"):
@@ -191,7 +208,10 @@ class Layout(Container[Part]):
         return count
 
     def _indices(self, type_: Element, name: str) -> int:
-        """How many elements an array has whose index is of a type."""
+        """Return the number of elements of an array dimension with the given index type.
+
+        Raises `NotHeld` if it has no bounds.
+        """
         chain = self.types.chain(type_)
         values = [value for _, value in self.sheets.labels(chain[-1])]
         if values:
@@ -202,7 +222,10 @@ class Layout(Container[Part]):
         return int(high - low) + 1
 
     def _repeat(self, part: Part, count: int, name: str) -> None:
-        """Makes an array of a scalar; one of bytes that is longer than any is bytes. Raises `NotHeld`."""
+        """Make a scalar an array. An array of bytes above `MOST_ELEMENTS` becomes a field of type `bytes`.
+
+        Raises `NotHeld` for other large arrays, variable-length elements and constants.
+        """
         item, bits = part.item, part.bits
         if not bits or "const" in item:
             raise NotHeld(f"`{name}` is an array of elements of variable length, or of a constant")
@@ -216,7 +239,10 @@ class Layout(Container[Part]):
         part.bits = bits * count
 
     def _struct(self, container: Element, name: str, within: tuple[Element, ...]) -> tuple[Item, int]:
-        """The key of the struct that elements are, and the bits of one. Raises `NotHeld`."""
+        """Return the `struct` key for elements of a container type, and the bits of an element.
+
+        Raises `NotHeld` if their size varies or is not whole bytes.
+        """
         known = self.structs.items.get(container)
         if known is None:
             inner = Layout(self.sheets, self.types, self.structs, within=within)
@@ -235,7 +261,7 @@ class Layout(Container[Part]):
     def _list(
         self, entry: Element, type_: Element, count: int, path: tuple[str, ...], within: tuple[Element, ...]
     ) -> None:
-        """What is there as often as another field says. Raises `NotHeld`."""
+        """Add a list whose number of elements is in another field. Raises `NotHeld` if the list is not supported."""
         name = path[-1]
         counter = self.sheets.attribute(entry, "listLengthField")
         by = next((part for part in reversed(self.parts) if part.path == (*path[:-1], *counter.split("."))), None)
@@ -260,10 +286,11 @@ class Layout(Container[Part]):
         self.add(Part(path, item, self.at, 0, element=bits, counter=Counter(by), entry=entry))
 
     def header(self) -> packets.Header | None:
-        """The primary header of a space packet, if it begins with one."""
+        """Return the primary header of a space packet (CCSDS 133.0-B) if the container begins with one, else None."""
         ahead = self.parts[: packets.MOST_PARTS]
         plain = [one for one in ahead if one.piece is not None and one.piece.bits == one.bits]
         found = packets.header((one.at, one.bits, one.item.get("const")) for one in plain)
+        # A length with another calibration is not the packet data length of CCSDS.
         length = next((one for one in ahead if one.end == packets.HEADER_BITS), None)
         if found is None or length is None:
             return None
@@ -271,14 +298,17 @@ class Layout(Container[Part]):
         return None if is_line and eds_parts.line_of(length.entry, self.sheets) != _PACKET else found
 
     def front(self) -> tuple[Hashable, int] | None:
-        """The part at the beginning and its bits, if a header can have it as the id."""
+        """Return the key and size in bits of the first part if a header can use it as id, else None."""
         part = next(iter(self.parts), None)
         if part is None or part.piece is None or not part.is_message_id:
             return None
         return (part.path, part.entry), part.bits
 
     def fields(self, start: int) -> list[Item]:
-        """Return the fields of the ICD from a bit on. Raises `NotHeld`."""
+        """Return the ICD fields from the bit ``start`` on.
+
+        Raises `NotHeld` if a variable-length field is not supported.
+        """
         parts = [part for part in self.parts if part.at >= start]
         called = shortest([_telling(part.path) for part in parts])
         names = {id(part): name for part, name in zip(parts, called, strict=True)}
@@ -291,7 +321,7 @@ class Layout(Container[Part]):
         return fields
 
     def _length_of(self, part: Part, names: Mapping[int, str]) -> Counter | None:
-        """Return the field with the length of the container, if it counts the bytes of its last part."""
+        """Return the container length field as counter of a variable-length part, or None without one."""
         counter = None
         for other in self.parts:
             is_length = other.entry.tag == "LengthEntry" and len(other.path) == 1 and id(other) in names
@@ -303,5 +333,5 @@ class Layout(Container[Part]):
 
 
 def _telling(path: tuple[str, ...]) -> tuple[str, ...]:
-    """Words of a path, the last of which tells something: a value is that of what it is in."""
+    """Return a path in which a trailing `value` is joined with the name of its parent."""
     return (*path[:-2], f"{path[-2]} {path[-1]}") if len(path) > 1 and path[-1].casefold() == "value" else path

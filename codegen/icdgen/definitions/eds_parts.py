@@ -1,4 +1,4 @@
-"""Fields of a container in their places, and what gives one of them a value: the sheet, a constraint, or a length."""
+"""Fields of a container with their positions, and constants from fixed values, constraints and lengths."""
 
 from __future__ import annotations
 
@@ -21,37 +21,40 @@ _MOST_FIXED = 64  # bits of a text that is a constant
 
 @dataclass
 class Part(containers.Part):
-    """Entry of a data sheet in its place."""
+    """Entry of a data sheet with its position."""
 
     entry: Element = field(kw_only=True)
     piece: Piece | None = None  # of a scalar
 
 
 class Told(NamedTuple):
-    """A constraint, and the path of what it constrains."""
+    """Constraint of a data sheet, with the path of the constrained entry."""
 
     path: tuple[str, ...]
     constraint: Element
 
 
 class Line(NamedTuple):
-    """How a length makes bytes."""
+    """Linear conversion of a length field into bytes."""
 
     factor: Fraction
     offset: Fraction
 
 
 def only(piece: Piece, raw: int, name: str) -> None:
-    """Makes a raw value the only one. Raises `NotHeld` if another was."""
+    """Make a raw value the constant of a field. Raises `NotHeld` if the field already has another constant."""
     item = piece.item
     containers.check_only_value(item, raw, name)
-    kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
+    kind = {"type": "uint"} if item["type"] == "bool" else {}  # the ICD has no constants of type `bool`
     kept = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
     again(item, {**kept, **kind, "const": raw})
 
 
 def fix(piece: Piece, text: str, name: str) -> None:
-    """Gives a field the value that the sheet fixes; a short text is a number of its bytes. Raises `NotHeld`."""
+    """Set the fixed value of a `FixedValueEntry`. A text of up to 64 bits becomes a number with its bytes.
+
+    Raises `NotHeld` if the value does not fit the type. Longer texts, bytes and floats have no constant.
+    """
     if piece.item["type"] == "text" and piece.bits:
         data = text.encode("utf-8", "replace").ljust(piece.bits // 8, b"\0")
         if len(data) > piece.bits // 8:
@@ -63,7 +66,10 @@ def fix(piece: Piece, text: str, name: str) -> None:
 
 
 def constrain(part: Part | None, told: Told, sheets: Sheets, types: Types) -> int | None:
-    """Gives a field the value that a constraint says, or narrows its limits (None). Raises `NotHeld` for all others."""
+    """Apply a constraint to a part. Return the raw value that it requires, or None if it only narrows the range.
+
+    Raises `NotHeld` for other constraints, and if the part is missing or an array.
+    """
     one, name = told.constraint, line(".".join(told.path), 100)
     if part is None or part.piece is None or part.bits != part.piece.bits:
         raise NotHeld(f"it depends on `{name}`, but it has no such field")
@@ -92,7 +98,7 @@ def constrain(part: Part | None, told: Told, sheets: Sheets, types: Types) -> in
 
 
 def _narrowed(constraint: Element, sheets: Sheets, types: Types) -> eds_ranges.Range:
-    """The range that a constraint says, or the type that it names."""
+    """Return the range of a `RangeConstraint`, or of the type of a `TypeConstraint`."""
     if constraint.tag == "RangeConstraint":
         return eds_ranges.said(sheets, constraint)
     type_ = sheets.find("type", sheets.attribute(constraint, "type"), constraint)
@@ -100,19 +106,25 @@ def _narrowed(constraint: Element, sheets: Sheets, types: Types) -> eds_ranges.R
 
 
 def measure(part: Part, length: int, sheets: Sheets) -> None:
-    """Gives the length of a container the value that it has of so many bytes, if it has one. Raises `NotHeld`."""
+    """Make a length entry constant, from the ``length`` of its container in bytes.
+
+    Nothing changes if the raw value is not an integer or does not fit. Raises `NotHeld` for a contradicting
+    constant.
+    """
     how = line_of(part.entry, sheets)
     if how is None or part.piece is None or part.item["type"] not in _INTEGERS or "const" in part.item:
         return
+    # length = factor * raw + offset
     raw = (length - how.offset) / how.factor
     if raw.denominator == 1 and (value := coded(int(raw), part.piece.code, part.bits)) is not None:
         only(part.piece, value, part.path[-1])
 
 
 def line_of(entry: Element, sheets: Sheets) -> Line | None:
-    """How a length makes bytes, where it is a line that says it."""
+    """Return the linear conversion of a length entry, or None if its calibrator is not linear."""
     if entry.find("SplineCalibrator") is not None:
         return None
+    # Without terms, the raw value is the number of bytes (factor 1).
     terms = entry.findall("PolynomialCalibrator/Term")
     found = {"0": Fraction(0), "1": Fraction(not terms)}
     for term in terms:

@@ -1,4 +1,4 @@
-"""Ranges of electronic data sheets, as the limits of a field."""
+"""Value ranges of electronic data sheets, and the limits of fields."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from icdgen.definitions.eds_values import evaluate
 from icdgen.definitions.model import Item, raws
 from icdgen.definitions.wording import limits
 
-_TYPES = {  # what is said of the ends: None where there is none, else whether it is part of the range
+_TYPES = {  # rangeType: for low and high end whether it is included; None without an end
     "inclusivemininclusivemax": (True, True), "inclusiveminexclusivemax": (True, False),
     "exclusivemininclusivemax": (False, True), "exclusiveminexclusivemax": (False, False),
     "atleast": (True, None), "greaterthan": (False, None), "atmost": (None, True), "lessthan": (None, False),
@@ -19,7 +19,10 @@ _TYPES = {  # what is said of the ends: None where there is none, else whether i
 
 
 class Range(NamedTuple):
-    """Values from one to another; None where there is no end, ``is_low_in`` whether it is one of them."""
+    """Range of values.
+
+    An end is None if unlimited. ``is_low_in`` and ``is_high_in`` state whether the ends are included.
+    """
 
     low: Fraction | None = None
     high: Fraction | None = None
@@ -27,7 +30,7 @@ class Range(NamedTuple):
     is_high_in: bool = True
 
     def within(self, other: Range) -> Range:
-        """The values of both."""
+        """Return the intersection of two ranges."""
         low, high, is_low_in, is_high_in = self
         if other.low is not None and (low is None or (other.low, not other.is_low_in) > (low, not is_low_in)):
             low, is_low_in = other.low, other.is_low_in
@@ -36,7 +39,7 @@ class Range(NamedTuple):
         return Range(low, high, is_low_in, is_high_in)
 
     def of_integers(self) -> tuple[Fraction | None, Fraction | None]:
-        """The least and the largest integer."""
+        """Return the smallest and largest integer of the range, with None for an unlimited end."""
         low, high = self.low, self.high
         if low is not None:
             low = Fraction(-(-low // 1)) if self.is_low_in or low.denominator != 1 else low + 1
@@ -49,7 +52,10 @@ ALL = Range()
 
 
 def said(sheets: Sheets, element: Element) -> Range:
-    """What a `MinMaxRange` within an element says; of one that says nothing all values. Raises `NotHeld`."""
+    """Return the range of a `MinMaxRange` in an element, or `ALL` without one.
+
+    Raises `NotHeld` for an undefined design parameter.
+    """
     found = element.find("MinMaxRange")
     if found is None:
         return ALL
@@ -68,7 +74,7 @@ def _end(text: str) -> Fraction | None:
 
 
 def limited(item: Item, bits: int, of: Range) -> Item:
-    """The keys of the limits that a field of a type and of so many bits has, where they say more than its width."""
+    """Return the limit keys of a field. Limits beyond the values of its type and bits are left out."""
     if item["type"] in ("uint", "int"):
         first, last = raws(bits, item["type"] == "int")
         return dict(limits(*of.of_integers(), Fraction(first), Fraction(last)))

@@ -1,4 +1,4 @@
-"""The data sheet, and those beside it: packages by their names, what they name, and values that design parameters define."""
+"""Packages of a data sheet and neighbouring files, with type references and values of design parameters."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ TWICE = "IMP076"
 MOST_FILES = 200
 MOST_BYTES = 32_000_000  # of all files
 _TOGETHER = "import it together with the file that has it: icdgen import FILE FILE, or the folder of both"
-_START = 65_536  # bytes by which a file is known
-_DEEPEST = 20  # values that are defined by values
+_START = 65_536  # bytes that identify the kind of a file
+_DEEPEST = 20  # levels of parameters that refer to each other
 _LONGEST = 2000  # characters of a value
 _REFERENCE = re.compile(r"\$\{([^${}]{1,200})\}")
 
 
 class Sheets:
-    """What references reach. ``own`` are the packages of the file itself."""
+    """Index of types, interfaces and design parameters. ``own`` lists the packages of the file itself."""
 
     def __init__(self, root: Element, others: Iterable[tuple[str, Element]], to: Definitions) -> None:
-        """``others`` are files to which it may refer, with their outermost elements."""
+        """Index a file and the files to which it may refer. ``others`` contains their paths and root elements."""
         self.to = to
         self.root = root
         self.own: list[Element] = []
         self._within = set(root.iter())
         self.all: list[Element] = []  # packages
         self._found: dict[tuple[str, str], Element] = {}
-        self._scopes: dict[Element, tuple[str, str]] = {}  # package and component in which something stands
+        self._scopes: dict[Element, tuple[str, str]] = {}  # package and component of an element
         self._files: dict[str, str] = {}  # by package
         self._defines: dict[str, tuple[str, str, str]] = {}  # value, package and file
-        self._again: dict[str, str] = {}  # what is there again, and where
+        self._again: dict[str, str] = {}  # second file of duplicate packages and parameters
         self._values: dict[tuple[str, str], str] = {}
         self._note(to.file, root)
         self.own = list(self.all)
@@ -80,27 +80,30 @@ class Sheets:
             self._again.setdefault(f"${{{name}}}", file)
 
     def types(self, package: Element) -> Iterator[Element]:
-        """The types of a package, and of its components."""
+        """Yield the types of a package and its components."""
         yield from package.iterfind("DataTypeSet/*")
         yield from package.iterfind("ComponentSet/Component/DataTypeSet/*")
 
     def line(self, element: Element) -> int | None:
-        """Where something stands, if that is in the file itself."""
+        """Return the line of an element, or None if it belongs to another file."""
         return getattr(element, "line", None) if element in self._within else None
 
     def package(self, element: Element) -> str:
-        """The name of the package in which something stands."""
+        """Return the name of the package that contains an element."""
         return self._scopes[element][0]
 
     def attribute(self, element: Element, key: str, default: str = "") -> str:
-        """What an attribute says, with what it refers to. Raises `NotHeld` where that is defined nowhere."""
+        """Return an attribute with its design parameters resolved. Raises `NotHeld` if a parameter is undefined."""
         text = element.get(key)
         if text is None:
             return default
         return self._filled(text, self._scopes.get(element, ("", ""))[0], 0).strip() if "${" in text else text.strip()
 
     def labels(self, type_: Element) -> Iterator[tuple[str, int]]:
-        """Labels of an enumeration with their values; one without a value follows the one before. Raises `NotHeld`."""
+        """Yield the labels of an enumeration with their values.
+
+        A label without a value follows the previous one. Raises `NotHeld` if a value is undefined or not an integer.
+        """
         value = -1
         for element in type_.iterfind("EnumerationList/Enumeration"):
             text = self.attribute(element, "value")
@@ -108,7 +111,7 @@ class Sheets:
             yield self.attribute(element, "label"), value
 
     def says(self, element: Element, key: str) -> bool:
-        """Whether an attribute says `true`."""
+        """Return whether an attribute is `true` or `1`."""
         return self.attribute(element, key).lower() in ("true", "1")
 
     def _filled(self, text: str, package: str, depth: int) -> str:
@@ -123,7 +126,10 @@ class Sheets:
         return made + text[at:]
 
     def _value(self, name: str, package: str, depth: int) -> str:
-        """What stands for a reference: a number where it is a sum of such."""
+        """Return the text that replaces a reference to a design parameter. Arithmetic expressions are evaluated.
+
+        Raises `NotHeld` if the parameter is undefined, circular or too long.
+        """
         if (known := self._values.get((name, package))) is not None:
             return known
         of = next((one for one in (name, f"{package}/{name}") if one in self._defines), None)
@@ -133,15 +139,16 @@ class Sheets:
         self._twice(f"${{{of}}}", self._defines[of][2])
         text = self._filled(text, where, depth + 1)
         try:
+            # Parentheses keep a fraction intact in the expression that contains it.
             value = evaluate(text)
             text = str(value) if value.denominator == 1 else f"({value})"
         except ValueError:
-            pass  # a name
+            pass  # a name, not an expression
         self._values[name, package] = text
         return text
 
     def defined(self, name: str) -> int | None:
-        """A whole number that a design parameter is, if it is one."""
+        """Return a design parameter as an integer, or None if it is undefined or not an integer."""
         try:
             value = evaluate(self._value(name, "", 0))
         except (NotHeld, ValueError):
@@ -149,14 +156,17 @@ class Sheets:
         return int(value) if value.denominator == 1 else None
 
     def _twice(self, what: str, first: str) -> None:
-        """Says, once, that something is there twice."""
+        """Report a duplicate package or design parameter on first use (IMP076)."""
         if (other := self._again.pop(what, None)) is not None:
             of = "package " if not what.startswith("$") else ""
             text = f"{of}`{line(what, 100)}` is in `{Path(first).name}` and otherwise in `{Path(other).name}`"
             self.to.warn(TWICE, text, "the first one is taken")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """The type or interface that a reference names; of an alias that for which it stands. Raises `NotHeld`."""
+        """Return the type or interface that a reference names, with aliases resolved.
+
+        Raises `NotHeld` if it is undefined, or if an alias refers to itself.
+        """
         element = self._find(kind, reference, seen_from)
         aliases = {element}
         while element.tag == _ALIAS:
@@ -167,8 +177,9 @@ class Sheets:
         return element
 
     def _find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """What a reference names, an alias too. Raises `NotHeld` if there is nothing."""
+        """Return the element that a reference names, without resolving aliases. Raises `NotHeld` if it is undefined."""
         package, component = self._scopes[seen_from]
+        # Scopes from inside to outside: component, package, qualified name.
         inner = f"{package}/{component}//{reference}" if component else ""
         for path in (inner, f"{package}/{reference}", reference):
             found = self._found.get((kind, path)) if path else None
@@ -185,9 +196,10 @@ class Sheets:
 
 
 def beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
-    """Other data sheets and design parameters in the folder of a file, by name. Raises `Findings` for one that cannot be read.
+    """Yield path and root of other data sheets and design parameter files in the folder of a file, by name.
 
-    ``size`` are the bytes that were read already.
+    ``size`` is the number of bytes already read. Raises `Findings` if a file cannot be read, or above `MOST_FILES` or
+    `MOST_BYTES`.
     """
     own = Path(file)
     count = 0
@@ -198,7 +210,7 @@ def beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
             with open(path, "rb") as opened:
                 start = opened.read(_START).decode("utf-8-sig", "replace")
         except OSError:
-            continue  # nobody's, as far as is known
+            continue  # unreadable, possibly not a data sheet
         if safe_xml.root_of(start) not in (*ROOTS, PARAMETERS):
             continue
         data = kinds.contents(path)

@@ -1,4 +1,4 @@
-"""Scalar types of electronic data sheets as fields: how they are encoded, named and limited."""
+"""Scalar types of electronic data sheets as fields: encoding, labels, calibration and limits."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
 from icdgen.icd.variable_length import MOST_BYTES
 
-_BITS_ONLY = "its raw bits are imported as a number, without unit and limits"  # what a finding says
+_BITS_ONLY = "its raw bits are imported as a number, without unit and limits"  # help text of findings
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
-_DEEPEST = 20  # types that are based on each other
+_DEEPEST = 20  # levels of subranges
 _WORD = 64  # bits of the largest number
 _FLOATS = {"ieee754_2008_single": 32, "ieee754_2008_double": 64}
 _SI = {
@@ -32,17 +32,17 @@ _MARKUP = re.compile(r"(?<!\S)[\\@][A-Za-z]\w*\s*")  # of Doxygen
 
 @dataclass
 class Piece(containers.Piece):
-    """Field that a type makes, with the code, the labels and the range of its raw values."""
+    """Field of a type, with integer encoding, labels and range of raw values."""
 
-    code: str = UNSIGNED  # of an integer; nothing of what is none
+    code: str = UNSIGNED  # integer encoding; empty for other types
     values: dict[str, int] = field(default_factory=dict)  # raw values by label
     range: Range = ALL
 
     def raw(self, text: str, where: str) -> int:
-        """The raw value that a literal means. Raises `NotHeld` for one that the field never has."""
+        """Return the raw value of a literal or label. Raises `NotHeld` if the field cannot have this value."""
         if self.item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"{where} has a value and is of the type {self.item['type']}")
-        if (label := text if self.code else text.lower()) in self.values:  # those of flags in any case
+        if (label := text if self.code else text.lower()) in self.values:  # labels of flags ignore case
             return self.values[label]
         try:
             raw = coded(whole(text, "a value"), self.code, self.bits) if self.code else None
@@ -55,14 +55,17 @@ class Piece(containers.Piece):
 
 @dataclass
 class Types(Reading):
-    """Makes pieces of types, and enumerations of those with labels."""
+    """Factory of fields and enumerations from types."""
 
     most_steps = 500_000  # types and labels of all messages
 
     sheets: Sheets
 
     def chain(self, type_: Element) -> list[Element]:
-        """A type, and those of which it is a range. Raises `NotHeld`."""
+        """Return a type, followed by its base types if it is a subrange.
+
+        Raises `NotHeld` for circular or too deep references.
+        """
         chain = [type_]
         while chain[-1].tag == SUBRANGE:
             base = self.sheets.find("type", self.sheets.attribute(chain[-1], "baseType"), chain[-1])
@@ -72,7 +75,10 @@ class Types(Reading):
         return chain
 
     def piece(self, type_: Element, entry: Element, where: str) -> Piece:
-        """A scalar, encoded as its type says, or the entry. Raises `NotHeld` with the reason."""
+        """Return the field of a scalar type. The encoding of the entry takes precedence over that of the type.
+
+        ``where`` names the field in messages. Raises `NotHeld` with the reason if the type is not supported.
+        """
         self.step()
         chain = self.chain(type_)
         kind = chain[-1].tag.removesuffix("DataType")
@@ -102,7 +108,8 @@ class Types(Reading):
         code = self._word(encoding, "encoding", UNSIGNED, CODES)
         bits = self._size(encoding, where)
         order = self._order(encoding, bits, where)
-        if code not in (UNSIGNED, TWOS) and not has_names:  # those are given to the bits
+        # Labels are assigned to the transmitted bits, so enumerations support all encodings.
+        if code not in (UNSIGNED, TWOS) and not has_names:
             self.raw_only(where, f"it is encoded as {code}", _BITS_ONLY)
         if bits > _WORD:
             return self._wide(bits, order, where)
@@ -120,7 +127,7 @@ class Types(Reading):
         return self._wide(bits, order, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
 
     def _wide(self, bits: int, order: str, where: str) -> Piece:
-        """What is wider than any number, as bytes."""
+        """Return a field of bytes, for numbers that exceed 64 bits. Raises `NotHeld` for a partial byte."""
         if bits % 8:
             raise NotHeld(f"{where} has {bits} bits")
         return Piece({"type": "bytes"}, bits, code="")
@@ -133,6 +140,7 @@ class Types(Reading):
         names = ("True", "False") if is_inverse else ("False", "True")
         values = {name.lower(): value for value, name in enumerate(names)}
         made = Piece({"type": "bool"}, bits, code="", values=values)
+        # The type `bool` has one bit, and 1 means true.
         if bits > 1 or is_inverse:
             named: list[Item] = [{"value": value, "name": name} for value, name in enumerate(names)]
             made.item = {"type": "enum"}
@@ -169,7 +177,10 @@ class Types(Reading):
         return LITTLE if is_little else BIG
 
     def _word(self, of: Element, key: str, default: str, known: tuple[str, ...]) -> str:
-        """What an attribute says, in the case of what is known. Raises `NotHeld`."""
+        """Return the keyword in ``known`` that an attribute matches, ignoring case.
+
+        Raises `NotHeld` if none matches.
+        """
         said = self.sheets.attribute(of, key, default)
         found = next((one for one in known if one.lower() == said.lower()), None)
         if found is None:
@@ -187,7 +198,7 @@ class Types(Reading):
             made.values.setdefault(label, raw)
         if not choices:
             return
-        notes = self.heard(f"labels of {id(type_)}")  # it is said once of a type
+        notes = self.heard(f"labels of {id(type_)}")  # report faults of a type once
         called = _called(type_)
         self.enums.hold(made.item, made.bits, choices, called, self._owner(type_), f"`{called}`", notes)
 
@@ -202,10 +213,14 @@ class Types(Reading):
         return found
 
     def _meaning(self, chain: list[Element], entry: Element, made: Piece, where: str) -> Item:
-        """Calibration and unit of the entry; the limits of its type, where no calibration makes others of them."""
+        """Return calibration and unit of the entry, and the limits of its type.
+
+        A calibrated field gets no limits, because the calibration converts them.
+        """
         item: Item = {}
         try:
-            if entry.tag != "LengthEntry":  # whose calibration says how long a container is
+            # The calibration of a length entry converts to the bytes of the container.
+            if entry.tag != "LengthEntry":
                 item |= calibrated(entry) or {}
         except ValueError as error:
             self.raw_only(where, str(error), _BITS_ONLY)
@@ -224,12 +239,12 @@ class Types(Reading):
 
 
 def described(element: Element) -> dict[str, str]:
-    """The key of what an element is in short, or of the first paragraph of what is said at length."""
+    """Return the `summary` key from the short description, or else from the first paragraph of the long description."""
     paragraphs = re.split(r"\n[ \t\r]*\n", (element.findtext("LongDescription") or "")[:20_000])
     texts = (_MARKUP.sub("", text) for text in (element.get("shortDescription") or "", *paragraphs))
     return next((found for found in map(summary, texts) if found), {})
 
 
 def _called(type_: Element) -> str:
-    """What an enumeration is called."""
+    """Return the name of an enumeration, without a suffix for `type`."""
     return without_type(line(type_.get("name"), 60))

@@ -1,4 +1,4 @@
-"""Numbers of electronic data sheets: what an attribute says, and the bits by which a value is sent."""
+"""Numbers of electronic data sheets: arithmetic expressions in attributes, and encodings of integers."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from icdgen.definitions.wording import line
 UNSIGNED, TWOS = "unsigned", "twosComplement"
 CODES = (UNSIGNED, TWOS, "onesComplement", "signMagnitude", "BCD", "packedBCD")
 _LONGEST = 500  # characters of a number
-_PLAIN = 20  # digits of a number that needs no reading
+_PLAIN = 20  # digits up to which `int` is used directly
 _DEEPEST = 20  # parentheses
-_MOST_BITS = 256  # of a number on the way
+_MOST_BITS = 256  # of an intermediate result
 _MOST_POWER = 128
 _TOKEN = re.compile(
     r"\s*(0[xX][0-9A-Fa-f]{1,32}|(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,2})?|[-+*/^()])"
@@ -21,7 +21,10 @@ _TOKEN = re.compile(
 
 
 def evaluate(text: str) -> Fraction:
-    """A number, or a sum of numbers (`2 ^ (16) - 1`). Raises `ValueError`."""
+    """Return the value of an arithmetic expression such as `2 ^ (16) - 1`.
+
+    Operators are `+ - * / ^` and parentheses. Raises `ValueError` for other texts and for too large values.
+    """
     tokens, at, text = [], 0, text.strip()
     if len(text) > _LONGEST:
         raise ValueError("too long")
@@ -39,7 +42,7 @@ def evaluate(text: str) -> Fraction:
 
 
 class _Sum:
-    """What is left of the tokens, the next one last."""
+    """Recursive descent parser of arithmetic expressions. ``left`` contains the remaining tokens in reverse order."""
 
     def __init__(self, left: list[str]) -> None:
         self.left = left
@@ -71,6 +74,7 @@ class _Sum:
         value = self._single(depth)
         if not self._next("^"):
             return value
+        # Right associative: 2 ^ 3 ^ 2 is 2 ^ 9.
         power = self._power(depth + 1)
         if power.denominator != 1 or not 0 <= power <= _MOST_POWER:
             raise ValueError("an exponent that is not a small number")
@@ -97,7 +101,10 @@ def _bounded(value: Fraction) -> Fraction:
 
 
 def whole(text: str, what: str, least: int | None = None, most: int | None = None) -> int:
-    """An integer. Raises `NotHeld`."""
+    """Return the integer value of a text.
+
+    Raises `NotHeld` if it is not an integer from ``least`` to ``most``; ``what`` names it.
+    """
     plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _whole(text)
     if plain is None or (least is not None and plain < least) or (most is not None and plain > most):
         raise NotHeld(f"{what} is `{line(text, 60)}`")
@@ -113,7 +120,10 @@ def _whole(text: str) -> int | None:
 
 
 def coded(value: int, code: str, bits: int) -> int | None:
-    """The raw value by which a number is sent: signed of two's complement, else its bits. None where it does not fit."""
+    """Return the raw value of a number in an integer encoding, or None if it does not fit.
+
+    The raw value is signed for two's complement. For other encodings it consists of the transmitted bits.
+    """
     if code in (TWOS, UNSIGNED):
         low, high = raws(bits, code == TWOS)
         return value if low <= value <= high else None
@@ -122,6 +132,7 @@ def coded(value: int, code: str, bits: int) -> int | None:
         if value < 0 or len(str(value)) > bits // width:
             return None
         return sum(int(digit) << width * place for place, digit in enumerate(reversed(str(value))))
+    # One's complement and sign-magnitude have symmetric ranges.
     if abs(value) >= 1 << bits - 1:
         return None
     if value >= 0:

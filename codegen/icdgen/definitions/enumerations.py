@@ -1,4 +1,4 @@
-"""Values with names: as members of an enumeration, each name once, and enumerations that many fields share."""
+"""Value names as enumeration members with unique names, and enumerations that several fields share."""
 
 from __future__ import annotations
 
@@ -13,14 +13,18 @@ from icdgen.definitions.wording import line
 SAME_NAME = "IMP073"
 BEYOND = "IMP074"
 LEFT_OUT = "IMP090"
-MOST_SPECIAL = 1024  # special values of a field; each becomes a constant in code
+MOST_SPECIAL = 1024  # special values of a field; each becomes a constant in generated code
 _LONGEST = 400
 _LIMITS = ("min", "max", "above", "below")
 _OF_NUMBERS = ("unit", *_LIMITS)  # keys that an enumeration does not have
 
 
 def members(choices: Mapping[int, str], first: int, last: int, where: str, to: Definitions) -> list[Item]:
-    """The members of values from ``first`` to ``last``. Neighbours of one name are a range, others get their value behind it."""
+    """Return the enumeration members for values from ``first`` to ``last``.
+
+    Consecutive values of equal name form a range. Other duplicate names are extended by their value (IMP073). Names
+    of values out of range are left out (IMP074).
+    """
     beyond = [value for value in choices if not first <= value <= last]
     if beyond:
         shown = ", ".join(map(str, beyond[:5])) + (" ..." if len(beyond) > 5 else "")
@@ -28,7 +32,7 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
     found: list[Item] = []
     for value, text in sorted(choices.items()):
         name = line(text, _LONGEST)
-        if value in beyond or not name:  # an empty name says nothing
+        if value in beyond or not name:
             continue
         if found and found[-1]["name"] == name and found[-1].get("to", found[-1]["value"]) == value - 1:
             found[-1]["to"] = value
@@ -40,6 +44,7 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
             values = ", ".join(str(one["value"]) for one in same)
             text = f"{where}: `{name}` is the name of {values}"
             to.warn(SAME_NAME, text, "each is imported with its value behind the name")
+            # The extended name may itself be the name of another value.
             taken = {one["name"] for one in found}
             for one in same:
                 told = f"{name} {one['value']}"
@@ -48,13 +53,15 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
 
 
 def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
-    """Return whether a number whose values have names is an enumeration, or a quantity with special values.
+    """Return whether a number with value names is an enumeration. Otherwise it is a quantity with special values.
 
-    It is an enumeration if the names cover all its values, or if it has neither unit nor limits. A formula makes it a
-    quantity. A signed number remains one unless a name is negative, for only these enumerations are signed in an ICD.
+    It is an enumeration if the names cover all values, or if the field has neither unit nor limits. A field with a
+    formula is a quantity. A signed number is an enumeration only if a named value is negative, because the ICD
+    derives the sign from the members.
     """
     if item["type"] not in ("uint", "int") or not named or item.keys() & {"formula", "points"}:
         return False
+    # The type `enum` has no sign of its own: it is signed if a member is negative.
     is_signed = item["type"] == "int"
     if is_signed != any(one["value"] < 0 for one in named):
         return False
@@ -62,7 +69,7 @@ def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
 
 
 def _possible(item: Item, bits: int) -> tuple[int, int]:
-    """The first and last value of a number without a formula, within its limits."""
+    """Return the first and last value of a number without a formula, within its limits."""
     first, last = raws(bits, item["type"] == "int")
     low, high = item.get("min", first), item.get("max", last)
     if "above" in item:
@@ -83,12 +90,15 @@ def _covers(named: list[Item], first: int, last: int) -> bool:
 
 
 def _last(member: Item) -> int:
-    """The last value of a member, which may be a range."""
+    """Return the last value of a member, which may be a range."""
     return int(member["to"] if "to" in member else member["value"])
 
 
 def special(named: list[Item], where: str, to: Definitions) -> Item:
-    """The key of special values with these names; of ranges each value. Reports the names for which there is no room."""
+    """Return the key `special` with a value for each name, and each value of a range.
+
+    Reports names above `MOST_SPECIAL` (IMP090).
+    """
     found: list[Item] = []
     for number, one in enumerate(named):
         last = _last(one)
@@ -104,22 +114,25 @@ def special(named: list[Item], where: str, to: Definitions) -> Item:
 
 @dataclass
 class Enumerations:
-    """Enumerations by what their fields are called: fields of one name that have the same values share one."""
+    """Collection of enumerations. Fields of equal name and values share an enumeration."""
 
     uses: list[tuple[Item, str, str, tuple[tuple[int, int, str], ...]]] = field(default_factory=list)
 
     def give(self, to: Item, name: str, owner: str, named: list[Item]) -> None:
-        """Makes a field one of an enumeration. ``name`` is what it would be called, ``owner`` tells it from others of the name."""
+        """Assign an enumeration to a field.
+
+        ``name`` is its preferred name, and ``owner`` a prefix for names in conflict.
+        """
         values = tuple((one["value"], one["to"] if "to" in one else one["value"], str(one["name"])) for one in named)
         self.uses.append((to, name, owner, values))
 
     def hold(
         self, to: Item, bits: int, choices: Mapping[int, str], name: str, owner: str, where: str, notes: Definitions
     ) -> None:
-        """Give the values of a number their names: as an enumeration, or as special values (see `is_enumeration`).
+        """Assign value names to a number, as an enumeration or as special values (see `is_enumeration`).
 
-        ``to`` has its formula, unit and limits already. ``name`` is what an enumeration would be called, ``owner``
-        distinguishes it from others of the name. ``where`` names the field in what is noted.
+        ``to`` already has its formula, unit and limits. ``name`` is the preferred name of an enumeration, and
+        ``owner`` a prefix for names in conflict. ``where`` names the field in findings.
         """
         if to["type"] not in ("uint", "int"):
             return
@@ -133,7 +146,7 @@ class Enumerations:
             to |= special(named, where, notes)
 
     def declared(self) -> list[Item]:
-        """The enumerations; their fields say `enum` from now on."""
+        """Return the enumerations, and set the key `enum` in their fields."""
         kinds: dict[str, set[object]] = {}
         for _, name, _, values in self.uses:
             kinds.setdefault(name, set()).add(values)

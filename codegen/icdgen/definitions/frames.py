@@ -1,4 +1,4 @@
-"""Fields over the bits of a frame: which order of bits it has, and who owns what several read."""
+"""Fields by bit position in a frame: byte and bit order, and overlay fields for overlapping bits."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ ORDERS = {LITTLE: {"byte_order": "little", "bit_order": "lsb0"}, BIG: {"byte_ord
 
 
 class Place(NamedTuple):
-    """Bits of a frame, counted from the least significant of each byte (`LITTLE`) or the most significant (`BIG`)."""
+    """Bits of a frame: position of the first bit, number of bits and order.
+
+    `LITTLE` counts from the least significant bit of each byte, `BIG` from the most significant bit.
+    """
 
     at: int
     bits: int
@@ -21,40 +24,45 @@ class Place(NamedTuple):
 
     @property
     def is_within_byte(self) -> bool:
-        """Whether it can as well be counted in the other order."""
+        """Return whether all bits are in one byte, so that either order can describe them."""
         return self.at // 8 == (self.at + self.bits - 1) // 8
 
     @property
     def mask(self) -> int:
-        """The bits: bit w of byte b is bit 8 * b + w."""
+        """Bits as an integer: bit w of byte b is bit 8 * b + w."""
         if self.order == LITTLE:
             return (1 << self.bits) - 1 << self.at
         return sum(1 << at // 8 * 8 + 7 - at % 8 for at in range(self.at, self.at + self.bits))
 
     def counted(self, order: str) -> Place:
-        """The same bits, counted in the order if they can be."""
+        """Return these bits in another order, or unchanged if they span several bytes."""
         if order == self.order or not self.is_within_byte:
             return self
         return Place(self.at // 8 * 8 + 8 - self.at % 8 - self.bits, self.bits, order)
 
 
 def usual(places: Iterable[Place]) -> str:
-    """The order of most that have one."""
+    """Return the order of most fields that span bytes; `LITTLE` if there is no majority for `BIG`."""
     orders = [place.order for place in places if not place.is_within_byte]
     return BIG if 2 * orders.count(BIG) > len(orders) else LITTLE
 
 
 def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: Definitions) -> Item:
-    """The message with its fields, in the order of the node unless all that have one have another. Raises `NotHeld`."""
+    """Return the message with its fields.
+
+    Its order is ``order``, unless all fields that span bytes have the other one.
+    """
     own = {place.order for _, place in placed if not place.is_within_byte}
     if len(own) == 1 and own != {order}:
         order = own.pop()
         message |= ORDERS[order]
     fields, covered = [], 0
     for field, place in _owned(message["name"], placed, order, to):
-        place = place if "count" in field else place.counted(order)  # which would turn the order of elements round
+        place = (
+            place if "count" in field else place.counted(order)
+        )  # another order would reverse the elements of an array
         said = dict(field)
-        field.clear()  # the same mapping goes on: an enumeration is named in it later
+        field.clear()  # keep the mapping: `Enumerations.declared` sets `enum` in it later
         field |= {"at": place.at, "bits": place.bits, **said, **(ORDERS[place.order] if place.order != order else {})}
         fields.append(field)
         covered = max(covered, place.mask.bit_length())
@@ -65,13 +73,17 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
 
 
 def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definitions) -> Iterator[tuple[Item, Place]]:
-    """The fields, those that overlap larger ones as views; bits of these that nothing has by itself become fields."""
+    """Yield the fields, with overlapping smaller fields as overlay fields (IMP071).
+
+    Bits that only overlay fields cover become fields. Optional fields that overlap others are left out.
+    """
     owners: list[tuple[Item, int]] = []
     left, pairs = 0, []
     left_out: list[Item] = []
+    # Larger fields first: a smaller field becomes the overlay of a larger one.
     for field, place in sorted(placed, key=lambda one: -one[1].bits):
         mask = place.mask
-        if "view" in field:  # it is said to be one
+        if "view" in field:  # declared as overlay by the source
             left |= mask
             continue
         over = next((one for one, other in owners if mask & other and not _exclude(one, field)), None)
@@ -97,18 +109,18 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
 
 
 def _exclude(one: Item, other: Item) -> bool:
-    """Whether two fields are never there together."""
+    """Return whether the conditions of two fields exclude each other."""
     first, second = one.get("when", {}), other.get("when", {})
     return any(not set(listed(first[key])) & set(listed(second[key])) for key in first if key in second)
 
 
 def listed(said: object) -> list[object]:
-    """The values of a condition, which may be one."""
+    """Return the values of a condition, which are a single value or a list, as a list."""
     return said if isinstance(said, list) else [said]
 
 
 def _remaining(mask: int) -> Iterator[tuple[Item, Place]]:
-    """A field for each run of bits within a byte."""
+    """Yield a field for each run of bits, at most one byte long."""
     at = 0
     while mask >> at:
         start = at

@@ -1,4 +1,4 @@
-"""The kinds of definitions that are read, and how a file tells of which it is."""
+"""Kinds of definitions, their readers, and the detection of the kind of a file."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
 GROUP = "icdgen.definitions"
-MAX_BYTES = 8_000_000  # of which no reader takes more than about a gigabyte of memory
-_START = 65_536  # bytes by which a file is known
+MAX_BYTES = 8_000_000  # readers need up to about a gigabyte of memory for a file of this size
+_START = 65_536  # bytes that identify the kind of a file
 
 _BUILT_IN = {
     "dbc": "icdgen.definitions.can:Dbc",
@@ -32,12 +32,12 @@ _BUILT_IN = {
 
 
 def names() -> list[str]:
-    """All kinds: ours, and those of plug-ins."""
+    """Return the names of all kinds: built-in ones first, then plug-ins."""
     return [*_BUILT_IN, *sorted(_plug_ins())]
 
 
 def get(name: str) -> Reader:
-    """The reader of a kind. Raises `UserError` for one that there is not."""
+    """Return the reader of a kind. Raises `UserError` if the kind is unknown or its reader cannot be loaded."""
     target = (_plug_ins() | _BUILT_IN).get(name)
     if target is None:
         raise UserError(f"there is no kind of definition `{name}`", f"there are {', '.join(names())}")
@@ -49,22 +49,26 @@ def get(name: str) -> Reader:
 
 
 def of(path: Path) -> Reader | None:
-    """The reader that knows the file by how it begins, or by how its name ends; None for a manual, or what cannot be read."""
+    """Return the reader that recognizes a file by its beginning, or else by its suffix.
+
+    Returns None for manuals and unreadable files.
+    """
     try:
         with open(path, "rb") as file:
             start = file.read(_START)
     except OSError:
         return None
-    if start.startswith(b"%PDF"):
+    if start.startswith(b"%PDF"):  # a manual, which other modules import
         return None
     text = start.decode("utf-8-sig", "replace")
     readers = [get(name) for name in names()]
+    # The suffix decides only if no reader recognizes the content.
     by_suffix = (reader for reader in readers if path.suffix.lower() == f".{reader.name}")
     return next((reader for reader in readers if reader.knows(text)), next(by_suffix, None))
 
 
 def within(folder: Path) -> list[tuple[Path, Reader]]:
-    """The definitions in a folder and below it, by path; other files and hidden folders are passed over."""
+    """Return the definitions in a folder and its subfolders, by path. Other files and hidden folders are ignored."""
     found: list[tuple[Path, Reader]] = []
     for where, folders, files in os.walk(folder):
         folders[:] = sorted(one for one in folders if not one.startswith("."))
@@ -76,9 +80,9 @@ def within(folder: Path) -> list[tuple[Path, Reader]]:
 
 
 def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
-    """What files of one kind define: together where they may refer to each other. Raises `UserError` if a library is missing.
+    """Read files of one kind, together if they may refer to each other.
 
-    A file that cannot be read costs itself.
+    An unreadable file is reported in its own definitions. Raises `UserError` if a library is missing.
     """
     _need(reader)
     most = getattr(reader, "most_bytes", MAX_BYTES)
@@ -102,13 +106,13 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
 
 
 def read(path: Path, reader: Reader) -> Definitions:
-    """What a file defines. Raises `Findings` where it cannot be read, and `UserError` where a library is missing."""
+    """Read a file. Raises `Findings` if the file cannot be read, and `UserError` if a library is missing."""
     _need(reader)
     return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
 
 
 def _need(reader: Reader) -> None:
-    """Raises `UserError` where a library is missing."""
+    """Raise `UserError` if a library of a reader is missing."""
     missing = [module for module in reader.needs if find_spec(module) is None]
     if missing:
         raise UserError(
@@ -118,7 +122,7 @@ def _need(reader: Reader) -> None:
 
 
 def contents(path: Path, most: int = MAX_BYTES) -> bytes:
-    """The bytes of a file, as many as are allowed. Raises `Findings`."""
+    """Return the bytes of a file. Raises `Findings` if it cannot be read or has more than ``most`` bytes."""
     try:
         with open(path, "rb") as file:
             data = file.read(most + 1)
@@ -130,7 +134,7 @@ def contents(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def _plug_ins() -> dict[str, str]:
-    """Kinds of other packages; one that is named like ours is never asked."""
+    """Return the readers of other packages by kind. Plug-ins with a built-in name are ignored."""
     from importlib.metadata import entry_points
 
     return {point.name: point.value for point in entry_points(group=GROUP) if point.name not in _BUILT_IN}

@@ -1,4 +1,4 @@
-"""What a reader makes of a file: ICDs to be, in one form for all kinds. What stands in them is written as in an ICD."""
+"""Common result of all readers: ICDs as mappings with the keys of the YAML format, and findings."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ WITHOUT_FIELD = "IMP091"
 RAW_ONLY = "IMP078"
 SAME_NAME = "IMP092"
 
-Item = dict[str, Any]  # a message, field, enumeration, member or struct as it stands in an ICD
+Item = dict[str, Any]  # message, field, enumeration, member or struct with the keys of the ICD
 
 
 class NotHeld(Exception):
-    """A message that an ICD cannot hold; the text says why, and ``help`` what to do if there is something."""
+    """Message that an ICD cannot represent. The text gives the reason, and ``help`` the remedy if any."""
 
     def __init__(self, text: str, help: str = "") -> None:
         super().__init__(text)
@@ -32,7 +32,10 @@ class NotHeld(Exception):
 
 @dataclass
 class Network:
-    """One ICD: the messages of a network, a dialect, a device. ``head`` is the section `node` but for name and title."""
+    """Content of one ICD: messages of a network, dialect or device.
+
+    ``head`` is the section `node` without name and title.
+    """
 
     name: str
     title: str
@@ -41,20 +44,24 @@ class Network:
     enums: list[Item] = field(default_factory=list)
     structs: list[Item] = field(default_factory=list)
     protocol: Item | None = None
-    seeds: dict[str, int] = field(default_factory=dict)  # those of ``protocol``: of each message one
+    seeds: dict[str, int] = field(default_factory=dict)  # checksum seeds of ``protocol`` by message name
 
     @property
     def fields(self) -> Iterator[Item]:
-        """Those of all messages and structs."""
+        """Fields of all messages and structs."""
         return (one for owner in (*self.messages, *self.structs) for one in owner.get("fields", ()))
 
     def declare(self, enums: Iterable[Item]) -> None:
-        """Takes those enumerations that a field has."""
+        """Set the enumerations to the subset that fields use."""
         used = {one.get("enum") for one in self.fields}
         self.enums = [enum for enum in enums if enum["name"] in used]
 
     def name_messages_apart(self, to: Definitions) -> None:
-        """Put group or kind in front of the names of messages with the same name, or else the id behind, with a note (IMP092)."""
+        """Make message names unique, with a note (IMP092).
+
+        Duplicate names get the group or kind as prefix. If neither distinguishes the messages, they get the id as
+        suffix.
+        """
         by_name: dict[str, list[Item]] = {}
         for message in self.messages:
             by_name.setdefault(message["name"], []).append(message)
@@ -76,7 +83,7 @@ class Network:
             to.warn(SAME_NAME, text, "rename them in the ICD if you want other names", "note")
 
     def tree(self) -> Item:
-        """The ICD as plain mappings and lists."""
+        """Return the ICD as plain mappings and lists."""
         self._mark_shared_ids()
         tree: Item = {"icdgen": 1, "node": {"name": self.name, "title": self.title, **self.head}}
         if declared := units.declared(one["unit"] for one in self.fields if "unit" in one):
@@ -87,7 +94,7 @@ class Network:
         return tree
 
     def _mark_shared_ids(self) -> None:
-        """Set `shares_id` where the source itself gives one id to several messages of a direction, and nowhere else."""
+        """Set `shares_id` for messages whose id occurs several times in a direction, and remove it elsewhere."""
         uses = [(message, use) for message in self.messages for use in _ids(message)]
         times = Counter(use for _, use in uses)
         for message in self.messages:
@@ -99,9 +106,10 @@ class Network:
 
 @dataclass
 class Definitions:
-    """Everything that a file defines, with ``more`` files that are read as one with it.
+    """Definitions and findings of a file.
 
-    ``total`` counts its messages, those that are not imported among them.
+    ``total`` counts all messages, including messages that are not imported. ``more`` is the number of further files
+    read together with the file.
     """
 
     file: str
@@ -112,18 +120,21 @@ class Definitions:
 
     @property
     def files(self) -> str:
-        """The file, and how many others, for people."""
+        """Name of the file and number of further files, for reports."""
         others = "1 more file" if self.more == 1 else f"{self.more} more files"
         return f"{self.file} and {others}" if self.more else self.file
 
     def left_out(self, name: str, why: object, line: int | None = None, file: str = "") -> None:
-        """Notes that a message is not imported. ``file`` is where it stands, if several are read as one."""
+        """Report a message that is not imported (IMP070).
+
+        ``file`` is the file that contains it, if several files are read together.
+        """
         spot = Spot(line=line, file=file if file != self.file else "")
         help = why.help if isinstance(why, NotHeld) else ""
         self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not imported: {why}", spot, help, "error"))
 
     def without_field(self, message: str, field: str, why: object, line: int | None = None) -> None:
-        """Report that a field is left out of a message, which is imported without it."""
+        """Report a field that is left out of an imported message (IMP091)."""
         text = f"message `{message}`, `{field}` is left out: {why}"
         help = "the message is imported without it: its bits are reserved"
         self.troubles.append(Trouble(WITHOUT_FIELD, text, Spot(line=line), help, severity="error"))
@@ -137,12 +148,12 @@ class Definitions:
         line: int | None = None,
         file: str = "",
     ) -> None:
-        """Notes a fault of the file, or of ``file`` if several are read as one."""
+        """Add a finding for the file, or for ``file`` if several files are read together."""
         spot = Spot(line=line, file=file if file != self.file else "")
         self.troubles.append(Trouble(code, message, spot, help, severity))
 
     def refuse(self, findings: Findings) -> None:
-        """Notes that the file cannot be read."""
+        """Report that the file cannot be read."""
         for finding in findings.findings:
             self.warn(
                 finding.code,
@@ -153,7 +164,7 @@ class Definitions:
             )
 
     def take(self, part: Definitions) -> None:
-        """Takes the findings of a file that is read as one with others."""
+        """Add the findings of a file that is read together with this one."""
         file = part.file if part.file != self.file else ""
         self.troubles += [
             finding._replace(spot=finding.spot._replace(file=finding.spot.file or file)) for finding in part.troubles
@@ -161,45 +172,48 @@ class Definitions:
 
 
 class Source(NamedTuple):
-    """A file with what stands in it."""
+    """File with its contents."""
 
     file: str
     data: bytes
 
 
 class Reader(Protocol):
-    """A kind of definition. A package of its own brings one by the entry point group ``icdgen.definitions``."""
+    """Interface of a reader. Packages can register readers in the entry point group ``icdgen.definitions``."""
 
-    name: str  # as in `--kind`
-    title: str  # for people
-    needs: tuple[str, ...]  # modules that reading takes, of the extra `definitions`
-    # `most_bytes`, if it is there, is how large a file may be. A kind whose files refer to each other has
-    # `read_set(sources: Sequence[Source]) -> list[Definitions]`; files that belong together are one of them.
+    name: str  # value of `--kind`
+    title: str  # for reports
+    needs: tuple[str, ...]  # required modules, from the extra `definitions`
+    # Optional members: `most_bytes` is the size limit of a file. Kinds whose files refer to each other have
+    # `read_set(sources: Sequence[Source]) -> list[Definitions]`. Files that belong together share a result.
 
     def knows(self, start: str) -> bool:
-        """Whether a file that begins so is of this kind."""
+        """Return whether a file with this beginning is of this kind."""
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """What the file defines. Raises `Findings` for one that cannot be read at all."""
+        """Read a file. Raises `Findings` if the file cannot be read at all."""
 
 
 def _ids(message: Item) -> list[tuple[str, int]]:
-    """Direction and number of each id of a message."""
+    """Return direction and number of each id of a message."""
     return [(direction, wire_ids.number(message[key])) for key, direction in KEYS_OF_IDS[message["kind"]]]
 
 
 def unreadable(file: str, message: str, help: str = "", line: int = 1) -> Findings:
-    """That a file cannot be read at all, to be raised."""
+    """Return the exception for a file that cannot be read at all."""
     return Findings([Finding(UNREADABLE, message, Place(file, line), help)])
 
 
 def raws(bits: int, is_signed: bool) -> tuple[int, int]:
-    """The least and the largest raw value of an integer."""
+    """Return the smallest and largest raw value of an integer."""
     return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
 def again(item: Item, said: Item) -> Item:
-    """The same mapping with other keys: an enumeration is named in it later."""
+    """Replace the keys of a mapping and return it.
+
+    Its identity matters: `Enumerations.declared` sets `enum` in it later.
+    """
     item.clear()
     item |= said
     return item

@@ -1,4 +1,4 @@
-"""Messages of space packets, and those without an envelope: their ids, and the header that they have alike."""
+"""Messages of space packets (CCSDS 133.0-B) and of frames without a header: ids, and the common header."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TELECOMMAND, TELEMETRY = "telecommand", "telemetry"
 HEADER_BITS = 48
 MOST_PARTS = 7  # of the primary header
 APID_BITS = 11
-_HEADERS = (  # places of the primary header; type and flag of the secondary header may be one field
+_HEADERS = (  # position and bits; type and secondary header flag may be one field
     ((0, 3), (3, 1), (4, 1), (5, 11), (16, 2), (18, 14), (32, 16)),
     ((0, 3), (3, 2), (5, 11), (16, 2), (18, 14), (32, 16)),
 )
@@ -21,7 +21,7 @@ _MOST_ID_BITS = 32
 
 
 class Header(NamedTuple):
-    """The primary header of a space packet: the only value of each field, or None."""
+    """Primary header of a space packet. Each field has its constant, or None if it varies."""
 
     version: int | None
     type: int | None
@@ -30,28 +30,28 @@ class Header(NamedTuple):
 
     @property
     def kind(self) -> str | None:
-        """Which way the packet goes."""
+        """Direction of the packet, or None if the header does not fix it."""
         return None if self.type is None else TELECOMMAND if self.type else TELEMETRY
 
 
 class Sent(Protocol):
-    """What becomes a message."""
+    """Container that becomes a message."""
 
     name: str
     kind: str
-    header: Header | None  # None where it does not begin with one
-    # What it begins with, as in `told`, and its bits, if a header can have it as an id:
+    header: Header | None  # None for a container without a primary header
+    # Key in `told` and bits of the first part, if a header can use it as id:
     front: tuple[Hashable, int] | None
-    told: dict[Hashable, int]  # by what tells it: the only value of that
+    told: dict[Hashable, int]  # constants by part, as candidates for the discriminator
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """As it stands in an ICD, from a bit on. Raises `NotHeld`."""
+        """Return the ICD message from the bit ``start`` on. Raises `NotHeld` if it is not supported."""
 
 
 def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
-    """The primary header that the first parts make, if they do: place, bits and only value of each.
+    """Return the primary header that the first parts form, or None. A part has position, bits and constant.
 
-    Many databases name only the parts that they use, the application process at least.
+    Many databases name only the parts that they use. The application process id is required.
     """
     values: dict[tuple[int, int], int | None] = {}
     for at, bits, value in parts:
@@ -61,18 +61,19 @@ def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
     is_part = _APID in ahead and len(ahead) > 1 and any(set(ahead) <= set(places) for places in _HEADERS)
     if not is_whole and not is_part:
         return None
+    # Type and secondary header flag may be one part of two bits.
     both = values.get(_FLAGS)
     kind, secondary = (values.get((3, 1)), values.get((4, 1))) if both is None else (both >> 1, both & 1)
     return Header(values.get((0, 3)), kind, secondary, values[_APID])
 
 
 def is_of_header(at: int, bits: int) -> bool:
-    """Whether a part is one of the primary header."""
+    """Return whether a part belongs to the primary header."""
     return any((at, bits) in places for places in _HEADERS)
 
 
 def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
-    """Puts everything that is sent into the network, with ids and envelope. What is not imported is noted."""
+    """Add messages with ids and framing to a network. Messages that are not supported are reported."""
     if any(one.header is not None for one in found):
         network.head["id_bits"] = APID_BITS
         _packets(found, network, to)
@@ -81,7 +82,7 @@ def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
 
 
 def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
-    """Messages of space packets: the header is the envelope, and the application process the id."""
+    """Add space packets: the primary header is the framing, and the application process id is the message id."""
     held: list[tuple[str, Header]] = []
     versions = [one.header.version for one in found if one.header is not None]
     version = next((one for one in versions if one is not None), 0)
@@ -108,7 +109,7 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
                 {"at": 3, "bits": 1, "role": "constant", "value": {TELECOMMAND: 1, TELEMETRY: 0}},
                 {"at": 4, "bits": 1, "role": "flags", **_usual(held)},
                 {"at": 5, "bits": APID_BITS, "role": "id"},
-                # a packet of its own, unless the sender says otherwise
+                # Sequence flags 3: unsegmented, unless the sender sets another value.
                 {"at": 16, "bits": 2, "role": "type", "value": 3},
                 {"at": 18, "bits": 14, "role": "sequence", "per": "id"},
                 {"at": 32, "bits": 16, "role": "length", "plus": -1},
@@ -118,7 +119,7 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
 
 
 def _usual(held: list[tuple[str, Header]]) -> Item:
-    """The flag of a secondary header, where all messages of a direction have it alike."""
+    """Return the secondary header flag as a key, if it is constant in a direction."""
     values = {kind: {head.secondary for of, head in held if of == kind} for kind in (TELECOMMAND, TELEMETRY)}
     said = {kind: of.copy().pop() if len(of) == 1 else None for kind, of in values.items()}
     if all(value is None for value in said.values()):
@@ -127,7 +128,11 @@ def _usual(held: list[tuple[str, Header]]) -> Item:
 
 
 def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
-    """Messages without a header: ids are what tells all of a direction, or counted."""
+    """Add messages without a header.
+
+    A discriminator in each direction gives the ids; without one they are counted from 1.
+    """
+    # `id_bits` is at least 8, also for small numbers.
     widest, start = 8, _id_in_front(found)
     if start:
         network.protocol = {"stream": {"delimited_by": "none", "header": [{"at": 0, "bits": start, "role": "id"}]}}
@@ -152,7 +157,7 @@ def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
 
 
 def _id_in_front(found: Sequence[Sent]) -> int:
-    """The bits of what tells all messages, where all of both directions begin with it and it is whole bytes; else 0."""
+    """Return the bits of the discriminator if all messages begin with it as an id of equal size, else 0."""
     sizes = set()
     for kind in (TELEMETRY, TELECOMMAND):
         ours = [one for one in found if one.kind == kind]
@@ -165,7 +170,10 @@ def _id_in_front(found: Sequence[Sent]) -> int:
 
 
 def _telling(ours: list[Sent]) -> Hashable | None:
-    """What has one value in each message, of those the one with the most different ones."""
+    """Return the key of the discriminator: a constant in each message, with the most different values.
+
+    None without one.
+    """
     common = [key for key in (ours[0].told if ours else ()) if all(key in our.told for our in ours)]
     fits = [key for key in common if all(0 <= our.told[key] < 1 << _MOST_ID_BITS for our in ours)]
     return max(fits, key=lambda key: len({our.told[key] for our in ours}), default=None)

@@ -1,4 +1,4 @@
-"""What all messages of a file share while it is read: enumerations, what was said already, and how much was done."""
+"""State shared by all messages of a file while it is read: enumerations, reported subjects and number of steps."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from typing import ClassVar
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.model import RAW_ONLY, Definitions, NotHeld
 
-_SHOWN = 3  # messages of a finding
+_SHOWN = 3  # messages that a finding lists
 
 
 class TooMuch(NotHeld):
-    """The file says more than is read of one."""
+    """Definition that exceeds the steps that a reader allows."""
 
 
 @dataclass
 class Reading:
-    """What the messages of one file share.
+    """State shared by the messages of one file.
 
-    ``most_steps`` is what a kind of definition may do, so that a small file cannot ask for much; ``message`` is the name
-    of the message that is being read.
+    ``most_steps`` limits the work for a file, because a small file can describe a large one. ``message`` is the name
+    of the current message.
     """
 
     most_steps: ClassVar[int]
@@ -33,27 +33,27 @@ class Reading:
     _raw_only: dict[tuple[str, str, str], dict[str, None]] = field(init=False, default_factory=dict)
 
     def step(self, count: int = 1) -> None:
-        """Counts what is done. Raises `TooMuch`."""
+        """Count steps of work. Raises `TooMuch` above ``most_steps``."""
         self.steps += count
         if self.steps > self.most_steps:
             raise TooMuch(f"with it the file says more than {self.most_steps:,} things")
 
     def is_new(self, what: object) -> bool:
-        """Whether something is to be said for the first time."""
+        """Return whether a subject is reported for the first time."""
         is_new = what not in self.said
         self.said.add(what)
         return is_new
 
     def heard(self, what: object) -> Definitions:
-        """Where to note faults of something: nowhere once they have been."""
+        """Return the definitions for findings about a subject. Repeated findings go to an unused object."""
         return self.to if self.is_new(what) else Definitions("")
 
     def raw_only(self, where: str, why: str, help: str) -> None:
-        """Note that of a field of ``message`` only the raw value is imported."""
+        """Record a field of ``message`` that is imported as raw value only."""
         self._raw_only.setdefault((where, why, help), {})[self.message] = None
 
     def report_raw_only(self) -> None:
-        """Add a finding (IMP078) for each field of which only the raw value is imported, with the messages that contain it."""
+        """Add a finding (IMP078) for each field that is imported as raw value only, with the messages that contain it."""
         for (where, why, help), messages in self._raw_only.items():
             shown = ", ".join(f"`{name}`" for name in list(messages)[:_SHOWN])
             more = f" and {len(messages) - _SHOWN} more" if len(messages) > _SHOWN else ""

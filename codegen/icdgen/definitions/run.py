@@ -1,4 +1,4 @@
-"""A definition as a whole: file in, trees of ICDs and what to say of them out. Nothing is written here."""
+"""Import of definitions from files to trees of ICDs with findings. No file is written."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from icdgen.definitions import kinds
 from icdgen.definitions.model import Definitions, Item, Network, Reader, unreadable
 from icdgen.definitions.settle import settle
 
-TOLD = frozenset({"special", "min", "max", "shares_id"})  # what people add to manuals, and definitions say themselves
+TOLD = frozenset({"special", "min", "max", "shares_id"})  # keys that manuals usually lack, and definitions contain
 
 
 @dataclass
 class Read:
-    """A file that was read."""
+    """Result of reading a file."""
 
     definitions: Definitions
     kind: str
     trees: dict[str, Item]
-    identifiers: list[str] = field(default_factory=list)  # names that were given one, and which
+    identifiers: list[str] = field(default_factory=list)  # names with their generated identifiers, as text
 
     @property
     def held(self) -> int:
-        """Messages of all ICDs."""
+        """Number of messages in all ICDs."""
         return sum(len(tree.get("messages", ())) for tree in self.trees.values())
 
     @property
     def failed(self) -> bool:
-        """Whether something that the file defines is missing."""
+        """Return whether a part of the definition is missing in the ICDs."""
         return any(finding.severity == "error" for finding in self.definitions.troubles)
 
 
 def read(path: Path, reader: Reader) -> Read:
-    """Reads a file. Raises `Findings` where nothing of it can be imported, and `UserError` where a library is missing."""
+    """Read a file. Raises `Findings` if no message can be imported, and `UserError` if a library is missing."""
     found = kinds.read(path, reader)
     made = _settled(found, reader)
     if not made.trees:
@@ -46,9 +46,9 @@ def read(path: Path, reader: Reader) -> Read:
 
 
 def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
-    """Reads files, those of a kind together: what one refers to may be in another. ICDs of all have names of their own.
+    """Read files, all files of a kind together because they may refer to each other. The names of all ICDs are unique.
 
-    Raises `UserError` where a library is missing.
+    Raises `UserError` if a library is missing.
     """
     by_kind: dict[str, tuple[Reader, list[Path]]] = {}
     for path, reader in files:
@@ -59,7 +59,7 @@ def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
 
 
 def _settled(found: Definitions, reader: Reader) -> Read:
-    """What was read, as `icdgen check` takes it."""
+    """Return the result with ICDs that pass `icdgen check`."""
     made = Read(found, reader.title, {})
     _name_apart(found.networks)
     for network in found.networks:
@@ -71,7 +71,7 @@ def _settled(found: Definitions, reader: Reader) -> Read:
 
 
 def _name_apart(networks: Iterable[Network]) -> None:
-    """Networks of one name get numbers behind it."""
+    """Add a number to duplicate network names."""
     taken: Counter[str] = Counter()
     for network in networks:
         taken[network.name] += 1

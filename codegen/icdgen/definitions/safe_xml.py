@@ -1,4 +1,4 @@
-"""XML of anybody: without document types, so that nothing is expanded and nothing is fetched."""
+"""Parser for untrusted XML. Document types are rejected, so entities are neither expanded nor fetched."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ _SKIPPED = re.compile(r"<!--.*?-->|<\?.*?\?>|<!.*?>", re.DOTALL)
 
 
 def root_of(start: str) -> str:
-    """The name of the outermost element of a text that begins so; nothing if it is no XML."""
+    """Return the name of the root element from the beginning of a text, or an empty string if it is not XML."""
     text = start.lstrip()
     found = _ROOT.search(_SKIPPED.sub("", text)) if text.startswith("<") else None
     return found[1] if found else ""
 
 
 def parse(file: str, data: bytes, lines: dict[Element, int] | None = None, account: Account | None = None) -> Element:
-    """The outermost element; of each one its line is noted in ``lines``, if they are asked for. With an ``account`` all
-    are `AccountedElement`, which know their line and record what is read of them.
+    """Return the root element. ``lines`` receives the line of each element.
 
-    Raises `Findings` for what is no XML, or has a document type (`<!DOCTYPE`).
+    With an ``account``, all elements are `AccountedElement`, which store their line and record read access. Raises
+    `Findings` if the text is not XML, or has a document type (`<!DOCTYPE`).
     """
     from defusedxml import DefusedXmlException
     from defusedxml.ElementTree import DefusedXMLParser
@@ -54,10 +54,10 @@ def parse(file: str, data: bytes, lines: dict[Element, int] | None = None, accou
         raise unreadable(file, "the XML has a document type, which could load other files", help) from None
     for element in root.iter():
         if isinstance(element, AccountedElement):
-            element.is_text_read = False  # the builder itself reads the text while it adds to it
+            element.is_text_read = False  # the builder reads the text when it appends to it
     return root
 
 
 def local(tag: object) -> str:
-    """The name of an element without its namespace."""
+    """Return the name of an element without its namespace."""
     return tag.rsplit("}", 1)[-1] if isinstance(tag, str) else ""

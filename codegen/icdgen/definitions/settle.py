@@ -1,7 +1,8 @@
-"""Make a network an ICD that `icdgen check` accepts: identifiers for names that are none, and as little left out as possible.
+"""Change a network until `icdgen check` accepts it, with as few losses as possible.
 
-What a rule refuses degrades step by step: a field loses formula, limits and names (its raw value stays), then the field is
-left out, then its message. A unit that is refused is left out, an enumeration leaves numbers behind.
+Names that are not valid identifiers get an `identifier`. Content that a rule rejects is reduced in steps. A field
+first loses formula, limits and names, and keeps its raw value. If that is not enough, the field is left out, and
+then its message. A rejected unit is left out. A rejected enumeration becomes plain numbers.
 """
 
 from __future__ import annotations
@@ -17,16 +18,19 @@ from icdgen.definitions.model import NOT_HELD, RAW_ONLY, Definitions, Item, Netw
 from icdgen.diagnostics import Finding
 from icdgen.loading import load
 
-ROUNDS = 60  # a rule may speak only after another is satisfied
+ROUNDS = 60  # some rules apply only after others are satisfied
 _NONE, _RESERVED, _CLASH = "ICD072", "ICD070", "ICD071"
 _OF_NAMES = frozenset({_NONE, _RESERVED, _CLASH})
-_TRIES = 6  # identifiers for one name
+_TRIES = 6  # attempts to find an identifier for a name
 _MEANING = ("formula", "points", "outside", "unit", "special", "min", "max", "above", "below", "enum")
 _FIELD, _MEMBER, _UNIT = "field", "value", "unit"
 
 
 class _Line(NamedTuple):
-    """What stands in a line: a thing with a name, the whole that it is part of, and what distinguishes it from others."""
+    """Named item in a line of the temporary file.
+
+    ``whole`` is the containing item, and ``number`` distinguishes items of equal name.
+    """
 
     item: Item
     whole: Item
@@ -35,9 +39,10 @@ class _Line(NamedTuple):
 
 
 def settle(network: Network, to: Definitions) -> list[str]:
-    """Change the network until nothing is found; what had to go is noted in ``to``. Names with the identifiers that they got.
+    """Change the network until `icdgen check` reports nothing, and note losses in ``to``.
 
-    Raises `Findings` if it is too large.
+    Returns the names that got identifiers, as text for reports. Raises `Findings` if the errors cannot be assigned
+    to an item.
     """
     tries: dict[int, int] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -52,6 +57,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
             has_changed = False
             for finding in findings:
                 line = lines.get(finding.place.line)
+                # A finding without an item concerns the header (`protocol`), if there is one.
                 if line is None and network.protocol is not None:
                     to.warn(NOT_HELD, f"the header is not imported: {finding.message}", finding.help, "error")
                     network.protocol, has_changed = None, True
@@ -76,7 +82,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
 
 
 class _Taken:
-    """Words of the names among which an identifier must be the only one."""
+    """Words of the identifiers in each scope, to keep identifiers unique."""
 
     def __init__(self, lines: Iterable[_Line]) -> None:
         self.words: dict[object, set[tuple[str, ...]]] = {}
@@ -89,7 +95,7 @@ class _Taken:
         return self.words.setdefault((line.what, id(line.whole) if is_part else None), set())
 
     def add(self, line: _Line, wanted: str) -> str:
-        """The wanted identifier, with a number behind it if another one has the same words."""
+        """Reserve and return an identifier, with a number as suffix if its words are taken."""
         among, number, text = self._among(line), 1, wanted
         while naming.words(text) in among:
             number += 1
@@ -99,7 +105,7 @@ class _Taken:
 
 
 def _identifier(line: _Line, code: str, attempt: int) -> str:
-    """Words for a name, by the rule of docs/guides/import-definitions.md."""
+    """Return the words of an identifier, by the rule of docs/guides/import-definitions.md."""
     name, number = line.item["name"], str(line.number).replace("-", "minus ")
     if not naming.words(name) or attempt == 1:
         return f"{line.what} {number}"
@@ -112,7 +118,7 @@ def _identifier(line: _Line, code: str, attempt: int) -> str:
 
 
 def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -> None:
-    """Take as little as possible of what a finding refuses out of the network."""
+    """Remove as little content as possible for a finding."""
     reason = f"{finding.message} ({finding.code})"
     if line.what == _UNIT:
         for field in network.fields:
@@ -128,7 +134,7 @@ def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -
 
 
 def _degrade_part(network: Network, line: _Line, reason: str, to: Definitions) -> None:
-    """A field becomes raw, then goes; a member of an enumeration goes."""
+    """Reduce a field to its raw value or remove it, or remove a member of an enumeration."""
     owner, item = line.whole["name"], line.item
     if line.what == _MEMBER:
         _remove(line.whole["members"], item)
@@ -174,7 +180,7 @@ def _is_open(fields: list[Item]) -> bool:
 
 
 def _reserve(network: Network, message: Item) -> None:
-    """Bytes at the end of a message that no field has any longer become reserved."""
+    """Set `reserved` to the bytes at the end of a message that no field uses."""
     lengths = {struct["name"]: 8 * struct["length"] for struct in network.structs if "length" in struct}
     end = 0
     for field in message["fields"]:
@@ -186,7 +192,7 @@ def _reserve(network: Network, message: Item) -> None:
 
 
 def _take_out(network: Network, whole: Item, reason: str, to: Definitions) -> None:
-    """Leave out a message; of a struct the fields that have it follow, for it is unknown then."""
+    """Remove a message or struct. Fields that use the struct fail the next check and are removed then."""
     if any(whole is message for message in network.messages):
         network.seeds.pop(whole["name"], None)
         to.left_out(whole["name"], reason)
@@ -201,7 +207,7 @@ def _remove(items: list[Item], item: Item) -> None:
 
 
 def _declare_structs(network: Network) -> None:
-    """Drop structs that no message has any longer, directly or within others."""
+    """Remove structs and enumerations that no message uses."""
     by_name = {struct["name"]: struct for struct in network.structs}
     needed: set[str] = set()
     waiting = list(_structs_in(network.messages))
@@ -219,8 +225,9 @@ def _structs_in(owners: Iterable[Item]) -> Iterator[str]:
 
 
 def _write(file: Path, network: Network) -> dict[int, _Line]:
-    """The ICD with a line for each thing that has a name; which stands where."""
+    """Write the ICD with one line for each named item. Returns the items by line number."""
     tree = network.tree()
+    # JSON is valid YAML, and keeps each item in a line of its own.
     lines, found = ["{"], {}
 
     def add(text: str, line: _Line | None = None) -> None:

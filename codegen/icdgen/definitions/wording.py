@@ -1,4 +1,4 @@
-"""Words and numbers of definitions as an ICD writes them."""
+"""Names, texts and numbers of definitions in the spelling of an ICD."""
 
 from __future__ import annotations
 
@@ -14,47 +14,48 @@ from icdgen.naming import DEVICES, latin
 LONGEST = 4000  # characters of a summary
 _LONGEST_UNIT = 60
 _NO_UNIT = frozenset({"", "-", "--", "none", "n/a", "na", "unitless", "no unit", "no_unit", "unit_none", "[]", "[-]"}) | {
-    # What databases write where a signal has states or flags and no unit; SED and SES mean "state encoded".
+    # Placeholders of databases for states and flags without a unit; SED and SES mean "state encoded".
     "sed", "ses", "state", "states", "enum", "discrete", "binary", "bool", "boolean", "flag", "yes/no", "on/off", "code",
 }  # fmt: skip
 _UNPRINTABLE = re.compile("[^ -~\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]+")
 
 
 def node_name(text: str) -> str:
-    """The name of a node: of a file its stem."""
+    """Return the node name for a text or file name: lower-case words with underscores, at most 40 characters."""
     plain = re.sub(r"[^a-z0-9]+", "_", latin(PurePath(text).stem).lower()).strip("_")
     plain = plain if plain[:1].isalpha() and plain not in DEVICES else f"node_{plain}".rstrip("_")
     return plain[:40].rstrip("_")
 
 
 def line(text: str | None, longest: int = LONGEST) -> str:
-    """A text in one line, without what cannot be printed."""
+    """Return a text as a single line without unprintable characters, shortened to ``longest``."""
     plain = " ".join(_UNPRINTABLE.sub(" ", text or "").split())
     return plain if len(plain) <= longest else plain[: longest - 4].rstrip() + " ..."
 
 
 def summary(text: str | None) -> dict[str, str]:
-    """The key of a comment; none where there is nothing to say."""
+    """Return the key `summary` of a comment, or no key for an empty comment."""
     said = line(text)
     return {"summary": said} if said else {}
 
 
 def unit(text: str | None) -> dict[str, str]:
-    """The key of a unit: that of icdgen where it is another spelling of one, else as it is printed."""
+    """Return the key `unit`, with the spelling of icdgen for known units. Placeholders such as `none` give no key."""
     symbol = line(text, _LONGEST_UNIT)
     return {} if symbol.casefold() in _NO_UNIT else {"unit": SPELLINGS.get(symbol, symbol)}
 
 
 def printed(number: float | Decimal) -> str:
-    """A number as a formula has it: the shortest decimal that means it."""
+    """Return a number as in a formula: the shortest decimal of equal value."""
     exact = Decimal(str(number))
+    # Plain notation for common magnitudes, an exponent otherwise.
     is_usual = not exact or Decimal("1e-6") <= abs(exact) < Decimal("1e24")
     text = format(exact, "f" if is_usual else "e").replace("E", "e")
     return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 
 def formula(factor: str, offset: str = "0") -> dict[str, str]:
-    """The key of the formula of a factor and an offset as they are printed; none where the raw value is meant."""
+    """Return the key `formula` for decimal factor and offset, or no key for the raw value."""
     slope, constant = Fraction(factor), Fraction(offset)
     if slope == 1 and constant == 0:
         return {}
@@ -65,7 +66,10 @@ def formula(factor: str, offset: str = "0") -> dict[str, str]:
 
 
 def limits(low: Fraction | None, high: Fraction | None, first: Fraction, last: Fraction) -> dict[str, int | float]:
-    """The keys of limits, where they say more than the width of the field: ``first`` to ``last`` are the values that it has."""
+    """Return the keys `min` and `max`. Limits outside ``first`` to ``last``, the range of the field, are left out.
+
+    An empty intersection gives no keys.
+    """
     lower, upper = low if low is not None else first, high if high is not None else last
     if lower > upper or upper < first or lower > last:
         return {}
@@ -83,12 +87,12 @@ def _number(key: str, value: Fraction) -> dict[str, int | float]:
 
 
 def without_type(name: str) -> str:
-    """The name of a type without the word for it."""
+    """Return the name of a type without a suffix `type` or `_t`."""
     return re.sub("[ _]?([Tt]ype|_t)$", "", name) or name
 
 
 def shortest(paths: list[tuple[str, ...]]) -> list[str]:
-    """Of each path the last words that no other ends with."""
+    """Return the shortest unique suffix of each path, in words."""
     lengths = [1] * len(paths)
     while True:
         names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
