@@ -108,11 +108,11 @@ class Account:
         """Add a finding for each kind of unused key, in the order of the source."""
         listed = sorted(self.entries.items(), key=lambda item: (item[1].line or 0, item[0]))
         for (owner, key), entry in listed:
-            whole = f"`{one_line(key, _LONGEST_NAME)}`" + (f" of `{owner}`" if owner else "")
+            part = f"`{one_line(key, _LONGEST_NAME)}`" + (f" of `{owner}`" if owner else "")
             times = [f"{entry.times} times"] if entry.times > 1 else []
             first = [f"first: {entry.place}" if times else entry.place] if entry.place else []
             where = f" ({', '.join((*times, *first))})" if times or first else ""
-            what = f"{whole} is not used{where}"
+            what = f"{part} is not used{where}"
             to.warn(UNUSED, what, "the ICD does not contain it: add it by hand if you need it", "note", entry.line)
 
 
@@ -138,9 +138,9 @@ class AccountedElement(Element):
 
     def settle(self) -> None:
         """Mark the element and its descendants as read, because another finding already names it."""
-        for one in cast(Iterator[AccountedElement], Element.iter(self)):
-            one.is_found = one.is_text_read = True
-            one.read_keys.update(Element.keys(one))
+        for element in cast(Iterator[AccountedElement], Element.iter(self)):
+            element.is_found = element.is_text_read = True
+            element.read_keys.update(Element.keys(element))
 
     @property
     def text(self) -> str | None:
@@ -173,16 +173,16 @@ class AccountedElement(Element):
         return map(_found, super().iterfind(path, namespaces))
 
     def findtext(self, path: str, default: Any = None, namespaces: dict[str, str] | None = None) -> Any:
-        found = self.find(path, namespaces)
-        return default if found is None else found.text or ""
+        element = self.find(path, namespaces)
+        return default if element is None else element.text or ""
 
     def iter(self, tag: str | None = None) -> Any:
         return super().iter(tag) if tag in (None, "*") else map(_found, super().iter(tag))
 
     def itertext(self) -> Any:
-        for one in Element.iter(self):
-            if isinstance(one, AccountedElement):
-                one.is_found = one.is_text_read = True
+        for element in Element.iter(self):
+            if isinstance(element, AccountedElement):
+                element.is_found = element.is_text_read = True
         return super().itertext()
 
 
@@ -274,13 +274,13 @@ def accounted(tree: Any, named: frozenset[str] = frozenset(), owner: str = "", p
     reported under the key in ``named``. Any other mapping is reported under its own key.
     """
     if isinstance(tree, dict):
-        made = AccountedMap(owner, path, tree)
+        mapping = AccountedMap(owner, path, tree)
         for key, value in tree.items():
             inner = owner if owner in named and path.rsplit(".", 1)[-1] == owner else str(key)
-            dict.__setitem__(made, key, accounted(value, named, inner, f"{path}.{key}" if path else str(key)))
-        return made
+            dict.__setitem__(mapping, key, accounted(value, named, inner, f"{path}.{key}" if path else str(key)))
+        return mapping
     if isinstance(tree, list):
-        items = [accounted(one, named, owner, f"{path}[{number}]") for number, one in enumerate(tree)]
+        items = [accounted(item, named, owner, f"{path}[{number}]") for number, item in enumerate(tree)]
         if not isinstance(tree, Seq):
             return items
         sequence = Seq(tree.spot)

@@ -17,7 +17,7 @@ from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
 
 BEYOND_FRAME = "IMP072"
-_UNHEARD = logging.NullHandler()
+_DISCARDING = logging.NullHandler()
 # Attributes of cantools objects without meaning for an ICD, and attributes that are used under another name.
 _WITHOUT_MEANING = frozenset(
     {
@@ -26,7 +26,7 @@ _WITHOUT_MEANING = frozenset(
         "is_extended_frame", "bus_name", "message.receivers", "contained_messages",
     }
 )  # fmt: skip
-_NOBODY = ("", "Vector__XXX")  # placeholder of DBC files for an unknown sender
+_UNKNOWN_SENDERS = ("", "Vector__XXX")  # placeholder of DBC files for an unknown sender
 
 
 class _Database:
@@ -62,15 +62,15 @@ class _Database:
             return self.load(_text(data), to)
         except Exception as error:  # the parsers of cantools raise exceptions of many classes
             match = re.search(r"at line (\d+)", str(error))
-            said = line(str(error), 300) or type(error).__name__
-            raise unreadable(file, f"not {self.title}: {said}", "", int(match[1]) if match else 1) from None
+            reason = line(str(error), 300) or type(error).__name__
+            raise unreadable(file, f"not {self.title}: {reason}", "", int(match[1]) if match else 1) from None
 
     def load(self, text: str, to: Definitions) -> Any:
         """Parse the text with cantools."""
         from cantools import database
 
         # Warnings of cantools are suppressed, because the import reports the same faults as findings.
-        logging.getLogger("cantools").addHandler(_UNHEARD)
+        logging.getLogger("cantools").addHandler(_DISCARDING)
         return database.load_string(text, self.name, strict=False)
 
 
@@ -144,10 +144,10 @@ def _text(data: bytes) -> str:
 
 def _buses(database: Any) -> dict[str, list[Any]]:
     """Return the messages by bus if the database has several buses."""
-    found: dict[str, list[Any]] = {}
+    buses: dict[str, list[Any]] = {}
     for message in getattr(database, "messages", ()):
-        found.setdefault(message.bus_name or "", []).append(message)
-    return found if len(found) > 1 else {"": [one for messages in found.values() for one in messages]}
+        buses.setdefault(message.bus_name or "", []).append(message)
+    return buses if len(buses) > 1 else {"": [message for messages in buses.values() for message in messages]}
 
 
 def _network(title: str, messages: list[Any], account: Account, to: Definitions) -> Network:
@@ -179,7 +179,7 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
         raise NotHeld("it contains other messages in an order that differs from frame to frame")
     item: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
     item |= {"kind": "telemetry", "length": message.length}
-    senders = [sender for sender in message.senders if sender not in _NOBODY]
+    senders = [sender for sender in message.senders if sender not in _UNKNOWN_SENDERS]
     if senders:
         item["group"] = senders[0]
     cycle = message.cycle_time
@@ -206,7 +206,14 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
             signal.settle()
             continue
         # SYM declares a signal of several multiplexer values several times. These become one field.
-        same = next((one for one, other in placed if other == place and _is_alternative(one, field)), None)
+        same = next(
+            (
+                candidate
+                for candidate, candidate_place in placed
+                if candidate_place == place and _is_alternative(candidate, field)
+            ),
+            None,
+        )
         if same is None:
             placed.append((field, place))
         else:
@@ -217,7 +224,7 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
     for field, _ in placed:
         if missing & set(field.get("when", ())):
             to.without_field(message.name, field["name"], "the multiplexer that it depends on is left out")
-    return frames.laid_out(item, [one for one in placed if not missing & set(one[0].get("when", ()))], order, to)
+    return frames.laid_out(item, [pair for pair in placed if not missing & set(pair[0].get("when", ()))], order, to)
 
 
 def _sentences(*texts: str | None) -> str:
@@ -226,10 +233,10 @@ def _sentences(*texts: str | None) -> str:
     return " ".join(text if text.endswith((".", "!", "?")) or len(plain) == 1 else f"{text}." for text in plain)
 
 
-def _is_alternative(one: Item, other: Item) -> bool:
+def _is_alternative(field: Item, other: Item) -> bool:
     """Return whether two fields are the same signal, declared for several values of a multiplexer (SYM)."""
-    plain = [{key: value for key, value in each.items() if key not in ("when", "enum")} for each in (one, other)]
-    return plain[0] == plain[1] and "when" in one and one["when"].keys() == other.get("when", {}).keys()
+    plain = [{key: value for key, value in item.items() if key not in ("when", "enum")} for item in (field, other)]
+    return plain[0] == plain[1] and "when" in field and field["when"].keys() == other.get("when", {}).keys()
 
 
 def signal_place(signal: Any) -> frames.Place:
@@ -245,25 +252,25 @@ def signal_place(signal: Any) -> frames.Place:
 def _field(message: Any, signal: Any, signals: list[Any], enums: Enumerations, to: Definitions) -> Item:
     kind = "float" if signal.is_float else "int" if signal.is_signed else "uint"
     start = "" if signal.raw_initial is None else f"Start value: {printed(signal.raw_initial)} (raw)."
-    one: Item = {"name": signal.name, "type": kind, **unit(signal.unit), **summary(_sentences(signal.comment, start))}
+    field: Item = {"name": signal.name, "type": kind, **unit(signal.unit), **summary(_sentences(signal.comment, start))}
     factor, offset = printed(signal.scale), printed(signal.offset)
     first, last = _range(signal)
     # A negative factor swaps the ends.
     ends = sorted(Fraction(factor) * value + Fraction(offset) for value in (first, last))
     low, high = (None if end is None else Fraction(printed(end)) for end in (signal.minimum, signal.maximum))
-    one |= formula(factor, offset) | limits(low, high, ends[0], ends[1])
+    field |= formula(factor, offset) | limits(low, high, ends[0], ends[1])
     where = f"message `{message.name}`, `{signal.name}`"
     if choices := {int(value): str(name) for value, name in (signal.choices or {}).items()}:
-        enums.hold(one, signal.length, choices, signal.name, message.name, where, to)
+        enums.hold(field, signal.length, choices, signal.name, message.name, where, to)
     elif _is_flag(signal):
-        one["type"] = "bool"
-        one.pop("unit", None)
-    if (invalid := signal.raw_invalid) is not None and one["type"] in ("uint", "int"):
+        field["type"] = "bool"
+        field.pop("unit", None)
+    if (invalid := signal.raw_invalid) is not None and field["type"] in ("uint", "int"):
         if first <= invalid <= last and invalid not in choices:
-            one["special"] = [*one.get("special", ()), {"value": int(invalid), "meaning": "invalid"}]
+            field["special"] = [*field.get("special", ()), {"value": int(invalid), "meaning": "invalid"}]
     if when := _condition(signal, signals):
-        one["when"] = when
-    return one
+        field["when"] = when
+    return field
 
 
 def _is_flag(signal: Any) -> bool:
@@ -283,18 +290,18 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
     """Return the multiplexer and its values for which the signal is present."""
     if signal.multiplexer_ids is None:
         return {}
-    told = signal.multiplexer_signal
-    by = next((one for one in signals if one.name == told), None)
-    if by is None:
-        raise NotHeld(f"it depends on `{told}`, which is not a signal of the message")
-    if by.multiplexer_ids is not None:
-        raise NotHeld(f"it depends on `{told}`, which is optional itself")
-    if by.is_float or (by.scale, by.offset) != (1, 0):
-        raise NotHeld(f"it depends on `{told}`, which is scaled or not an integer")
-    first, last = raws(by.length, by.is_signed)
+    name = signal.multiplexer_signal
+    multiplexer = next((candidate for candidate in signals if candidate.name == name), None)
+    if multiplexer is None:
+        raise NotHeld(f"it depends on `{name}`, which is not a signal of the message")
+    if multiplexer.multiplexer_ids is not None:
+        raise NotHeld(f"it depends on `{name}`, which is optional itself")
+    if multiplexer.is_float or (multiplexer.scale, multiplexer.offset) != (1, 0):
+        raise NotHeld(f"it depends on `{name}`, which is scaled or not an integer")
+    first, last = raws(multiplexer.length, multiplexer.is_signed)
     values = sorted(set(signal.multiplexer_ids))
     within = [value for value in values if first <= value <= last]
     if not within:
-        raise NotHeld(f"it depends on values of `{told}` that it cannot have")
-    said: list[Any] = [bool(one) for one in within] if _is_flag(by) else within
-    return {told: said[0] if len(said) == 1 else said}
+        raise NotHeld(f"it depends on values of `{name}` that it cannot have")
+    condition: list[Any] = [bool(value) for value in within] if _is_flag(multiplexer) else within
+    return {name: condition[0] if len(condition) == 1 else condition}

@@ -61,15 +61,15 @@ def account_for_kcd(root: Element, account: Account) -> None:
     while stack:
         element = stack.pop()
         owner = _local(element.tag)
-        known = _KCD.get(owner, frozenset())
+        used = _KCD.get(owner, frozenset())
         place = f"`{element.get('name')}`" if element.get("name") else ""
         for key in element.attrib:
-            if _local(key) not in known:
+            if _local(key) not in used:
                 account.add(owner, _local(key), place, cast(AccountedElement, element).line)
         for child in reversed(element):
             if not isinstance(child.tag, str):
                 continue  # a comment
-            if _local(child.tag) in known:
+            if _local(child.tag) in used:
                 stack.append(child)
             else:
                 account.add(owner, _local(child.tag), place, cast(AccountedElement, child).line)
@@ -99,7 +99,7 @@ def account_for_arxml(root: Element, account: Account) -> None:
         if isinstance(element.tag, str) and _local(element.tag) == "ELEMENTS":
             for child in element:
                 if isinstance(child.tag, str) and (kind := _local(child.tag)) not in _ARXML:
-                    name = next((one.text for one in child if _local(one.tag) == "SHORT-NAME"), None)
+                    name = next((inner.text for inner in child if _local(inner.tag) == "SHORT-NAME"), None)
                     account.add("ELEMENTS", kind, f"`{name}`" if name else "", cast(AccountedElement, child).line)
 
 

@@ -20,23 +20,23 @@ def report(reads: Sequence[Read], colour: bool = False) -> str:
     shown = [
         read for read in reads if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.troubles
     ]
-    blocks = ["\n".join(_lines(one, colour)) for one in shown]
-    if others := [printable(read.definitions.file) for read in reads if read not in shown]:
-        names = ", ".join(others[:_LISTED]) + (f" and {len(others) - _LISTED} more" if len(others) > _LISTED else "")
-        blocks.append(f"without messages of {'its' if len(others) == 1 else 'their'} own: {names}")
+    blocks = ["\n".join(_lines(read, colour)) for read in shown]
+    if unshown := [printable(read.definitions.file) for read in reads if read not in shown]:
+        names = ", ".join(unshown[:_LISTED]) + (f" and {len(unshown) - _LISTED} more" if len(unshown) > _LISTED else "")
+        blocks.append(f"without messages of {'its' if len(unshown) == 1 else 'their'} own: {names}")
     return "\n\n".join(blocks)
 
 
 def _lines(read: Read, colour: bool) -> list[str]:
-    found = read.definitions
-    return [*shared.findings(found.troubles, found.file, colour), *map(printable, _summary(read))]
+    definitions = read.definitions
+    return [*shared.findings(definitions.troubles, definitions.file, colour), *map(printable, _summary(read))]
 
 
 def _summary(read: Read) -> list[str]:
-    names, found = read.identifiers, read.definitions
+    names, definitions = read.identifiers, read.definitions
     lines = [
-        f"{found.files}: {read.kind}, {read.held} of {found.total} messages imported",
-        shared.severities(found.troubles),
+        f"{definitions.files}: {read.kind}, {read.held} of {definitions.total} messages imported",
+        shared.severities(definitions.troubles),
     ]
     if names:
         many = f"{len(names)} names that are not valid identifiers got one"
@@ -59,10 +59,10 @@ def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[
 
 
 def _as_item(read: Read) -> dict[str, Any]:
-    found = read.definitions
+    definitions = read.definitions
     findings = []
-    for finding in found.troubles:
+    for finding in definitions.troubles:
         place = {"file": finding.spot.file} if finding.spot.file else {}
         findings.append({**shared.finding_as_json(finding), **place, "line": finding.spot.line})
-    return {"definition": found.file, "kind": read.kind, "messages": found.total, "held": read.held, "findings": findings,
-            "identifiers": read.identifiers}  # fmt: skip
+    return {"definition": definitions.file, "kind": read.kind, "messages": definitions.total, "held": read.held,
+            "findings": findings, "identifiers": read.identifiers}  # fmt: skip

@@ -114,18 +114,18 @@ class Container(Generic[AnyPart]):
         if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
             raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
 
-    def lose(self, rest: AnyPart, why: NotHeld, before: int) -> None:
-        """Replace all but the first ``before`` parts by ``rest``, the bytes up to the end of the frame.
+    def lose(self, remainder: AnyPart, why: NotHeld, before: int) -> None:
+        """Replace all but the first ``before`` parts by ``remainder``, the bytes up to the end of the frame.
 
-        Raises ``why`` if ``rest`` does not begin at a byte boundary, or if the part in front of it is missing or has
+        Raises ``why`` if ``remainder`` does not begin at a byte boundary, or if the part in front of it is missing or has
         a variable length. Also raises ``why`` if parts were replaced before.
         """
-        if self.lost is not None or not before or rest.at % 8 or not self.parts[before - 1].bits:
+        if self.lost is not None or not before or remainder.at % 8 or not self.parts[before - 1].bits:
             raise why
         del self.parts[before:]
-        rest.item.update(type="bytes", up_to=MOST_BYTES)
-        self.parts.append(rest)
-        self.at, self.lost = rest.at, Lost(rest.path[-1], why)
+        remainder.item.update(type="bytes", up_to=MOST_BYTES)
+        self.parts.append(remainder)
+        self.at, self.lost = remainder.at, Lost(remainder.path[-1], why)
 
     def missing(self, name: str) -> NotHeld:
         """Return the error for a condition on a part that the container does not contain."""

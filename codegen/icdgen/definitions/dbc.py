@@ -49,7 +49,7 @@ _USED_ATTRIBUTES = frozenset(
     {"GenMsgCycleTime", "GenSigStartValue", "GenMsgSendType", "SPN", "VFrameFormat", "SystemNodeLongSymbol"}
     | {_LONG_SIGNAL, _LONG_MESSAGE}
 )
-_HELD_BACK = " of a DBC"  # suffix for attributes that cantools must not interpret
+_HIDDEN_SUFFIX = " of a DBC"  # suffix for attributes that cantools must not interpret
 
 
 class _Statement(NamedTuple):
@@ -84,14 +84,14 @@ def _statements(text: str) -> Iterator[_Statement]:
     """Yield the statements of a DBC. Keywords within quotes are ignored."""
     begun: tuple[str, int] | None = None
     line, counted = 1, 0
-    for found in _STRING_OR_KEYWORD.finditer(text):
-        if found[1] is None:
+    for match in _STRING_OR_KEYWORD.finditer(text):
+        if match[1] is None:
             continue
         if begun is not None:
-            yield _Statement(begun[0], text[begun[1] : found.start()], line)
-        start = found.start(1)
+            yield _Statement(begun[0], text[begun[1] : match.start()], line)
+        start = match.start(1)
         line += text.count("\n", counted, start)
-        counted, begun = start, (found[1], start)
+        counted, begun = start, (match[1], start)
     if begun is not None:
         yield _Statement(begun[0], text[begun[1] :], line)
 
@@ -102,7 +102,7 @@ def with_short_names(text: str) -> str:
     Otherwise cantools uses long names for signals but short names for their multiplexers.
     """
     for name in (_LONG_SIGNAL, _LONG_MESSAGE):
-        text = text.replace(f'"{name}"', f'"{name}{_HELD_BACK}"')
+        text = text.replace(f'"{name}"', f'"{name}{_HIDDEN_SUFFIX}"')
     return text
 
 
@@ -120,19 +120,21 @@ def give_long_names(messages: list[Any]) -> None:
         message.refresh(strict=False)
 
 
-def _long_name(of: Any, attribute: str, taken: set[str]) -> str:
+def _long_name(item: Any, attribute: str, taken: set[str]) -> str:
     """Return the long name, or the short name if there is no long name or it is already taken."""
-    found = of.dbc.attributes.get(attribute + _HELD_BACK) if of.dbc is not None and of.dbc.attributes else None
-    name = one_line(str(found.value), _LONGEST_NAME) if found is not None else ""
+    value = (
+        item.dbc.attributes.get(attribute + _HIDDEN_SUFFIX) if item.dbc is not None and item.dbc.attributes else None
+    )
+    name = one_line(str(value.value), _LONGEST_NAME) if value is not None else ""
     if not name or name in taken:
-        return str(of.name)
+        return str(item.name)
     taken.add(name)
     return name
 
 
 def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
     """Return the result of ``load`` for the repaired text. Reports a last line that may be truncated."""
-    database = _mended(text, load, to)
+    database = _load_repaired(text, load, to)
     last = text.count("\n") + 1
     if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(finding.spot.line != last for finding in to.troubles):
         what = f"the file ends within line {last}: `{one_line(text[text.rfind(chr(10)) + 1 :], 60)}`"
@@ -140,12 +142,12 @@ def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
     return database
 
 
-def _mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
+def _load_repaired(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
     """Return the result of ``load`` for the repaired text.
 
     Raises the exception of ``load`` if the fault cannot be repaired.
     """
-    text = _without_impossible(_widened(text, to), to)
+    text = _without_invalid_ids(_with_extended_ids(text, to), to)
     try:
         for _ in range(MOST):
             try:
@@ -169,49 +171,49 @@ def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) 
     shared, blocks = "", []
     of_message: defaultdict[str, str] = defaultdict(str)
     block: list[_Statement] = []
-    for one in _statements(text):
-        if one.keyword == "BO_":
-            block = [one]
+    for statement in _statements(text):
+        if statement.keyword == "BO_":
+            block = [statement]
             blocks.append(block)
-        elif one.keyword == "SG_" and blocks:
-            block.append(one)
-        elif (match := _OF_MESSAGE.match(one.text)) is not None:
-            of_message[match[1]] += one.text
-        elif one.keyword != "NS_":
-            shared += one.text
+        elif statement.keyword == "SG_" and blocks:
+            block.append(statement)
+        elif (match := _OF_MESSAGE.match(statement.text)) is not None:
+            of_message[match[1]] += statement.text
+        elif statement.keyword != "NS_":
+            shared += statement.text
     messages: list[Any] = []
     for block in blocks:
         head = _MESSAGE.match(block[0].text)
         if head is None or int(head[1]) == _NO_MESSAGE:
             continue
         try:
-            messages += load(shared + "".join(one.text for one in block) + of_message[head[1]]).messages
+            messages += load(shared + "".join(statement.text for statement in block) + of_message[head[1]]).messages
         except Exception as error:
             to.total += 1
             to.left_out(head[2], one_line(str(error), 200) or type(error).__name__, block[0].line)
     return SimpleNamespace(messages=messages)
 
 
-def _widened(text: str, to: Definitions) -> str:
+def _with_extended_ids(text: str, to: Definitions) -> str:
     """Set the flag of extended frames (bit 31) in ids that exceed the 11 bits of a standard frame."""
-    told = set()
+    reported = set()
 
-    def widen(found: re.Match[str]) -> str:
-        id = int(found[2])
+    def widen(match: re.Match[str]) -> str:
+        id = int(match[2])
         if not 0x7FF < id < 1 << 29:
-            return found[0]
-        if id not in told and found[1].strip() == "BO_":
-            told.add(id)
-            line = text.count("\n", 0, found.start(2)) + 1
+            return match[0]
+        if id not in reported and match[1].strip() == "BO_":
+            reported.add(id)
+            line = text.count("\n", 0, match.start(2)) + 1
             message = f"the id {id:#x} has more than the 11 bits of a standard frame"
             help = "it is imported as an extended frame, whose ids have bit 31 set in a DBC"
             to.warn(REPAIRED, message, help, line=line)
-        return f"{found[1]}{id | _EXTENDED}"
+        return f"{match[1]}{id | _EXTENDED}"
 
     return _WITH_ID.sub(widen, text)
 
 
-def _without_impossible(text: str, to: Definitions) -> str:
+def _without_invalid_ids(text: str, to: Definitions) -> str:
     """Return the text without messages whose id exceeds 29 bits."""
     lines = text.split("\n")
     for number, line in enumerate(lines):
@@ -220,11 +222,11 @@ def _without_impossible(text: str, to: Definitions) -> str:
             continue
         to.total += 1
         to.left_out(match[2], f"its id is {int(match[1]):#x}, which no frame has", number + 1)
-        lines[number : _end(lines, number)] = [""] * (_end(lines, number) - number)
+        lines[number : _end_of_statement(lines, number)] = [""] * (_end_of_statement(lines, number) - number)
     return "\n".join(lines)
 
 
-def _end(lines: list[str], number: int) -> int:
+def _end_of_statement(lines: list[str], number: int) -> int:
     """Return the index of the line after a message with its signals, or after another statement."""
     end = number + 1
     while lines[number].lstrip().startswith("BO_ ") and end < len(lines) and lines[end].lstrip().startswith("SG_"):
@@ -232,12 +234,14 @@ def _end(lines: list[str], number: int) -> int:
     return end
 
 
-def _without_line(text: str, said: str, to: Definitions) -> str | None:
-    """Return the text without the statement that the syntax error ``said`` refers to, or None if it cannot be located.
+def _without_line(text: str, error: str, to: Definitions) -> str | None:
+    """Return the text without the statement of a syntax error, or None if it cannot be located.
+
+    ``error`` is the message of cantools.
 
     A message is removed together with its signals.
     """
-    match = _SYNTAX.search(said)
+    match = _SYNTAX.search(error)
     if match is None:
         return None
     lines = text.split("\n")
@@ -249,7 +253,7 @@ def _without_line(text: str, said: str, to: Definitions) -> str | None:
         if before is None:
             return None
         number = before  # the previous statement lacks its end
-    end = _end(lines, number)
+    end = _end_of_statement(lines, number)
     shown = lines[number].strip()
     shown = shown if len(shown) <= 80 else shown[:77] + "..."
     more = f", nor are the {end - number - 1} signals below it" if end - number > 1 else ""
@@ -260,9 +264,9 @@ def _without_line(text: str, said: str, to: Definitions) -> str | None:
     return "\n".join(lines)
 
 
-def _without_unused(text: str, said: str, to: Definitions) -> str | None:
+def _without_unused(text: str, error: str, to: Definitions) -> str | None:
     """Return the text without value statements about missing signals, or None if there is no such statement."""
-    for keyword, id, name in _UNUSED.findall(said):
+    for keyword, id, name in _UNUSED.findall(error):
         statement = rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
         match = re.search(statement, text, re.MULTILINE)
         if match is None:
@@ -271,4 +275,4 @@ def _without_unused(text: str, said: str, to: Definitions) -> str | None:
         message = f"`{keyword}` names `{name}` of message {id}, which has no such signal"
         to.warn(REPAIRED, message, "it is left out", line=line)
         text = text[: match.start()] + "\n" * match[0].count("\n") + text[match.end() :]
-    return text if _UNUSED.search(said) else None
+    return text if _UNUSED.search(error) else None

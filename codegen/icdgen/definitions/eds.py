@@ -50,54 +50,58 @@ class Eds:
 
     def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
         """Return the definitions of each file. All files and their folders share types and design parameters."""
-        made = [Definitions(one.file) for one in sources]
+        results = [Definitions(source.file) for source in sources]
         roots: dict[str, Element] = {}
-        for source, to in zip(sources, made, strict=True):
+        for source, to in zip(sources, results, strict=True):
             try:
                 roots[source.file] = safe_xml.parse(source.file, source.data, account=Account())
             except Findings as error:
                 to.refuse(error)
-        for to in made:
+        for to in results:
             if (root := roots.get(to.file)) is None:
                 continue
             # Files of the import take precedence over other files of the folder.
-            others = [(path, other) for path, other in roots.items() if path != to.file]
-            others += [(path, other) for path, other in eds_sheets.beside(to.file, 0) if path not in roots]
-            sheets = Sheets(root, others, to)
+            neighbours = [(path, neighbour) for path, neighbour in roots.items() if path != to.file]
+            neighbours += [(path, neighbour) for path, neighbour in eds_sheets.beside(to.file, 0) if path not in roots]
+            sheets = Sheets(root, neighbours, to)
             if sheets.own:
                 _define(sheets, to)
-        for to in made:
+        for to in results:
             if to.file in roots:
                 account = Account(_WITHOUT_EFFECT)
                 account.elements(roots[to.file])
                 account.report(to)
-        return made
+        return results
 
 
 def _define(sheets: Sheets, to: Definitions) -> None:
     """Add the ICD with the messages of all packages of a file."""
     types, structs = Types(to, sheets), Structs()
-    sent, alone = Interfaces(sheets).sent()
-    found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
+    sent, independent = Interfaces(sheets).sent()
+    containers = [
+        container
+        for container in (_read_message(sending, sheets, types, structs, to) for sending in sent)
+        if container is not None
+    ]
     types.report_raw_only()
     network = Network(node_name(to.file), _title(sheets) or node_name(to.file), {**ORDERS[BIG]})
-    packets.fill(network, found, to)
+    packets.fill(network, containers, to)
     network.name_messages_apart(to)
-    _say_process([one for one in found if one.is_by_interface], to)
-    _say_unsent(alone, sheets, to)
-    network.structs = _used(list(structs.items.values()), network.messages)
+    _report_process([container for container in containers if container.is_by_interface], to)
+    _report_unsent(independent, sheets, to)
+    network.structs = _used_structs(list(structs.items.values()), network.messages)
     network.declare(types.enums.declared())
     to.networks.append(network)
 
 
-class _Found:
+class _Message:
     """Container with its layout, kind and header, ready to become a message."""
 
     def __init__(self, sending: Sending, layout: Layout, more: Item, sheets: Sheets) -> None:
         self.container, self.layout, self.more = sending.container, layout, more
         self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
         self.line = sheets.line(sending.container)
-        self.told = layout.told
+        self.told = layout.constants
         self.front = layout.front()
         # The type flag of the header takes precedence over the direction of the interface.
         head = layout.header()
@@ -122,7 +126,7 @@ class _Found:
         return {**item, "fields": fields} if fields else item
 
 
-def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Found | None:
+def _read_message(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Message | None:
     """Read the layout of a container. Returns None and adds a finding if the container cannot be imported."""
     to.total += 1
     container = sending.container
@@ -130,7 +134,7 @@ def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: 
     layout = Layout(sheets, types, structs)
     try:
         layout.read(container)
-        return _Found(sending, layout, {**_group(sheets, container), **described(container)}, sheets)
+        return _Message(sending, layout, {**_group(sheets, container), **described(container)}, sheets)
     except NotHeld as why:
         to.left_out(line(container.get("name"), 200), why, sheets.line(container))
         settle(container)
@@ -140,8 +144,8 @@ def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: 
 def _title(sheets: Sheets) -> str:
     """Return the short description or name of the device, or else of the package."""
     device = sheets.root.find("Device")
-    of = device if device is not None else sheets.root.find("Package")
-    return "" if of is None else line(of.get("shortDescription") or of.get("name"), 100)
+    element = device if device is not None else sheets.root.find("Package")
+    return "" if element is None else line(element.get("shortDescription") or element.get("name"), 100)
 
 
 def _group(sheets: Sheets, container: Element) -> Item:
@@ -149,34 +153,36 @@ def _group(sheets: Sheets, container: Element) -> Item:
     return {"group": line(sheets.package(container), 200)} if len(sheets.own) > 1 else {}
 
 
-def _used(structs: list[Item], messages: list[Item]) -> list[Item]:
+def _used_structs(structs: list[Item], messages: list[Item]) -> list[Item]:
     """Return the structs that messages use, directly or through other structs."""
     by_name = {struct["name"]: struct for struct in structs}
-    left, used = list(messages), set()
-    while left:
-        for one in left.pop().get("fields", ()):
-            name = one.get("struct")
+    waiting, used = list(messages), set()
+    while waiting:
+        for field in waiting.pop().get("fields", ()):
+            name = field.get("struct")
             if name is not None and name not in used:
                 used.add(name)
-                left.append(by_name[name])
+                waiting.append(by_name[name])
     return [struct for struct in structs if struct["name"] in used]
 
 
-def _say_process(found: list[_Found], to: Definitions) -> None:
+def _report_process(containers: list[_Message], to: Definitions) -> None:
     """Report (IMP083) that application process ids are derived from interface parameters by convention."""
-    if not found:
+    if not containers:
         return
-    parameters = "`, `".join(sorted({one.parameter for one in found}))
-    text = f"no application process is stated for {len(found)} messages, only `{parameters}` of their interfaces"
+    parameters = "`, `".join(sorted({container.parameter for container in containers}))
+    text = f"no application process is stated for {len(containers)} messages, only `{parameters}` of their interfaces"
     help = "their ids are computed as the library of cFS does; correct them if your mission has its own code for this"
-    to.warn(PROCESS, text, help, line=found[0].line)
+    to.warn(PROCESS, text, help, line=containers[0].line)
 
 
-def _say_unsent(alone: list[Element], sheets: Sheets, to: Definitions) -> None:
-    if alone:
-        shown = ", ".join(f"`{line(one.get('name'), 60)}`" for one in alone[:3]) + (" ..." if len(alone) > 3 else "")
-        what = "1 container" if len(alone) == 1 else f"{len(alone)} containers"
+def _report_unsent(containers: list[Element], sheets: Sheets, to: Definitions) -> None:
+    if containers:
+        shown = ", ".join(f"`{line(container.get('name'), 60)}`" for container in containers[:3]) + (
+            " ..." if len(containers) > 3 else ""
+        )
+        what = "1 container" if len(containers) == 1 else f"{len(containers)} containers"
         text = f"no interface carries {what}: {shown}"
-        to.warn(UNSENT, text, "they are left out", "note", sheets.line(alone[0]))
-        for one in alone:
-            settle(one)
+        to.warn(UNSENT, text, "they are left out", "note", sheets.line(containers[0]))
+        for container in containers:
+            settle(container)

@@ -42,11 +42,11 @@ class Sending:
             return None
         if self.parameter.lower() != "topicid":
             return self.number & _APID_MASK
-        local, everywhere = (sheets.defined(f"CFE_MISSION/{one}_BASE_TOPICID") for one in _TOPICS[self.kind])
-        if local is not None and local <= self.number < local + (1 << _TOPIC_BITS):
-            return self.number - local
-        if everywhere is not None and local is not None and everywhere <= self.number:
-            return (self.number - everywhere) ^ _GLOBAL
+        local_base, global_base = (sheets.defined(f"CFE_MISSION/{name}_BASE_TOPICID") for name in _TOPICS[self.kind])
+        if local_base is not None and local_base <= self.number < local_base + (1 << _TOPIC_BITS):
+            return self.number - local_base
+        if global_base is not None and local_base is not None and global_base <= self.number:
+            return (self.number - global_base) ^ _GLOBAL
         return self.number if self.number <= _APID_MASK else None
 
 
@@ -55,20 +55,24 @@ class Interfaces:
 
     def __init__(self, sheets: Sheets) -> None:
         self.sheets = sheets
-        self.own = [one for package in sheets.own for one in sheets.types(package) if one.tag == CONTAINER]
+        self.own = [
+            container for package in sheets.own for container in sheets.types(package) if container.tag == CONTAINER
+        ]
         self._is_own = set(self.own)
         self._steps = 0
         self._derived: dict[Element, list[Element]] = {}
         self._uses: dict[Element, set[Element]] = {}  # types of the entries, elements and base of a type
         for package in sheets.all:
-            for one in sheets.types(package):
-                base = self._type(one, "baseType")
+            for type_ in sheets.types(package):
+                base = self._type(type_, "baseType")
                 if base is not None:
-                    self._derived.setdefault(base, []).append(one)
-                entries = (entry for tag in ("EntryList", "TrailerEntryList") for entry in one.iterfind(f"{tag}/*"))
+                    self._derived.setdefault(base, []).append(type_)
+                entries = (entry for tag in ("EntryList", "TrailerEntryList") for entry in type_.iterfind(f"{tag}/*"))
                 inner = [self._type(entry, "type") for entry in entries]
-                used = {found for found in (base, self._type(one, "dataTypeRef"), *inner) if found is not None}
-                self._uses[one] = used
+                used = {
+                    used_type for used_type in (base, self._type(type_, "dataTypeRef"), *inner) if used_type is not None
+                }
+                self._uses[type_] = used
 
     def _type(self, of: Element, key: str) -> Element | None:
         """Return the type that an attribute names, or None if it is not defined."""
@@ -84,59 +88,63 @@ class Interfaces:
         If no interface carries a container, all independent containers are returned as sent. Raises `Findings` above
         `MOST_STEPS` containers.
         """
-        found: dict[Element, dict[int | None, Sending]] = {}
+        by_container: dict[Element, dict[int | None, Sending]] = {}
         # A generic type mapping is specific to an interface, so it takes precedence over the argument type.
         for is_mapped in (True, False):
-            for one in self._carried(is_mapped):
-                for container in self._leaves(one.container):
-                    ways = found.setdefault(container, {})
-                    if is_mapped or not ways:
-                        ways.setdefault(one.number, replace(one, container=container))
-        part = {one for used in self._uses.values() for one in used} - self._circles()
-        alone = [one for one in self.own if one not in part and not self._is_abstract(one) and one not in found]
-        if not found:
-            return [Sending(one) for one in alone], []
-        sent = [one for container in self.own for one in found.get(container, {}).values()]
-        for one in sent:
-            one.interface = one.interface if len(found[one.container]) > 1 else ""
-        return sent, alone
+            for sending in self._carried_containers(is_mapped):
+                for container in self._leaves(sending.container):
+                    sendings = by_container.setdefault(container, {})
+                    if is_mapped or not sendings:
+                        sendings.setdefault(sending.number, replace(sending, container=container))
+        nested = {type_ for used in self._uses.values() for type_ in used} - self._cyclic_types()
+        independent = [
+            container
+            for container in self.own
+            if container not in nested and not self._is_abstract(container) and container not in by_container
+        ]
+        if not by_container:
+            return [Sending(container) for container in independent], []
+        sent = [sending for container in self.own for sending in by_container.get(container, {}).values()]
+        for sending in sent:
+            sending.interface = sending.interface if len(by_container[sending.container]) > 1 else ""
+        return sent, independent
 
     def _leaves(self, container: Element) -> list[Element]:
         """Return the most derived containers of the file that are based on a container, or the container itself.
 
         Raises `Findings` above `MOST_STEPS` containers in total.
         """
-        left, seen = [container], {container}
+        waiting, seen = [container], {container}
         leaves: list[Element] = []
-        while left:
-            one = left.pop()
+        while waiting:
+            current = waiting.pop()
             self._steps += 1
             if self._steps > MOST_STEPS:
                 text = f"its interfaces carry more than {MOST_STEPS:,} containers"
                 raise unreadable(self.sheets.to.file, text, "import it in parts")
-            more = [inner for inner in self._derived.get(one, ()) if inner not in seen]
-            seen.update(more)
-            left += reversed(more)
-            if not more and one in self._is_own and not self._is_abstract(one):
-                leaves.append(one)
+            derived = [candidate for candidate in self._derived.get(current, ()) if candidate not in seen]
+            seen.update(derived)
+            waiting += reversed(derived)
+            if not derived and current in self._is_own and not self._is_abstract(current):
+                leaves.append(current)
         return leaves
 
-    def _circles(self) -> set[Element]:
+    def _cyclic_types(self) -> set[Element]:
         """Return the types in reference cycles, and the types that use these directly or indirectly."""
         users: dict[Element, list[Element]] = {}
-        for one, used in self._uses.items():
-            for other in used:
-                users.setdefault(other, []).append(one)
+        for type_, used in self._uses.items():
+            for used_type in used:
+                users.setdefault(used_type, []).append(type_)
         # Topological sort. Types that remain depend on a cycle.
-        waiting = {one: len(used) for one, used in self._uses.items()}
-        left = [one for one, count in waiting.items() if not count]
-        while left:
-            one = left.pop()
-            del waiting[one]
-            for user in users.get(one, ()):
+        waiting = {type_: len(used) for type_, used in self._uses.items()}
+        ready = [type_ for type_, count in waiting.items() if not count]
+        while ready:
+            type_ = ready.pop()
+            del waiting[type_]
+            for user in users.get(type_, ()):
                 waiting[user] -= 1
                 if not waiting[user]:
-                    left.append(user)
+                    ready.append(user)
         return set(waiting)
 
     def _is_abstract(self, container: Element) -> bool:
@@ -145,23 +153,23 @@ class Interfaces:
         except NotHeld:
             return False
 
-    def _carried(self, is_mapped: bool) -> Iterator[Sending]:
+    def _carried_containers(self, is_mapped: bool) -> Iterator[Sending]:
         """Yield the containers of command arguments: mapped to a generic type if ``is_mapped``, else named directly."""
         for package in self.sheets.own:
             for component in package.iterfind("ComponentSet/Component"):
-                numbers = self._numbers(component)
+                numbers = self._constant_parameters(component)
                 for tag, is_required in _SETS.items():
                     for interface in component.iterfind(f"{tag}/Interface"):
-                        yield from self._of(interface, is_required, is_mapped, numbers)
+                        yield from self._containers_of(interface, is_required, is_mapped, numbers)
 
-    def _of(
+    def _containers_of(
         self, interface: Element, is_required: bool, is_mapped: bool, numbers: dict[str, tuple[str, int]]
     ) -> Iterator[Sending]:
-        maps = self._maps(interface)
+        maps = self._type_mappings(interface)
         parameter, number = numbers.get(interface.get("name", ""), ("", None))
         ways: dict[Element, set[str]] = {}
-        for declared in self._declared(interface):
-            maps = {**self._maps(declared), **maps}
+        for declared in self._declarations(interface):
+            maps = {**self._type_mappings(declared), **maps}
             for argument in declared.iterfind("CommandSet/Command/Argument"):
                 type_ = argument.get("type", "")
                 container = maps.get(type_) if is_mapped else self._type(argument, "type")
@@ -180,13 +188,13 @@ class Interfaces:
             way = next(iter(kinds)) if len(kinds) == 1 else None
             yield Sending(container, way, number, parameter, interface.get("name", ""))
 
-    def _declared(self, interface: Element) -> list[Element]:
+    def _declarations(self, interface: Element) -> list[Element]:
         """Return the declarations of an interface and of its base interfaces."""
-        left = [interface]
+        waiting = [interface]
         result: list[Element] = []
-        while left and len(result) < _DEEPEST:
-            one = left.pop()
-            bases = [one] if one is interface else one.findall("BaseInterfaceSet/Interface")
+        while waiting and len(result) < _DEEPEST:
+            current = waiting.pop()
+            bases = [current] if current is interface else current.findall("BaseInterfaceSet/Interface")
             for base in bases:
                 try:
                     declared = self.sheets.find("interface", self.sheets.attribute(base, "type"), base)
@@ -194,10 +202,10 @@ class Interfaces:
                     continue
                 if declared not in result:
                     result.append(declared)
-                    left.append(declared)
+                    waiting.append(declared)
         return result
 
-    def _maps(self, interface: Element) -> dict[str, Element]:
+    def _type_mappings(self, interface: Element) -> dict[str, Element]:
         """Return the concrete types of an interface by the generic type that they replace."""
         result: dict[str, Element] = {}
         for element in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
@@ -205,7 +213,7 @@ class Interfaces:
                 result.setdefault(element.get("name", ""), type_)
         return result
 
-    def _numbers(self, component: Element) -> dict[str, tuple[str, int]]:
+    def _constant_parameters(self, component: Element) -> dict[str, tuple[str, int]]:
         """Return the constant parameter of each interface, with name and value.
 
         Names that end with `id` take precedence.

@@ -41,7 +41,8 @@ class Layout(Container[Part]):
     types: Types
     structs: Structs
     constraints: list[Told] = field(default_factory=list)
-    told: dict[Hashable, int] = field(default_factory=dict)  # raw value required by a constraint, by path and entry
+    # Raw value that a constraint requires, by path and entry.
+    constants: dict[Hashable, int] = field(default_factory=dict)
     within: tuple[Element, ...] = ()  # containers in which this one is repeated
 
     def read(self, container: Element) -> None:
@@ -56,7 +57,7 @@ class Layout(Container[Part]):
                 raise self.missing(line(".".join(constraint.path), 100))
             raw = eds_parts.constrain(part, constraint, self.sheets, self.types)
             if raw is not None and part is not None:
-                self.told[part.path, part.entry] = raw
+                self.constants[part.path, part.entry] = raw
         # The length entry of a fixed-length container is a constant.
         if self.parts and self.parts[-1].bits:
             for part in self.parts:
@@ -66,16 +67,16 @@ class Layout(Container[Part]):
     def _add(self, container: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
         """Add the entries of a container and its base containers, base first, then the trailers in reverse order."""
         chain = self.chain(container)
-        if any(one in within for one in chain) or len(within) > _DEEPEST:
-            circle = " -> ".join(one.get("name", "") for one in (*within[-5:], container))
+        if any(ancestor in within for ancestor in chain) or len(within) > _DEEPEST:
+            circle = " -> ".join(ancestor.get("name", "") for ancestor in (*within[-5:], container))
             raise NotHeld(f"containers contain each other in a circle, or too deep: {line(circle, 200)}")
         # Entries of a base container may not contain a container that derives from it.
-        users = {one: (*within, *chain[: number + 1]) for number, one in enumerate(chain)}
-        for one in reversed(chain):
-            self._entries(one, "EntryList", path, users[one])
-        for one in chain:
-            self._entries(one, "TrailerEntryList", path, users[one])
-            for constraint in one.iterfind("ConstraintSet/*"):
+        users = {ancestor: (*within, *chain[: number + 1]) for number, ancestor in enumerate(chain)}
+        for ancestor in reversed(chain):
+            self._entries(ancestor, "EntryList", path, users[ancestor])
+        for ancestor in chain:
+            self._entries(ancestor, "TrailerEntryList", path, users[ancestor])
+            for constraint in ancestor.iterfind("ConstraintSet/*"):
                 entry = self.sheets.attribute(constraint, "entry")
                 self.constraints.append(Told((*path, *entry.replace("/", ".").split(".")), constraint))
 
@@ -87,13 +88,13 @@ class Layout(Container[Part]):
         chain = [container]
         while base := self.sheets.attribute(chain[-1], "baseType"):
             self.types.step()
-            found = self.sheets.find("type", base, chain[-1])
-            if found.tag != CONTAINER:
+            ancestor = self.sheets.find("type", base, chain[-1])
+            if ancestor.tag != CONTAINER:
                 raise NotHeld(f"it is based on `{line(base, 60)}`, which is not a container")
-            if found in chain or len(chain) > _DEEPEST:
-                circle = " -> ".join(one.get("name", "") for one in (*chain[-5:], found))
+            if ancestor in chain or len(chain) > _DEEPEST:
+                circle = " -> ".join(type_.get("name", "") for type_ in (*chain[-5:], ancestor))
                 raise NotHeld(f"containers are based on each other in a circle, or too deep: {line(circle, 200)}")
-            chain.append(found)
+            chain.append(ancestor)
         return chain
 
     def _entries(self, container: Element, tag: str, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
@@ -102,14 +103,14 @@ class Layout(Container[Part]):
                 break
             before, at = len(self.parts), self.at
             try:
-                self._placed(entry, path, within)
+                self._add_entry(entry, path, within)
             except TooMuch:  # the limit applies to the file, so the rest cannot become bytes
                 raise
             except NotHeld as why:
                 name = line(entry.get("name"), 100) or f"unnamed {at}"
                 self.lose(Part((*path, name), {}, at, 0, entry=entry), why, before)
 
-    def _placed(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
+    def _add_entry(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
         """Add an entry at the current position. Raises `NotHeld` if the entry is not supported."""
         self.types.step()
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
@@ -120,18 +121,20 @@ class Layout(Container[Part]):
         if entry.tag == "PaddingEntry":
             self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
         elif entry.tag in (*_FIELDS, "ListEntry"):
-            self._entry(entry, name, path, within)
+            self._add_field_or_container(entry, name, path, within)
         else:
             raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
         self.check_size()
 
-    def _entry(self, entry: Element, name: str, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
-        type_, count = self._element(entry, name)
+    def _add_field_or_container(
+        self, entry: Element, name: str, path: tuple[str, ...], within: tuple[Element, ...]
+    ) -> None:
+        type_, count = self._element_type(entry, name)
         path = (*path, name)
         if type_.tag == CONTAINER:
-            self._is_one(type_, name)
+            self._check_not_abstract(type_, name)
         if entry.tag == "ListEntry":
-            self._list(entry, type_, count, path, within)
+            self._add_list(entry, type_, count, path, within)
         elif type_.tag == CONTAINER and count == 1:
             if entry.tag != "Entry":
                 raise NotHeld(f"`{name}` is a container, and has a value")
@@ -146,7 +149,7 @@ class Layout(Container[Part]):
             part = Part(path, piece.item, self.at, piece.bits, piece.order, entry=entry, piece=piece)
             if count != 1:
                 self._repeat(part, count, name)
-            again(part.item, {**part.item, **self._said(entry, name)})
+            again(part.item, {**part.item, **self._summary(entry, name)})
             self._put(part)
 
     def _put(self, part: Part) -> None:
@@ -154,28 +157,28 @@ class Layout(Container[Part]):
             raise NotHeld(f"`{part.path[-1]}` begins within a byte")
         self.add(part)
 
-    def _said(self, entry: Element, name: str) -> dict[str, str]:
+    def _summary(self, entry: Element, name: str) -> dict[str, str]:
         """Return the summary of an entry.
 
         For an error control it includes the kind of checksum, which no other key states.
         """
-        found = described(entry)
+        description = described(entry)
         if entry.tag != "ErrorControlEntry":
-            return found
+            return description
         kind = line(self.sheets.attribute(entry, "errorControlType"), 60) or "an error control"
         if self.types.is_new(("error control", entry)):
             message = f"`{name}` is {kind} of what is in the frame"
             help = "it is a field like others, neither checked nor set"
             self.types.to.warn(UNCHECKED, message, help, line=self.sheets.line(entry))
-        text = found.get("summary", "")
+        text = description.get("summary", "")
         return {"summary": f"{text}{'' if text.endswith(('.', '!', '?')) else '.'} {kind}." if text else f"{kind}."}
 
-    def _is_one(self, container: Element, name: str) -> None:
+    def _check_not_abstract(self, container: Element, name: str) -> None:
         """Raise `NotHeld` if a container is abstract, because the entry could then contain any derived container."""
         if self.sheets.says(container, "abstract"):
             raise NotHeld(f"`{name}` is any container that is based on `{container.get('name', '')}`")
 
-    def _element(self, entry: Element, name: str) -> tuple[Element, int]:
+    def _element_type(self, entry: Element, name: str) -> tuple[Element, int]:
         """Return the element type of an entry and the number of elements.
 
         Raises `NotHeld` if an array is too large or too deep.
@@ -243,29 +246,36 @@ class Layout(Container[Part]):
 
         Raises `NotHeld` if their size varies or is not whole bytes.
         """
-        known = self.structs.items.get(container)
-        if known is None:
+        struct = self.structs.items.get(container)
+        if struct is None:
             inner = Layout(self.sheets, self.types, self.structs, within=within)
             inner.read(container)
             if inner.at % 8 or not inner.at or any(not part.bits for part in inner.parts):
                 raise NotHeld(f"`{name}` is an array of containers of different or partial bytes")
-            called = container.get("name", "")
-            if called in self.structs.names:
-                called = f"{self.sheets.package(container)} {called}"
-            self.structs.names.add(called)
+            struct_name = container.get("name", "")
+            if struct_name in self.structs.names:
+                struct_name = f"{self.sheets.package(container)} {struct_name}"
+            self.structs.names.add(struct_name)
             fields = inner.fields(0)
-            known = {"name": line(called, 100), "length": inner.at // 8, **described(container), "fields": fields}
-            self.structs.items[container] = known
-        return {"struct": known["name"]}, 8 * int(known["length"])
+            struct = {"name": line(struct_name, 100), "length": inner.at // 8, **described(container), "fields": fields}
+            self.structs.items[container] = struct
+        return {"struct": struct["name"]}, 8 * int(struct["length"])
 
-    def _list(
+    def _add_list(
         self, entry: Element, type_: Element, count: int, path: tuple[str, ...], within: tuple[Element, ...]
     ) -> None:
         """Add a list whose number of elements is in another field. Raises `NotHeld` if the list is not supported."""
         name = path[-1]
         counter = self.sheets.attribute(entry, "listLengthField")
-        by = next((part for part in reversed(self.parts) if part.path == (*path[:-1], *counter.split("."))), None)
-        if by is None or by.piece is None or by.piece.item["type"] != "uint" or by.piece.bits != by.bits:
+        length_part = next(
+            (part for part in reversed(self.parts) if part.path == (*path[:-1], *counter.split("."))), None
+        )
+        if (
+            length_part is None
+            or length_part.piece is None
+            or length_part.piece.item["type"] != "uint"
+            or length_part.piece.bits != length_part.bits
+        ):
             raise NotHeld(
                 f"`{name}` is there as often as `{line(counter, 60)}` says, which is not a number in front of it"
             )
@@ -280,22 +290,24 @@ class Layout(Container[Part]):
             again(item, {"bits": bits, **item, **order})
         if not bits or bits % 8:
             raise NotHeld(f"`{name}` is a list of elements without a fixed number of bytes")
-        _, most = by.piece.range.within(eds_ranges.Range(Fraction(0), Fraction((1 << by.bits) - 1))).of_integers()
+        _, most = length_part.piece.range.within(
+            eds_ranges.Range(Fraction(0), Fraction((1 << length_part.bits) - 1))
+        ).of_integers()
         item["up_to"] = max(1, min(int(most or 1), MOST_ELEMENTS))
         item |= {key: text for key, text in described(entry).items() if key not in item or "struct" in item}
-        self.add(Part(path, item, self.at, 0, element=bits, counter=Counter(by), entry=entry))
+        self.add(Part(path, item, self.at, 0, element=bits, counter=Counter(length_part), entry=entry))
 
     def header(self) -> packets.Header | None:
         """Return the primary header of a space packet (CCSDS 133.0-B) if the container begins with one, else None."""
-        ahead = self.parts[: packets.MOST_PARTS]
-        plain = [one for one in ahead if one.piece is not None and one.piece.bits == one.bits]
-        found = packets.header((one.at, one.bits, one.item.get("const")) for one in plain)
+        first_parts = self.parts[: packets.MOST_PARTS]
+        plain = [part for part in first_parts if part.piece is not None and part.piece.bits == part.bits]
+        header = packets.header((part.at, part.bits, part.item.get("const")) for part in plain)
         # A length with another calibration is not the packet data length of CCSDS.
-        length = next((one for one in ahead if one.end == packets.HEADER_BITS), None)
-        if found is None or length is None:
+        length = next((part for part in first_parts if part.end == packets.HEADER_BITS), None)
+        if header is None or length is None:
             return None
-        is_line = length.entry.find("PolynomialCalibrator") is not None
-        return None if is_line and eds_parts.line_of(length.entry, self.sheets) != _PACKET else found
+        is_calibrated = length.entry.find("PolynomialCalibrator") is not None
+        return None if is_calibrated and eds_parts.line_of(length.entry, self.sheets) != _PACKET else header
 
     def front(self) -> tuple[Hashable, int] | None:
         """Return the key and size in bits of the first part if a header can use it as id, else None."""
@@ -310,8 +322,8 @@ class Layout(Container[Part]):
         Raises `NotHeld` if a variable-length field is not supported.
         """
         parts = [part for part in self.parts if part.at >= start]
-        called = shortest([_telling(part.path) for part in parts])
-        names = {id(part): name for part, name in zip(parts, called, strict=True)}
+        short_names = shortest([_distinct_path(part.path) for part in parts])
+        names = {id(part): name for part, name in zip(parts, short_names, strict=True)}
         fields: list[Item] = []
         for part in parts:
             if not part.bits and part.counter is None:
@@ -332,6 +344,6 @@ class Layout(Container[Part]):
         return counter
 
 
-def _telling(path: tuple[str, ...]) -> tuple[str, ...]:
+def _distinct_path(path: tuple[str, ...]) -> tuple[str, ...]:
     """Return a path in which a trailing `value` is joined with the name of its parent."""
     return (*path[:-2], f"{path[-2]} {path[-1]}") if len(path) > 1 and path[-1].casefold() == "value" else path

@@ -46,8 +46,8 @@ def only(piece: Piece, raw: int, name: str) -> None:
     item = piece.item
     containers.check_only_value(item, raw, name)
     kind = {"type": "uint"} if item["type"] == "bool" else {}  # the ICD has no constants of type `bool`
-    kept = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
-    again(item, {**kept, **kind, "const": raw})
+    remaining = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
+    again(item, {**remaining, **kind, "const": raw})
 
 
 def fix(piece: Piece, text: str, name: str) -> None:
@@ -65,39 +65,39 @@ def fix(piece: Piece, text: str, name: str) -> None:
         only(piece, piece.raw(text, f"`{name}`"), name)
 
 
-def constrain(part: Part | None, told: Told, sheets: Sheets, types: Types) -> int | None:
+def constrain(part: Part | None, condition: Told, sheets: Sheets, types: Types) -> int | None:
     """Apply a constraint to a part. Return the raw value that it requires, or None if it only narrows the range.
 
     Raises `NotHeld` for other constraints, and if the part is missing or an array.
     """
-    one, name = told.constraint, line(".".join(told.path), 100)
+    element, name = condition.constraint, line(".".join(condition.path), 100)
     if part is None or part.piece is None or part.bits != part.piece.bits:
         raise NotHeld(f"it depends on `{name}`, but it has no such field")
     piece, where = part.piece, f"it depends on `{name}`, which"
-    if one.tag == "ValueConstraint":
-        raw = piece.raw(sheets.attribute(one, "value"), where)
-    elif one.tag in ("RangeConstraint", "TypeConstraint"):
-        labels = [(label.text or "").strip() for label in one.iterfind("EnumeratedRange/Label")]
-        found = _narrowed(one, sheets, types)
-        low, high = found.of_integers()
+    if element.tag == "ValueConstraint":
+        raw = piece.raw(sheets.attribute(element, "value"), where)
+    elif element.tag in ("RangeConstraint", "TypeConstraint"):
+        labels = [(label.text or "").strip() for label in element.iterfind("EnumeratedRange/Label")]
+        narrowed = _range_of_constraint(element, sheets, types)
+        low, high = narrowed.of_integers()
         if len(labels) == 1:
             raw = piece.raw(labels[0], where)
         elif not labels and low is not None and low == high and piece.item["type"] in _INTEGERS:
             raw = piece.raw(str(int(low)), where)
-        elif not labels and piece.item["type"] in (*_INTEGERS, "float") and found != eds_ranges.ALL:
-            piece.range = piece.range.within(found)
+        elif not labels and piece.item["type"] in (*_INTEGERS, "float") and narrowed != eds_ranges.ALL:
+            piece.range = piece.range.within(narrowed)
             if not piece.item.keys() & {"formula", "points", "const", "special"}:
                 piece.item.update(eds_ranges.limited(piece.item, piece.bits, piece.range))
             return None
         else:
             raise NotHeld(f"{where} has one of several values")
     else:
-        raise NotHeld(f"it is constrained by a `{line(one.tag, 60)}`")
+        raise NotHeld(f"it is constrained by a `{line(element.tag, 60)}`")
     only(piece, raw, name)
     return raw
 
 
-def _narrowed(constraint: Element, sheets: Sheets, types: Types) -> eds_ranges.Range:
+def _range_of_constraint(constraint: Element, sheets: Sheets, types: Types) -> eds_ranges.Range:
     """Return the range of a `RangeConstraint`, or of the type of a `TypeConstraint`."""
     if constraint.tag == "RangeConstraint":
         return eds_ranges.said(sheets, constraint)
@@ -111,11 +111,11 @@ def measure(part: Part, length: int, sheets: Sheets) -> None:
     Nothing changes if the raw value is not an integer or does not fit. Raises `NotHeld` for a contradicting
     constant.
     """
-    how = line_of(part.entry, sheets)
-    if how is None or part.piece is None or part.item["type"] not in _INTEGERS or "const" in part.item:
+    conversion = line_of(part.entry, sheets)
+    if conversion is None or part.piece is None or part.item["type"] not in _INTEGERS or "const" in part.item:
         return
     # length = factor * raw + offset
-    raw = (length - how.offset) / how.factor
+    raw = (length - conversion.offset) / conversion.factor
     if raw.denominator == 1 and (value := coded(int(raw), part.piece.code, part.bits)) is not None:
         only(part.piece, value, part.path[-1])
 
@@ -126,13 +126,13 @@ def line_of(entry: Element, sheets: Sheets) -> Line | None:
         return None
     # Without terms, the raw value is the number of bytes (factor 1).
     terms = entry.findall("PolynomialCalibrator/Term")
-    found = {"0": Fraction(0), "1": Fraction(not terms)}
+    coefficients = {"0": Fraction(0), "1": Fraction(not terms)}
     for term in terms:
         power = sheets.attribute(term, "exponent")
-        if power not in found:
+        if power not in coefficients:
             return None
         try:
-            found[power] += evaluate(sheets.attribute(term, "coefficient"))
+            coefficients[power] += evaluate(sheets.attribute(term, "coefficient"))
         except ValueError:
             return None
-    return Line(found["1"], found["0"]) if found["1"] else None
+    return Line(coefficients["1"], coefficients["0"]) if coefficients["1"] else None

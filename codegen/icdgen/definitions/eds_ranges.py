@@ -56,13 +56,13 @@ def said(sheets: Sheets, element: Element) -> Range:
 
     Raises `NotHeld` for an undefined design parameter.
     """
-    found = element.find("MinMaxRange")
-    if found is None:
+    bounds = element.find("MinMaxRange")
+    if bounds is None:
         return ALL
-    kind = sheets.attribute(found, "rangeType", "inclusiveMinInclusiveMax").lower()
+    kind = sheets.attribute(bounds, "rangeType", "inclusiveMinInclusiveMax").lower()
     is_low_in, is_high_in = _TYPES.get(kind, (None, None))
-    low = None if is_low_in is None else _end(sheets.attribute(found, "min"))
-    high = None if is_high_in is None else _end(sheets.attribute(found, "max"))
+    low = None if is_low_in is None else _end(sheets.attribute(bounds, "min"))
+    high = None if is_high_in is None else _end(sheets.attribute(bounds, "max"))
     return Range(low, high, bool(is_low_in), bool(is_high_in))
 
 
@@ -78,7 +78,7 @@ def limited(item: Item, bits: int, of: Range) -> Item:
     if item["type"] in ("uint", "int"):
         first, last = raws(bits, item["type"] == "int")
         return dict(limits(*of.of_integers(), Fraction(first), Fraction(last)))
-    found: Item = {}
+    result: Item = {}
     if item["type"] == "float" and (of.low is None or of.high is None or of.low <= of.high):
         for end, key in (
             (of.low, "min" if of.is_low_in else "above"),
@@ -86,8 +86,8 @@ def limited(item: Item, bits: int, of: Range) -> Item:
         ):
             number = None if end is None else end.numerator if end.denominator == 1 else _double(end)
             if number is not None and "e" not in str(number) and len(str(number)) < 30:
-                found[key] = number
-    return found
+                result[key] = number
+    return result
 
 
 def _double(value: Fraction) -> float | None:

@@ -27,8 +27,8 @@ _REFERENCE = re.compile(r"\$\{([^${}]{1,200})\}")
 class Sheets:
     """Index of types, interfaces and design parameters. ``own`` lists the packages of the file itself."""
 
-    def __init__(self, root: Element, others: Iterable[tuple[str, Element]], to: Definitions) -> None:
-        """Index a file and the files to which it may refer. ``others`` contains their paths and root elements."""
+    def __init__(self, root: Element, neighbours: Iterable[tuple[str, Element]], to: Definitions) -> None:
+        """Index a file and the files to which it may refer. ``neighbours`` contains their paths and root elements."""
         self.to = to
         self.root = root
         self.own: list[Element] = []
@@ -38,46 +38,46 @@ class Sheets:
         self._scopes: dict[Element, tuple[str, str]] = {}  # package and component of an element
         self._files: dict[str, str] = {}  # by package
         self._defines: dict[str, tuple[str, str, str]] = {}  # value, package and file
-        self._again: dict[str, str] = {}  # second file of duplicate packages and parameters
+        self._duplicates: dict[str, str] = {}  # second file of duplicate packages and parameters
         self._values: dict[tuple[str, str], str] = {}
-        self._note(to.file, root)
+        self._index(to.file, root)
         self.own = list(self.all)
-        for path, other in others:
-            self._note(path, other)
+        for path, neighbour in neighbours:
+            self._index(path, neighbour)
 
-    def _note(self, file: str, root: Element) -> None:
+    def _index(self, file: str, root: Element) -> None:
         for element in root.iter():
             element.tag = safe_xml.local(element.tag)
         for package in root.iterfind("Package"):
             name = package.get("name", "")
             for define in package.iterfind("Define"):
-                self._define(name, define, file)
+                self._index_parameter(name, define, file)
             if root.tag == PARAMETERS:
                 continue
             if name in self._files:
-                self._again.setdefault(name, file)
+                self._duplicates.setdefault(name, file)
                 continue
             self._files[name] = file
             self.all.append(package)
-            for set_ in package.iter():
-                self._scopes[set_] = (name, "")
+            for descendant in package.iter():
+                self._scopes[descendant] = (name, "")
             for component in package.iterfind("ComponentSet/Component"):
-                for inner in component.iter():
-                    self._scopes[inner] = (name, component.get("name", ""))
-                self._types(component, f"{name}/{component.get('name', '')}//")
-            self._types(package, f"{name}/")
-            for one in package.iterfind("DeclaredInterfaceSet/Interface"):
-                self._found.setdefault(("interface", f"{name}/{one.get('name', '')}"), one)
+                for descendant in component.iter():
+                    self._scopes[descendant] = (name, component.get("name", ""))
+                self._index_types(component, f"{name}/{component.get('name', '')}//")
+            self._index_types(package, f"{name}/")
+            for interface in package.iterfind("DeclaredInterfaceSet/Interface"):
+                self._found.setdefault(("interface", f"{name}/{interface.get('name', '')}"), interface)
 
-    def _types(self, owner: Element, before: str) -> None:
+    def _index_types(self, owner: Element, before: str) -> None:
         for element in owner.iterfind("DataTypeSet/*"):
             self._found.setdefault(("type", f"{before}{element.get('name', '')}"), element)
 
-    def _define(self, package: str, define: Element, file: str) -> None:
+    def _index_parameter(self, package: str, define: Element, file: str) -> None:
         name, value = f"{package}/{define.get('name', '')}", define.get("value", "")
-        known = self._defines.setdefault(name, (value, package, file))
-        if known[0] != value:
-            self._again.setdefault(f"${{{name}}}", file)
+        first = self._defines.setdefault(name, (value, package, file))
+        if first[0] != value:
+            self._duplicates.setdefault(f"${{{name}}}", file)
 
     def types(self, package: Element) -> Iterator[Element]:
         """Yield the types of a package and its components."""
@@ -97,7 +97,7 @@ class Sheets:
         text = element.get(key)
         if text is None:
             return default
-        return self._filled(text, self._scopes.get(element, ("", ""))[0], 0).strip() if "${" in text else text.strip()
+        return self._resolved(text, self._scopes.get(element, ("", ""))[0], 0).strip() if "${" in text else text.strip()
 
     def labels(self, type_: Element) -> Iterator[tuple[str, int]]:
         """Yield the labels of an enumeration with their values.
@@ -114,30 +114,32 @@ class Sheets:
         """Return whether an attribute is `true` or `1`."""
         return self.attribute(element, key).lower() in ("true", "1")
 
-    def _filled(self, text: str, package: str, depth: int) -> str:
+    def _resolved(self, text: str, package: str, depth: int) -> str:
         if depth > _DEEPEST:
             raise NotHeld(f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others")
-        made, at = "", 0
-        for found in _REFERENCE.finditer(text):
-            made += text[at : found.start()] + self._value(found[1].strip(), package, depth)
-            at = found.end()
-            if len(made) > _LONGEST:
+        result, at = "", 0
+        for reference in _REFERENCE.finditer(text):
+            result += text[at : reference.start()] + self._value(reference[1].strip(), package, depth)
+            at = reference.end()
+            if len(result) > _LONGEST:
                 raise NotHeld(f"`{line(text, 60)}` becomes longer than {_LONGEST} characters")
-        return made + text[at:]
+        return result + text[at:]
 
     def _value(self, name: str, package: str, depth: int) -> str:
         """Return the text that replaces a reference to a design parameter. Arithmetic expressions are evaluated.
 
         Raises `NotHeld` if the parameter is undefined, circular or too long.
         """
-        if (known := self._values.get((name, package))) is not None:
-            return known
-        of = next((one for one in (name, f"{package}/{name}") if one in self._defines), None)
-        if of is None:
+        if (resolved := self._values.get((name, package))) is not None:
+            return resolved
+        qualified_name = next(
+            (candidate for candidate in (name, f"{package}/{name}") if candidate in self._defines), None
+        )
+        if qualified_name is None:
             raise NotHeld(f"no file in the folder defines `${{{line(name, 100)}}}`", _TOGETHER)
-        text, where, _ = self._defines[of]
-        self._twice(f"${{{of}}}", self._defines[of][2])
-        text = self._filled(text, where, depth + 1)
+        text, defining_package, _ = self._defines[qualified_name]
+        self._report_duplicate(f"${{{qualified_name}}}", self._defines[qualified_name][2])
+        text = self._resolved(text, defining_package, depth + 1)
         try:
             # Parentheses keep a fraction intact in the expression that contains it.
             value = evaluate(text)
@@ -155,9 +157,9 @@ class Sheets:
             return None
         return int(value) if value.denominator == 1 else None
 
-    def _twice(self, what: str, first: str) -> None:
+    def _report_duplicate(self, what: str, first: str) -> None:
         """Report a duplicate package or design parameter on first use (IMP076)."""
-        if (other := self._again.pop(what, None)) is not None:
+        if (other := self._duplicates.pop(what, None)) is not None:
             of = "package " if not what.startswith("$") else ""
             text = f"{of}`{line(what, 100)}` is in `{Path(first).name}` and otherwise in `{Path(other).name}`"
             self.to.warn(TWICE, text, "the first one is taken")
@@ -182,14 +184,14 @@ class Sheets:
         # Scopes from inside to outside: component, package, qualified name.
         inner = f"{package}/{component}//{reference}" if component else ""
         for path in (inner, f"{package}/{reference}", reference):
-            found = self._found.get((kind, path)) if path else None
-            if found is not None:
-                self._twice(self.package(found), self._files[self.package(found)])
-                return found
-        of = reference.rpartition("/")[0]
-        if of and of not in self._files:
+            element = self._found.get((kind, path)) if path else None
+            if element is not None:
+                self._report_duplicate(self.package(element), self._files[self.package(element)])
+                return element
+        prefix = reference.rpartition("/")[0]
+        if prefix and prefix not in self._files:
             raise NotHeld(
-                f"`{line(reference, 100)}` is of the package `{line(of, 60)}`, which is neither in the file nor in its folder",
+                f"`{line(reference, 100)}` is of the package `{line(prefix, 60)}`, which is neither in the file nor in its folder",
                 _TOGETHER,
             )
         raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")

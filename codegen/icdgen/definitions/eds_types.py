@@ -82,30 +82,32 @@ class Types(Reading):
         self.step()
         chain = self.chain(type_)
         kind = chain[-1].tag.removesuffix("DataType")
-        encoding = next((one for of in (entry, *chain) for one in of if one.tag.endswith("DataEncoding")), None)
+        encoding = next(
+            (inner for element in (entry, *chain) for inner in element if inner.tag.endswith("DataEncoding")), None
+        )
         if kind in ("Integer", "Enumerated"):
-            made = self._integer(encoding, where, kind == "Enumerated")
+            piece = self._integer(encoding, where, kind == "Enumerated")
         elif kind == "Boolean":
-            made = self._flag(encoding, chain[-1])
+            piece = self._flag(encoding, chain[-1])
         elif kind == "Float":
-            made = self._float(encoding, where)
+            piece = self._float(encoding, where)
         elif kind == "String":
-            made = self._text(encoding, chain[-1])
+            piece = self._text(encoding, chain[-1])
         elif kind == "Binary":
-            made = self._binary(chain[-1])
+            piece = self._binary(chain[-1])
         else:
             raise NotHeld(f"{where} is a `{line(chain[-1].tag, 60)}`")
         if kind == "Enumerated":
-            self._labels(made, chain[-1], where)
-        made.range = self._range(chain, entry)
-        if made.item["type"] in ("uint", "int", "float") and made.code in (UNSIGNED, TWOS):
-            made.item |= self._meaning(chain, entry, made, where)
-        return made
+            self._labels(piece, chain[-1], where)
+        piece.range = self._range(chain, entry)
+        if piece.item["type"] in ("uint", "int", "float") and piece.code in (UNSIGNED, TWOS):
+            piece.item |= self._meaning(chain, entry, piece, where)
+        return piece
 
     def _integer(self, encoding: Element | None, where: str, has_names: bool) -> Piece:
         if encoding is None or encoding.tag != "IntegerDataEncoding":
             raise NotHeld(f"{where} has a type without an encoding")
-        code = self._word(encoding, "encoding", UNSIGNED, CODES)
+        code = self._keyword(encoding, "encoding", UNSIGNED, CODES)
         bits = self._size(encoding, where)
         order = self._order(encoding, bits, where)
         # Labels are assigned to the transmitted bits, so enumerations support all encodings.
@@ -118,12 +120,12 @@ class Types(Reading):
     def _float(self, encoding: Element | None, where: str) -> Piece:
         if encoding is None or encoding.tag != "FloatDataEncoding":
             raise NotHeld(f"{where} has a type without an encoding")
-        said = self.sheets.attribute(encoding, "encodingAndPrecision", "IEEE754_2008_single")
-        bits = self._size(encoding, where, _FLOATS.get(said.lower()))
+        precision = self.sheets.attribute(encoding, "encodingAndPrecision", "IEEE754_2008_single")
+        bits = self._size(encoding, where, _FLOATS.get(precision.lower()))
         order = self._order(encoding, bits, where)
-        if _FLOATS.get(said.lower()) == bits:
+        if _FLOATS.get(precision.lower()) == bits:
             return Piece({"type": "float"}, bits, order)
-        self.raw_only(where, f"it is encoded as {line(said, 60)} of {bits} bits", _BITS_ONLY)
+        self.raw_only(where, f"it is encoded as {line(precision, 60)} of {bits} bits", _BITS_ONLY)
         return self._wide(bits, order, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
 
     def _wide(self, bits: int, order: str, where: str) -> Piece:
@@ -139,13 +141,13 @@ class Types(Reading):
             raise NotHeld(f"the flag `{type_.get('name', '')}` has {bits} bits")
         names = ("True", "False") if is_inverse else ("False", "True")
         values = {name.lower(): value for value, name in enumerate(names)}
-        made = Piece({"type": "bool"}, bits, code="", values=values)
+        piece = Piece({"type": "bool"}, bits, code="", values=values)
         # The type `bool` has one bit, and 1 means true.
         if bits > 1 or is_inverse:
-            named: list[Item] = [{"value": value, "name": name} for value, name in enumerate(names)]
-            made.item = {"type": "enum"}
-            self.enums.give(made.item, _called(type_), self._owner(type_), named)
-        return made
+            members: list[Item] = [{"value": value, "name": name} for value, name in enumerate(names)]
+            piece.item = {"type": "enum"}
+            self.enums.give(piece.item, _enumeration_name(type_), self._owner(type_), members)
+        return piece
 
     def _text(self, encoding: Element | None, type_: Element) -> Piece:
         length = whole(self.sheets.attribute(type_, "length"), "the length of a text", 1, MOST_BYTES)
@@ -171,48 +173,48 @@ class Types(Reading):
         return whole(text, f"the size of {where}", 1, 8 * MOST_BYTES)
 
     def _order(self, encoding: Element, bits: int, where: str) -> str:
-        is_little = self._word(encoding, "byteOrder", "bigEndian", ("bigEndian", "littleEndian")) == "littleEndian"
+        is_little = self._keyword(encoding, "byteOrder", "bigEndian", ("bigEndian", "littleEndian")) == "littleEndian"
         if is_little and bits % 8:
             raise NotHeld(f"the least significant byte of {where}, of {bits} bits, is sent first")
         return LITTLE if is_little else BIG
 
-    def _word(self, of: Element, key: str, default: str, known: tuple[str, ...]) -> str:
-        """Return the keyword in ``known`` that an attribute matches, ignoring case.
+    def _keyword(self, element: Element, key: str, default: str, keywords: tuple[str, ...]) -> str:
+        """Return the keyword in ``keywords`` that an attribute matches, ignoring case.
 
         Raises `NotHeld` if none matches.
         """
-        said = self.sheets.attribute(of, key, default)
-        found = next((one for one in known if one.lower() == said.lower()), None)
-        if found is None:
-            raise NotHeld(f"its `{key}` is `{line(said, 60)}`")
-        return found
+        text = self.sheets.attribute(element, key, default)
+        keyword = next((candidate for candidate in keywords if candidate.lower() == text.lower()), None)
+        if keyword is None:
+            raise NotHeld(f"its `{key}` is `{line(text, 60)}`")
+        return keyword
 
-    def _labels(self, made: Piece, type_: Element, where: str) -> None:
+    def _labels(self, piece: Piece, type_: Element, where: str) -> None:
         choices: dict[int, str] = {}
         for label, value in self.sheets.labels(type_):
             self.step()
-            raw = coded(value, made.code, made.bits) if made.item["type"] != "bytes" else None
+            raw = coded(value, piece.code, piece.bits) if piece.item["type"] != "bytes" else None
             if raw is None:
                 raise NotHeld(f"{where} never has the value `{value}` of `{line(label, 60)}`")
             choices.setdefault(raw, label)
-            made.values.setdefault(label, raw)
+            piece.values.setdefault(label, raw)
         if not choices:
             return
         notes = self.heard(f"labels of {id(type_)}")  # report faults of a type once
-        called = _called(type_)
-        self.enums.hold(made.item, made.bits, choices, called, self._owner(type_), f"`{called}`", notes)
+        name = _enumeration_name(type_)
+        self.enums.hold(piece.item, piece.bits, choices, name, self._owner(type_), f"`{name}`", notes)
 
     def _owner(self, type_: Element) -> str:
         return self.sheets.package(type_).rsplit("/", 1)[-1]
 
     def _range(self, chain: list[Element], entry: Element) -> Range:
-        found = ALL
-        for of in (*chain, entry):
-            for one in (inner for inner in of if inner.tag in ("Range", "ValidRange")):
-                found = found.within(eds_ranges.said(self.sheets, one))
-        return found
+        result = ALL
+        for element in (*chain, entry):
+            for bounds in (inner for inner in element if inner.tag in ("Range", "ValidRange")):
+                result = result.within(eds_ranges.said(self.sheets, bounds))
+        return result
 
-    def _meaning(self, chain: list[Element], entry: Element, made: Piece, where: str) -> Item:
+    def _meaning(self, chain: list[Element], entry: Element, piece: Piece, where: str) -> Item:
         """Return calibration and unit of the entry, and the limits of its type.
 
         A calibrated field gets no limits, because the calibration converts them.
@@ -225,15 +227,15 @@ class Types(Reading):
         except ValueError as error:
             self.raw_only(where, str(error), _BITS_ONLY)
             return item
-        if not item and "special" not in made.item and made.range != ALL:
-            item |= eds_ranges.limited(made.item, made.bits, made.range)
+        if not item and "special" not in piece.item and piece.range != ALL:
+            item |= eds_ranges.limited(piece.item, piece.bits, piece.range)
         return {**self._unit((entry, *chain)), **item}
 
     def _unit(self, chain: tuple[Element, ...]) -> Item:
-        for of in chain:
-            for one in (of.find("Semantics"), of):
-                for key in ("unit", "units") if one is not None else ():
-                    if one is not None and (text := self.sheets.attribute(one, key)):
+        for type_ in chain:
+            for element in (type_.find("Semantics"), type_):
+                for key in ("unit", "units") if element is not None else ():
+                    if element is not None and (text := self.sheets.attribute(element, key)):
                         return {**unit(_SI.get(text.lower(), text))}
         return {}
 
@@ -242,9 +244,9 @@ def described(element: Element) -> dict[str, str]:
     """Return the `summary` key from the short description, or else from the first paragraph of the long description."""
     paragraphs = re.split(r"\n[ \t\r]*\n", (element.findtext("LongDescription") or "")[:20_000])
     texts = (_MARKUP.sub("", text) for text in (element.get("shortDescription") or "", *paragraphs))
-    return next((found for found in map(summary, texts) if found), {})
+    return next((item for item in map(summary, texts) if item), {})
 
 
-def _called(type_: Element) -> str:
+def _enumeration_name(type_: Element) -> str:
     """Return the name of an enumeration, without a suffix for `type`."""
     return without_type(line(type_.get("name"), 60))

@@ -105,13 +105,13 @@ def whole(text: str, what: str, least: int | None = None, most: int | None = Non
 
     Raises `NotHeld` if it is not an integer from ``least`` to ``most``; ``what`` names it.
     """
-    plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _whole(text)
+    plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _integer(text)
     if plain is None or (least is not None and plain < least) or (most is not None and plain > most):
         raise NotHeld(f"{what} is `{line(text, 60)}`")
     return plain
 
 
-def _whole(text: str) -> int | None:
+def _integer(text: str) -> int | None:
     try:
         value = evaluate(text)
     except ValueError:

@@ -29,27 +29,27 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
     if beyond:
         shown = ", ".join(map(str, beyond[:5])) + (" ..." if len(beyond) > 5 else "")
         to.warn(BEYOND, f"{where}: it never has the value {shown}, which has a name", "the name is left out")
-    found: list[Item] = []
+    result: list[Item] = []
     for value, text in sorted(choices.items()):
         name = line(text, _LONGEST)
         if value in beyond or not name:
             continue
-        if found and found[-1]["name"] == name and found[-1].get("to", found[-1]["value"]) == value - 1:
-            found[-1]["to"] = value
+        if result and result[-1]["name"] == name and result[-1].get("to", result[-1]["value"]) == value - 1:
+            result[-1]["to"] = value
         else:
-            found.append({"value": value, "name": name})
-    for name, times in Counter(one["name"] for one in found).items():
+            result.append({"value": value, "name": name})
+    for name, times in Counter(member["name"] for member in result).items():
         if times > 1:
-            same = [one for one in found if one["name"] == name]
-            values = ", ".join(str(one["value"]) for one in same)
+            duplicates = [member for member in result if member["name"] == name]
+            values = ", ".join(str(member["value"]) for member in duplicates)
             text = f"{where}: `{name}` is the name of {values}"
             to.warn(SAME_NAME, text, "each is imported with its value behind the name")
             # The extended name may itself be the name of another value.
-            taken = {one["name"] for one in found}
-            for one in same:
-                told = f"{name} {one['value']}"
-                one["name"] = told if told not in taken else f"{told} of {where}"
-    return [{key: one[key] for key in ("value", "to", "name") if key in one} for one in found]
+            taken = {member["name"] for member in result}
+            for member in duplicates:
+                extended_name = f"{name} {member['value']}"
+                member["name"] = extended_name if extended_name not in taken else f"{extended_name} of {where}"
+    return [{key: member[key] for key in ("value", "to", "name") if key in member} for member in result]
 
 
 def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
@@ -63,12 +63,12 @@ def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
         return False
     # The type `enum` has no sign of its own: it is signed if a member is negative.
     is_signed = item["type"] == "int"
-    if is_signed != any(one["value"] < 0 for one in named):
+    if is_signed != any(member["value"] < 0 for member in named):
         return False
-    return not item.keys() & set(_OF_NUMBERS) or _covers(named, *_possible(item, bits))
+    return not item.keys() & set(_OF_NUMBERS) or _covers(named, *_value_range(item, bits))
 
 
-def _possible(item: Item, bits: int) -> tuple[int, int]:
+def _value_range(item: Item, bits: int) -> tuple[int, int]:
     """Return the first and last value of a number without a formula, within its limits."""
     first, last = raws(bits, item["type"] == "int")
     low, high = item.get("min", first), item.get("max", last)
@@ -82,10 +82,10 @@ def _possible(item: Item, bits: int) -> tuple[int, int]:
 def _covers(named: list[Item], first: int, last: int) -> bool:
     """Return whether each value from ``first`` to ``last`` has a name; ``named`` is in ascending order."""
     following = first
-    for one in named:
-        if one["value"] > following:
+    for member in named:
+        if member["value"] > following:
             break
-        following = max(following, _last(one) + 1)
+        following = max(following, _last(member) + 1)
     return following > last
 
 
@@ -99,17 +99,19 @@ def special(named: list[Item], where: str, to: Definitions) -> Item:
 
     Reports names above `MOST_SPECIAL` (IMP090).
     """
-    found: list[Item] = []
-    for number, one in enumerate(named):
-        last = _last(one)
-        if len(found) + last - one["value"] >= MOST_SPECIAL:
-            text = f"{where}: {len(named) - number} of {len(named)} names are left out, from `{one['name']}` on"
+    values: list[Item] = []
+    for number, member in enumerate(named):
+        last = _last(member)
+        if len(values) + last - member["value"] >= MOST_SPECIAL:
+            text = f"{where}: {len(named) - number} of {len(named)} names are left out, from `{member['name']}` on"
             help = f"a number has at most {MOST_SPECIAL:,} special values: put the names into its `summary`"
             to.warn(LEFT_OUT, text, help)
             break
-        for value in range(one["value"], last + 1):
-            found.append({"value": value, "meaning": one["name"] if last == one["value"] else f"{one['name']} {value}"})
-    return {"special": found} if found else {}
+        for value in range(member["value"], last + 1):
+            values.append(
+                {"value": value, "meaning": member["name"] if last == member["value"] else f"{member['name']} {value}"}
+            )
+    return {"special": values} if values else {}
 
 
 @dataclass
@@ -123,7 +125,10 @@ class Enumerations:
 
         ``name`` is its preferred name, and ``owner`` a prefix for names in conflict.
         """
-        values = tuple((one["value"], one["to"] if "to" in one else one["value"], str(one["name"])) for one in named)
+        values = tuple(
+            (member["value"], member["to"] if "to" in member else member["value"], str(member["name"]))
+            for member in named
+        )
         self.uses.append((to, name, owner, values))
 
     def hold(
@@ -150,10 +155,13 @@ class Enumerations:
         kinds: dict[str, set[object]] = {}
         for _, name, _, values in self.uses:
             kinds.setdefault(name, set()).add(values)
-        made: dict[str, Item] = {}
+        enums: dict[str, Item] = {}
         for to, name, owner, values in self.uses:
-            called = name if len(kinds[name]) == 1 else f"{owner} {name}"
-            to["enum"] = called
-            held = [{"value": one, **({"to": last} if last != one else {}), "name": text} for one, last, text in values]
-            made.setdefault(called, {"name": called, "members": held})
-        return list(made.values())
+            unique_name = name if len(kinds[name]) == 1 else f"{owner} {name}"
+            to["enum"] = unique_name
+            enum_members = [
+                {"value": first, **({"to": last} if last != first else {}), "name": text}
+                for first, last, text in values
+            ]
+            enums.setdefault(unique_name, {"name": unique_name, "members": enum_members})
+        return list(enums.values())

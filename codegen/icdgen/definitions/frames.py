@@ -57,22 +57,24 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
         order = own.pop()
         message |= ORDERS[order]
     fields, covered = [], 0
-    for field, place in _owned(message["name"], placed, order, to):
+    for field, place in _with_overlays(message["name"], placed, order, to):
         place = (
             place if "count" in field else place.counted(order)
         )  # another order would reverse the elements of an array
-        said = dict(field)
+        keys = dict(field)
         field.clear()  # keep the mapping: `Enumerations.declared` sets `enum` in it later
-        field |= {"at": place.at, "bits": place.bits, **said, **(ORDERS[place.order] if place.order != order else {})}
+        field |= {"at": place.at, "bits": place.bits, **keys, **(ORDERS[place.order] if place.order != order else {})}
         fields.append(field)
         covered = max(covered, place.mask.bit_length())
     fields.sort(key=lambda field: (field["at"] // 8, field["at"]))
-    if (rest := message["length"] - -(-covered // 8)) > 0:
-        message["reserved"] = rest
+    if (unused := message["length"] - -(-covered // 8)) > 0:
+        message["reserved"] = unused
     return {**message, "fields": fields} if fields else message
 
 
-def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definitions) -> Iterator[tuple[Item, Place]]:
+def _with_overlays(
+    name: str, placed: list[tuple[Item, Place]], order: str, to: Definitions
+) -> Iterator[tuple[Item, Place]]:
     """Yield the fields, with overlapping smaller fields as overlay fields (IMP071).
 
     Bits that only overlay fields cover become fields. Optional fields that overlap others are left out.
@@ -81,12 +83,14 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
     left, pairs = 0, []
     left_out: list[Item] = []
     # Larger fields first: a smaller field becomes the overlay of a larger one.
-    for field, place in sorted(placed, key=lambda one: -one[1].bits):
+    for field, place in sorted(placed, key=lambda pair: -pair[1].bits):
         mask = place.mask
         if "view" in field:  # declared as overlay by the source
             left |= mask
             continue
-        over = next((one for one, other in owners if mask & other and not _exclude(one, field)), None)
+        over = next(
+            (owner for owner, owner_mask in owners if mask & owner_mask and not _are_exclusive(owner, field)), None
+        )
         if over is None:
             owners.append((field, mask))
             continue
@@ -101,25 +105,25 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
         shown = ", ".join(pairs[:3]) + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")
         help = "the smaller ones are imported as overlay fields, which can be read but not set"
         to.warn(OVERLAPPING, f"message `{name}`: {shown} overlap", help)
-    yield from ((field, place) for field, place in placed if not any(field is one for one in left_out))
+    yield from ((field, place) for field, place in placed if not any(field is removed for removed in left_out))
     owned = 0
     for _, mask in owners:
         owned |= mask
-    yield from _remaining(left & ~owned)
+    yield from _fields_of_bits(left & ~owned)
 
 
-def _exclude(one: Item, other: Item) -> bool:
+def _are_exclusive(field: Item, other: Item) -> bool:
     """Return whether the conditions of two fields exclude each other."""
-    first, second = one.get("when", {}), other.get("when", {})
+    first, second = field.get("when", {}), other.get("when", {})
     return any(not set(listed(first[key])) & set(listed(second[key])) for key in first if key in second)
 
 
-def listed(said: object) -> list[object]:
+def listed(condition: object) -> list[object]:
     """Return the values of a condition, which are a single value or a list, as a list."""
-    return said if isinstance(said, list) else [said]
+    return condition if isinstance(condition, list) else [condition]
 
 
-def _remaining(mask: int) -> Iterator[tuple[Item, Place]]:
+def _fields_of_bits(mask: int) -> Iterator[tuple[Item, Place]]:
     """Yield a field for each run of bits, at most one byte long."""
     at = 0
     while mask >> at:

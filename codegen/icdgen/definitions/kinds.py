@@ -69,14 +69,14 @@ def of(path: Path) -> Reader | None:
 
 def within(folder: Path) -> list[tuple[Path, Reader]]:
     """Return the definitions in a folder and its subfolders, by path. Other files and hidden folders are ignored."""
-    found: list[tuple[Path, Reader]] = []
+    definitions: list[tuple[Path, Reader]] = []
     for where, folders, files in os.walk(folder):
-        folders[:] = sorted(one for one in folders if not one.startswith("."))
+        folders[:] = sorted(subfolder for subfolder in folders if not subfolder.startswith("."))
         for name in sorted(files):
             path = Path(where, name)
             if path.is_file() and (reader := of(path)) is not None:
-                found.append((path, reader))
-    return sorted(found, key=lambda one: one[0])
+                definitions.append((path, reader))
+    return sorted(definitions, key=lambda pair: pair[0])
 
 
 def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
@@ -84,7 +84,7 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
 
     An unreadable file is reported in its own definitions. Raises `UserError` if a library is missing.
     """
-    _need(reader)
+    _check_libraries(reader)
     most = getattr(reader, "most_bytes", MAX_BYTES)
     result: list[Definitions] = []
     sources: list[Source] = []
@@ -107,11 +107,11 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
 
 def read(path: Path, reader: Reader) -> Definitions:
     """Read a file. Raises `Findings` if the file cannot be read, and `UserError` if a library is missing."""
-    _need(reader)
+    _check_libraries(reader)
     return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
 
 
-def _need(reader: Reader) -> None:
+def _check_libraries(reader: Reader) -> None:
     """Raise `UserError` if a library of a reader is missing."""
     missing = [module for module in reader.needs if find_spec(module) is None]
     if missing:

@@ -49,11 +49,11 @@ class Network:
     @property
     def fields(self) -> Iterator[Item]:
         """Fields of all messages and structs."""
-        return (one for owner in (*self.messages, *self.structs) for one in owner.get("fields", ()))
+        return (field for owner in (*self.messages, *self.structs) for field in owner.get("fields", ()))
 
     def declare(self, enums: Iterable[Item]) -> None:
         """Set the enumerations to the subset that fields use."""
-        used = {one.get("enum") for one in self.fields}
+        used = {field.get("enum") for field in self.fields}
         self.enums = [enum for enum in enums if enum["name"] in used]
 
     def name_messages_apart(self, to: Definitions) -> None:
@@ -86,7 +86,7 @@ class Network:
         """Return the ICD as plain mappings and lists."""
         self._mark_shared_ids()
         tree: Item = {"icdgen": 1, "node": {"name": self.name, "title": self.title, **self.head}}
-        if declared := units.declared(one["unit"] for one in self.fields if "unit" in one):
+        if declared := units.declared(field["unit"] for field in self.fields if "unit" in field):
             tree["units"] = declared
         for key in ("protocol", "enums", "structs", "messages"):
             if value := getattr(self, key):
@@ -121,8 +121,8 @@ class Definitions:
     @property
     def files(self) -> str:
         """Name of the file and number of further files, for reports."""
-        others = "1 more file" if self.more == 1 else f"{self.more} more files"
-        return f"{self.file} and {others}" if self.more else self.file
+        further = "1 more file" if self.more == 1 else f"{self.more} more files"
+        return f"{self.file} and {further}" if self.more else self.file
 
     def left_out(self, name: str, why: object, line: int | None = None, file: str = "") -> None:
         """Report a message that is not imported (IMP070).
@@ -209,11 +209,11 @@ def raws(bits: int, is_signed: bool) -> tuple[int, int]:
     return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
-def again(item: Item, said: Item) -> Item:
+def again(item: Item, keys: Item) -> Item:
     """Replace the keys of a mapping and return it.
 
     Its identity matters: `Enumerations.declared` sets `enum` in it later.
     """
     item.clear()
-    item |= said
+    item |= keys
     return item

@@ -42,7 +42,7 @@ class Sent(Protocol):
     header: Header | None  # None for a container without a primary header
     # Key in `told` and bits of the first part, if a header can use it as id:
     front: tuple[Hashable, int] | None
-    told: dict[Hashable, int]  # constants by part, as candidates for the discriminator
+    told: dict[Hashable, int]  # constants by part: candidates for the discriminator
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """Return the ICD message from the bit ``start`` on. Raises `NotHeld` if it is not supported."""
@@ -62,8 +62,8 @@ def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
     if not is_whole and not is_part:
         return None
     # Type and secondary header flag may be one part of two bits.
-    both = values.get(_FLAGS)
-    kind, secondary = (values.get((3, 1)), values.get((4, 1))) if both is None else (both >> 1, both & 1)
+    flags = values.get(_FLAGS)
+    kind, secondary = (values.get((3, 1)), values.get((4, 1))) if flags is None else (flags >> 1, flags & 1)
     return Header(values.get((0, 3)), kind, secondary, values[_APID])
 
 
@@ -72,42 +72,42 @@ def is_of_header(at: int, bits: int) -> bool:
     return any((at, bits) in places for places in _HEADERS)
 
 
-def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
+def fill(network: Network, containers: Sequence[Sent], to: Definitions) -> None:
     """Add messages with ids and framing to a network. Messages that are not supported are reported."""
-    if any(one.header is not None for one in found):
+    if any(container.header is not None for container in containers):
         network.head["id_bits"] = APID_BITS
-        _packets(found, network, to)
+        _add_packets(containers, network, to)
     else:
-        _counted(found, network, to)
+        _add_without_header(containers, network, to)
 
 
-def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
+def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) -> None:
     """Add space packets: the primary header is the framing, and the application process id is the message id."""
-    held: list[tuple[str, Header]] = []
-    versions = [one.header.version for one in found if one.header is not None]
-    version = next((one for one in versions if one is not None), 0)
-    for one in found:
+    headers: list[tuple[str, Header]] = []
+    versions = [container.header.version for container in containers if container.header is not None]
+    version = next((number for number in versions if number is not None), 0)
+    for container in containers:
         try:
-            if one.header is None:
+            if container.header is None:
                 raise NotHeld("it does not begin with the header of a space packet, although others do")
-            if one.header.apid is None:
+            if container.header.apid is None:
                 raise NotHeld("its application process is not stated")
-            if one.header.version not in (None, version) or one.header.kind not in (None, one.kind):
-                raise NotHeld(f"its header is not that of a space packet with {one.kind}")
-            message = one.message(one.header.apid, HEADER_BITS, to)
+            if container.header.version not in (None, version) or container.header.kind not in (None, container.kind):
+                raise NotHeld(f"its header is not that of a space packet with {container.kind}")
+            message = container.message(container.header.apid, HEADER_BITS, to)
             if not message["length"] and not message.get("fields"):
                 raise NotHeld("it has no data, and a space packet has at least one byte behind its header")
             network.messages.append(message)
-            held.append((one.kind, one.header))
+            headers.append((container.kind, container.header))
         except NotHeld as why:
-            to.left_out(one.name, why)
+            to.left_out(container.name, why)
     network.protocol = {
         "stream": {
             "delimited_by": "length",
             "header": [
                 {"at": 0, "bits": 3, "role": "constant", "value": version},
                 {"at": 3, "bits": 1, "role": "constant", "value": {TELECOMMAND: 1, TELEMETRY: 0}},
-                {"at": 4, "bits": 1, "role": "flags", **_usual(held)},
+                {"at": 4, "bits": 1, "role": "flags", **_secondary_flag(headers)},
                 {"at": 5, "bits": APID_BITS, "role": "id"},
                 # Sequence flags 3: unsegmented, unless the sender sets another value.
                 {"at": 16, "bits": 2, "role": "type", "value": 3},
@@ -118,62 +118,68 @@ def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
     }
 
 
-def _usual(held: list[tuple[str, Header]]) -> Item:
+def _secondary_flag(headers: list[tuple[str, Header]]) -> Item:
     """Return the secondary header flag as a key, if it is constant in a direction."""
-    values = {kind: {head.secondary for of, head in held if of == kind} for kind in (TELECOMMAND, TELEMETRY)}
-    said = {kind: of.copy().pop() if len(of) == 1 else None for kind, of in values.items()}
-    if all(value is None for value in said.values()):
+    values = {
+        kind: {head.secondary for direction, head in headers if direction == kind} for kind in (TELECOMMAND, TELEMETRY)
+    }
+    constants = {kind: flags.copy().pop() if len(flags) == 1 else None for kind, flags in values.items()}
+    if all(value is None for value in constants.values()):
         return {}
-    return {"value": {kind: value or 0 for kind, value in said.items()}}
+    return {"value": {kind: value or 0 for kind, value in constants.items()}}
 
 
-def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
+def _add_without_header(containers: Sequence[Sent], network: Network, to: Definitions) -> None:
     """Add messages without a header.
 
     A discriminator in each direction gives the ids; without one they are counted from 1.
     """
     # `id_bits` is at least 8, also for small numbers.
-    widest, start = 8, _id_in_front(found)
+    widest, start = 8, _id_in_front(containers)
     if start:
         network.protocol = {"stream": {"delimited_by": "none", "header": [{"at": 0, "bits": start, "role": "id"}]}}
     for kind in (TELEMETRY, TELECOMMAND):
-        ours = [one for one in found if one.kind == kind]
-        tells = _telling(ours)
-        untold = []
-        for number, one in enumerate(ours, 1):
-            id = one.told[tells] if tells is not None else number
+        same_kind = [container for container in containers if container.kind == kind]
+        discriminator = _discriminator(same_kind)
+        numbered = []
+        for number, container in enumerate(same_kind, 1):
+            id = container.told[discriminator] if discriminator is not None else number
             widest = max(widest, id.bit_length())
-            if tells is None:
-                untold.append(one.name)
+            if discriminator is None:
+                numbered.append(container.name)
             try:
-                network.messages.append(one.message(id, start, to))
+                network.messages.append(container.message(id, start, to))
             except NotHeld as why:
-                to.left_out(one.name, why)
-        if len(untold) > 1:
-            shown = ", ".join(f"`{name}`" for name in untold[:3]) + (" ..." if len(untold) > 3 else "")
-            text = f"no parameter tells all {len(untold)} messages of {kind}: {shown}"
+                to.left_out(container.name, why)
+        if len(numbered) > 1:
+            shown = ", ".join(f"`{name}`" for name in numbered[:3]) + (" ..." if len(numbered) > 3 else "")
+            text = f"no parameter tells all {len(numbered)} messages of {kind}: {shown}"
             to.warn(UNTOLD, text, "their ids are counted from 1")
     network.head["id_bits"] = widest
 
 
-def _id_in_front(found: Sequence[Sent]) -> int:
+def _id_in_front(containers: Sequence[Sent]) -> int:
     """Return the bits of the discriminator if all messages begin with it as an id of equal size, else 0."""
     sizes = set()
     for kind in (TELEMETRY, TELECOMMAND):
-        ours = [one for one in found if one.kind == kind]
-        tells = _telling(ours)
-        for one in ours:
-            is_id = one.front is not None and tells is not None and one.front[0] == tells
-            sizes.add(one.front[1] if is_id and one.front is not None else 0)
-    size, *others = sizes or {0}
-    return 0 if others else size
+        same_kind = [container for container in containers if container.kind == kind]
+        discriminator = _discriminator(same_kind)
+        for container in same_kind:
+            is_id = container.front is not None and discriminator is not None and container.front[0] == discriminator
+            sizes.add(container.front[1] if is_id and container.front is not None else 0)
+    size, *further_sizes = sizes or {0}
+    return 0 if further_sizes else size
 
 
-def _telling(ours: list[Sent]) -> Hashable | None:
+def _discriminator(containers: list[Sent]) -> Hashable | None:
     """Return the key of the discriminator: a constant in each message, with the most different values.
 
     None without one.
     """
-    common = [key for key in (ours[0].told if ours else ()) if all(key in our.told for our in ours)]
-    fits = [key for key in common if all(0 <= our.told[key] < 1 << _MOST_ID_BITS for our in ours)]
-    return max(fits, key=lambda key: len({our.told[key] for our in ours}), default=None)
+    common = [
+        key
+        for key in (containers[0].told if containers else ())
+        if all(key in container.told for container in containers)
+    ]
+    fits = [key for key in common if all(0 <= container.told[key] < 1 << _MOST_ID_BITS for container in containers)]
+    return max(fits, key=lambda key: len({container.told[key] for container in containers}), default=None)

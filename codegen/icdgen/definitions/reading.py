@@ -28,7 +28,7 @@ class Reading:
     to: Definitions
     enums: Enumerations = field(init=False, default_factory=Enumerations)
     steps: int = field(init=False, default=0)
-    said: set[object] = field(init=False, default_factory=set)
+    reported: set[object] = field(init=False, default_factory=set)
     message: str = field(init=False, default="")
     _raw_only: dict[tuple[str, str, str], dict[str, None]] = field(init=False, default_factory=dict)
 
@@ -40,8 +40,8 @@ class Reading:
 
     def is_new(self, what: object) -> bool:
         """Return whether a subject is reported for the first time."""
-        is_new = what not in self.said
-        self.said.add(what)
+        is_new = what not in self.reported
+        self.reported.add(what)
         return is_new
 
     def heard(self, what: object) -> Definitions:
@@ -57,5 +57,5 @@ class Reading:
         for (where, why, help), messages in self._raw_only.items():
             shown = ", ".join(f"`{name}`" for name in list(messages)[:_SHOWN])
             more = f" and {len(messages) - _SHOWN} more" if len(messages) > _SHOWN else ""
-            whole = "message" if len(messages) == 1 else "messages"
-            self.to.warn(RAW_ONLY, f"{where} ({whole} {shown}{more}): {why}", help)
+            noun = "message" if len(messages) == 1 else "messages"
+            self.to.warn(RAW_ONLY, f"{where} ({noun} {shown}{more}): {why}", help)

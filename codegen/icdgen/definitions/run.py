@@ -36,13 +36,13 @@ class Read:
 
 def read(path: Path, reader: Reader) -> Read:
     """Read a file. Raises `Findings` if no message can be imported, and `UserError` if a library is missing."""
-    found = kinds.read(path, reader)
-    made = _settled(found, reader)
-    if not made.trees:
-        first = next((finding for finding in found.troubles if finding.severity == "error"), None)
+    definitions = kinds.read(path, reader)
+    result = _settled_result(definitions, reader)
+    if not result.trees:
+        first = next((finding for finding in definitions.troubles if finding.severity == "error"), None)
         why = ", for none is defined" if first is None else f": {first.message}"
         raise unreadable(str(path), f"no message can be imported{why}", "" if first is None else first.help)
-    return made
+    return result
 
 
 def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
@@ -53,24 +53,26 @@ def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
     by_kind: dict[str, tuple[Reader, list[Path]]] = {}
     for path, reader in files:
         by_kind.setdefault(reader.name, (reader, []))[1].append(path)
-    found = [(one, reader) for reader, paths in by_kind.values() for one in kinds.read_set(paths, reader)]
-    _name_apart(network for one, _ in found for network in one.networks if network.messages)
-    return [_settled(one, reader) for one, reader in found]
+    results = [
+        (definitions, reader) for reader, paths in by_kind.values() for definitions in kinds.read_set(paths, reader)
+    ]
+    _make_names_unique(network for definitions, _ in results for network in definitions.networks if network.messages)
+    return [_settled_result(definitions, reader) for definitions, reader in results]
 
 
-def _settled(found: Definitions, reader: Reader) -> Read:
+def _settled_result(definitions: Definitions, reader: Reader) -> Read:
     """Return the result with ICDs that pass `icdgen check`."""
-    made = Read(found, reader.title, {})
-    _name_apart(found.networks)
-    for network in found.networks:
+    result = Read(definitions, reader.title, {})
+    _make_names_unique(definitions.networks)
+    for network in definitions.networks:
         if network.messages:
-            made.identifiers += settle(network, found)
+            result.identifiers += settle(network, definitions)
         if network.messages:
-            made.trees[network.name] = network.tree()
-    return made
+            result.trees[network.name] = network.tree()
+    return result
 
 
-def _name_apart(networks: Iterable[Network]) -> None:
+def _make_names_unique(networks: Iterable[Network]) -> None:
     """Add a number to duplicate network names."""
     taken: Counter[str] = Counter()
     for network in networks:

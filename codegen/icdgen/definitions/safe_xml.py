@@ -16,8 +16,8 @@ _SKIPPED = re.compile(r"<!--.*?-->|<\?.*?\?>|<!.*?>", re.DOTALL)
 def root_of(start: str) -> str:
     """Return the name of the root element from the beginning of a text, or an empty string if it is not XML."""
     text = start.lstrip()
-    found = _ROOT.search(_SKIPPED.sub("", text)) if text.startswith("<") else None
-    return found[1] if found else ""
+    match = _ROOT.search(_SKIPPED.sub("", text)) if text.startswith("<") else None
+    return match[1] if match else ""
 
 
 def parse(file: str, data: bytes, lines: dict[Element, int] | None = None, account: Account | None = None) -> Element:

@@ -19,8 +19,8 @@ from icdgen.diagnostics import Finding
 from icdgen.loading import load
 
 ROUNDS = 60  # some rules apply only after others are satisfied
-_NONE, _RESERVED, _CLASH = "ICD072", "ICD070", "ICD071"
-_OF_NAMES = frozenset({_NONE, _RESERVED, _CLASH})
+_INVALID, _RESERVED, _CLASH = "ICD072", "ICD070", "ICD071"
+_NAME_RULES = frozenset({_INVALID, _RESERVED, _CLASH})
 _TRIES = 6  # attempts to find an identifier for a name
 _MEANING = ("formula", "points", "outside", "unit", "special", "min", "max", "above", "below", "enum")
 _FIELD, _MEMBER, _UNIT = "field", "value", "unit"
@@ -29,11 +29,11 @@ _FIELD, _MEMBER, _UNIT = "field", "value", "unit"
 class _Line(NamedTuple):
     """Named item in a line of the temporary file.
 
-    ``whole`` is the containing item, and ``number`` distinguishes items of equal name.
+    ``owner`` is the containing item, and ``number`` distinguishes items of equal name.
     """
 
     item: Item
-    whole: Item
+    owner: Item
     what: str
     number: object
 
@@ -49,7 +49,11 @@ def settle(network: Network, to: Definitions) -> list[str]:
         file = Path(folder, f"{network.name}.yaml")
         for _ in range(ROUNDS):
             lines = _write(file, network)
-            findings = [one for one in load([file]).findings if one.severity == "error" or one.code in _OF_NAMES]
+            findings = [
+                finding
+                for finding in load([file]).findings
+                if finding.severity == "error" or finding.code in _NAME_RULES
+            ]
             if not findings:
                 break
             refused: dict[int, tuple[_Line, Finding]] = {}
@@ -66,7 +70,7 @@ def settle(network: Network, to: Definitions) -> list[str]:
                 if line is None:
                     raise unreadable(to.file, f"what it defines makes no ICD: {finding.message}", finding.help)
                 tried = tries.get(id(line.item), 0)
-                if finding.code in _OF_NAMES and tried < _TRIES:
+                if finding.code in _NAME_RULES and tried < _TRIES:
                     tries[id(line.item)] = tried + 1
                     line.item["identifier"] = taken.add(line, _identifier(line, finding.code, tried))
                     has_changed = True
@@ -77,8 +81,8 @@ def settle(network: Network, to: Definitions) -> list[str]:
             if not refused and not has_changed:
                 break
     _declare_structs(network)
-    named = {id(one.item): one for one in lines.values() if id(one.item) in tries and "identifier" in one.item}
-    return [f"{one.what} `{one.item['name']}`: `{one.item['identifier']}`" for one in named.values()]
+    named = {id(line.item): line for line in lines.values() if id(line.item) in tries and "identifier" in line.item}
+    return [f"{line.what} `{line.item['name']}`: `{line.item['identifier']}`" for line in named.values()]
 
 
 class _Taken:
@@ -88,15 +92,15 @@ class _Taken:
         self.words: dict[object, set[tuple[str, ...]]] = {}
         for line in lines:
             if line.what != _UNIT:
-                self._among(line).add(naming.words(line.item.get("identifier", line.item["name"])))
+                self._scope(line).add(naming.words(line.item.get("identifier", line.item["name"])))
 
-    def _among(self, line: _Line) -> set[tuple[str, ...]]:
+    def _scope(self, line: _Line) -> set[tuple[str, ...]]:
         is_part = line.what in (_FIELD, _MEMBER)
-        return self.words.setdefault((line.what, id(line.whole) if is_part else None), set())
+        return self.words.setdefault((line.what, id(line.owner) if is_part else None), set())
 
     def add(self, line: _Line, wanted: str) -> str:
         """Reserve and return an identifier, with a number as suffix if its words are taken."""
-        among, number, text = self._among(line), 1, wanted
+        among, number, text = self._scope(line), 1, wanted
         while naming.words(text) in among:
             number += 1
             text = f"{wanted} {number}"
@@ -114,7 +118,7 @@ def _identifier(line: _Line, code: str, attempt: int) -> str:
         return f"{plain} {line.what} {number} {attempt}"
     if code == _CLASH:
         return f"{plain} values" if line.what == "enumeration" else f"{plain} {number}"
-    return f"{line.what} {plain}" if code == _NONE else f"{plain} {line.what}"
+    return f"{line.what} {plain}" if code == _INVALID else f"{plain} {line.what}"
 
 
 def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -> None:
@@ -125,43 +129,45 @@ def _degrade(network: Network, line: _Line, finding: Finding, to: Definitions) -
             if field.get("unit") == line.item["symbol"]:
                 del field["unit"]
         to.warn(RAW_ONLY, f"unit `{line.item['symbol']}` is left out: {reason}", "its fields have no unit", "error")
-    elif line.what in (_FIELD, _MEMBER) and line.item is not line.whole:
+    elif line.what in (_FIELD, _MEMBER) and line.item is not line.owner:
         _degrade_part(network, line, reason, to)
-    elif any(line.whole is enum for enum in network.enums):
-        _drop_enumeration(network, line.whole, reason, to)
+    elif any(line.owner is enum for enum in network.enums):
+        _drop_enumeration(network, line.owner, reason, to)
     else:
-        _take_out(network, line.whole, reason, to)
+        _remove_owner(network, line.owner, reason, to)
 
 
 def _degrade_part(network: Network, line: _Line, reason: str, to: Definitions) -> None:
     """Reduce a field to its raw value or remove it, or remove a member of an enumeration."""
-    owner, item = line.whole["name"], line.item
+    owner, item = line.owner["name"], line.item
     if line.what == _MEMBER:
-        _remove(line.whole["members"], item)
+        _remove(line.owner["members"], item)
         text = f"enumeration `{owner}`: the name `{item['name']}` of {item['value']} is left out: {reason}"
         to.warn(RAW_ONLY, text, "its value stays a number", "error")
-        if not line.whole["members"]:
-            _drop_enumeration(network, line.whole, "no name of it can be imported", to)
+        if not line.owner["members"]:
+            _drop_enumeration(network, line.owner, "no name of it can be imported", to)
         return
-    whole = "message" if any(line.whole is message for message in network.messages) else "struct"
+    kind = "message" if any(line.owner is message for message in network.messages) else "struct"
     if item.keys() & set(_MEANING) and "count" not in item:
         _make_raw(network, item)
-        text = f"{whole} `{owner}`, `{item['name']}`: {reason}"
+        text = f"{kind} `{owner}`, `{item['name']}`: {reason}"
         to.warn(RAW_ONLY, text, "its raw value is imported, without formula, unit, limits and names", "error")
         return
-    fields = line.whole["fields"]
+    fields = line.owner["fields"]
     _remove(fields, item)
-    if fields and not _is_open(fields) and "length" in line.whole:
+    if fields and not _is_open(fields) and "length" in line.owner:
         to.without_field(owner, item["name"], reason)
-        if whole == "message":
-            _reserve(network, line.whole)
+        if kind == "message":
+            _reserve(network, line.owner)
     else:
-        _take_out(network, line.whole, reason, to)
+        _remove_owner(network, line.owner, reason, to)
 
 
 def _make_raw(network: Network, item: Item) -> None:
     if (enum := item.get("enum")) is not None:
-        members: list[Item] = next((one["members"] for one in network.enums if one["name"] == enum), [])
+        members: list[Item] = next(
+            (candidate["members"] for candidate in network.enums if candidate["name"] == enum), []
+        )
         item["type"] = "int" if any(member["value"] < 0 for member in members) else "uint"
     for key in _MEANING:
         item.pop(key, None)
@@ -191,19 +197,19 @@ def _reserve(network: Network, message: Item) -> None:
         message["reserved"] = message["length"] - end
 
 
-def _take_out(network: Network, whole: Item, reason: str, to: Definitions) -> None:
+def _remove_owner(network: Network, owner: Item, reason: str, to: Definitions) -> None:
     """Remove a message or struct. Fields that use the struct fail the next check and are removed then."""
-    if any(whole is message for message in network.messages):
-        network.seeds.pop(whole["name"], None)
-        to.left_out(whole["name"], reason)
-        _remove(network.messages, whole)
+    if any(owner is message for message in network.messages):
+        network.seeds.pop(owner["name"], None)
+        to.left_out(owner["name"], reason)
+        _remove(network.messages, owner)
     else:
-        to.warn(RAW_ONLY, f"struct `{whole['name']}` is left out: {reason}", "so are the fields that have it", "error")
-        _remove(network.structs, whole)
+        to.warn(RAW_ONLY, f"struct `{owner['name']}` is left out: {reason}", "so are the fields that have it", "error")
+        _remove(network.structs, owner)
 
 
 def _remove(items: list[Item], item: Item) -> None:
-    items[:] = [one for one in items if one is not item]
+    items[:] = [other for other in items if other is not item]
 
 
 def _declare_structs(network: Network) -> None:
@@ -228,18 +234,18 @@ def _write(file: Path, network: Network) -> dict[int, _Line]:
     """Write the ICD with one line for each named item. Returns the items by line number."""
     tree = network.tree()
     # JSON is valid YAML, and keeps each item in a line of its own.
-    lines, found = ["{"], {}
+    lines, items = ["{"], {}
 
     def add(text: str, line: _Line | None = None) -> None:
         lines.append(text)
         if line is not None:
-            found[len(lines)] = line
+            items[len(lines)] = line
 
     for key in [key for key in tree if key not in ("units", "enums", "structs", "messages")]:
         add(f"{json.dumps(key)}: {json.dumps(tree[key])},")
     add('"units": [')
-    for one in tree.get("units", ()):
-        add(json.dumps(one) + ",", _Line(one, one, _UNIT, one["symbol"]))
+    for unit in tree.get("units", ()):
+        add(json.dumps(unit) + ",", _Line(unit, unit, _UNIT, unit["symbol"]))
     add("],")
     for section, inner, what, part in (
         ("enums", "members", "enumeration", _MEMBER),
@@ -252,11 +258,14 @@ def _write(file: Path, network: Network) -> dict[int, _Line]:
             add(f"{head[:-1]}", _Line(item, item, what, item.get("id", number)))
             if inner in item:
                 add(f', "{inner}": [', _Line(item, item, what, item.get("id", number)))
-                for one in item[inner]:
-                    add(json.dumps(one) + ",", _Line(one, item, part, one.get("at", one.get("value"))))
+                for inner_item in item[inner]:
+                    add(
+                        json.dumps(inner_item) + ",",
+                        _Line(inner_item, item, part, inner_item.get("at", inner_item.get("value"))),
+                    )
                 add("]")
             add("},")
         add("],")
     add("}")
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return found
+    return items

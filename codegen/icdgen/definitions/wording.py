@@ -35,8 +35,8 @@ def line(text: str | None, longest: int = LONGEST) -> str:
 
 def summary(text: str | None) -> dict[str, str]:
     """Return the key `summary` of a comment, or no key for an empty comment."""
-    said = line(text)
-    return {"summary": said} if said else {}
+    plain = line(text)
+    return {"summary": plain} if plain else {}
 
 
 def unit(text: str | None) -> dict[str, str]:
