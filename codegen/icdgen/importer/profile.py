@@ -65,17 +65,25 @@ class Profile:
 
     @cached_property
     def _rules_with_unknown_headings(self) -> list[Rule]:
-        """Rules of which some heading is not in the vocabulary of a kind: a row with all headings is their heading row."""
-        vocabularies = [
-            frozenset(heading for headings in roles.values() for heading in headings)
-            for roles in self._headings_of_vocabulary.values()
-        ]
-        return [
-            rule
-            for rule in self.rules
-            if rule.heading_titles
-            and not any({folded(title) for title in rule.heading_titles} <= words for words in vocabularies)
-        ]
+        """Rules whose headings the vocabulary does not find: a row with all of them is a heading row."""
+        return [rule for rule in self.rules if rule.heading_titles and not self._finds_headings(rule)]
+
+    def _finds_headings(self, rule: Rule) -> bool:
+        """Return whether the vocabulary of one kind of table finds the heading row of a rule."""
+        headings = {folded(title) for title in rule.heading_titles}
+        columns = {folded(title) for title in rule.column_titles}
+        for kind, roles in self._headings_of_vocabulary.items():
+            vocabulary = {heading for titles in roles.values() for heading in titles}
+            # `head` with a title for each column states a whole heading row. Otherwise its
+            # titles can be of several rows, such as a group heading above the columns.
+            if columns <= headings:
+                if headings <= vocabulary:
+                    return True
+                continue
+            roles_of_rule = {role for role, titles in roles.items() if not (headings | columns).isdisjoint(titles)}
+            if all(roles_of_rule.intersection(group) for group in self._needs_of_vocabulary[kind]):
+                return True
+        return False
 
     @cached_property
     def known_headings(self) -> dict[str, frozenset[tuple[str, ...]]]:
