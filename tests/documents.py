@@ -23,6 +23,11 @@ def text(name: str) -> str:
     return (DOCS / f"{name}.md").read_text(encoding="utf-8")
 
 
+def blocks(page: str, language: str) -> list[str]:
+    """Code blocks of a language that a page shows."""
+    return re.findall(rf"^```{language}\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+
+
 def icds(page: str) -> list[str]:
     """Complete ICDs that a page shows."""
     return _EXAMPLE.findall(page)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 from urllib.parse import urlsplit
@@ -75,7 +74,7 @@ def test_the_guide_shows_the_loop():
 
 
 def test_the_first_lines_of_the_guide_decode_and_encode(tmp_path):
-    lines = re.findall(r"^```c\n(.*?)^```", documents.text("guides/driver-in-c"), re.MULTILINE | re.DOTALL)[0]
+    lines = documents.blocks(documents.text("guides/driver-in-c"), "c")[0]
     include, _, body = lines.partition("\n")
     source = tmp_path / "lines.c"
     source.write_text(

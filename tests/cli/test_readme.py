@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from scripts.page_commands import MARK, script, steps
+from tests import documents
 from tests.c import harness as c
 from tests.conftest import ROOT
 from tests.python import packages
@@ -106,7 +107,7 @@ def battery(tmp_path_factory) -> Path:
 
 def snippet(language: str) -> str:
     """First block of a language."""
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)[0]
+    return documents.blocks(README, language)[0]
 
 
 def test_the_message_shown_is_that_of_the_first_icd(battery):

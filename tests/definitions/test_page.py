@@ -18,7 +18,7 @@ PAGE = "".join(documents.text(f"guides/import-{name}") for name in documents.IMP
 
 
 def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+    return documents.blocks(PAGE, language)
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 
+from tests import documents
 from tests.conftest import ROOT
 from tests.importer.manuals import zephyr
 from tests.importer.test_command import icdgen
@@ -14,7 +15,7 @@ PAGE = (ROOT / "docs" / "guides" / "tutorial-manual.md").read_text(encoding="utf
 
 
 def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+    return documents.blocks(PAGE, language)
 
 
 def test_every_step_of_the_tutorial_gives_what_it_shows(tmp_path):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import documents
 from tests.conftest import ROOT
 
 FILES = ROOT / "docs" / "guides" / "tutorial"
@@ -23,7 +24,7 @@ def page(name: str) -> str:
 
 
 def blocks(name: str, language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", page(name), re.DOTALL)
+    return documents.blocks(page(name), language)
 
 
 def steps(name: str) -> Iterator[tuple[str, str]]:

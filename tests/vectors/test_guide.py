@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 
@@ -15,7 +14,7 @@ GUIDE = documents.text("guides/golden-vectors")
 
 
 def block(language: str) -> str:
-    return re.findall(rf"^```{language}\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
+    return documents.blocks(GUIDE, language)[0]
 
 
 @pytest.fixture(scope="module")

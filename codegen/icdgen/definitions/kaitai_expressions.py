@@ -96,9 +96,8 @@ def linear_function(text: object, is_integer: bool) -> tuple[str, str] | None:
     """
     expression = str(text)
     paths = set(_REFERENCE.findall(expression)) if len(expression) <= _LONGEST else set()
-    if (
-        len(paths) != 1 or "^" in expression or (is_integer and _WHOLE_DIVISION.search(expression))
-    ):  # `^` is the exclusive or in Kaitai Struct
+    # `^` is the exclusive or in Kaitai Struct.
+    if len(paths) != 1 or "^" in expression or (is_integer and _WHOLE_DIVISION.search(expression)):
         return None
     plain = re.sub(r"\s*([*/])\s*", r"\1", " ".join(_REFERENCE.sub("raw", expression).split()))
     try:

@@ -5,6 +5,7 @@ A node has the messages of each direction by their ids. A message has its fields
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from icdgen import layout
@@ -188,6 +189,12 @@ class NodeDescription:
     def declared(self) -> tuple[Composite[Any] | EnumDescription, ...]:
         """All messages, enumerations and structs that the node declares."""
         return (*self.messages, *self.enums, *self.structs)
+
+    @property
+    def usable(self) -> Iterator[Composite[Any] | EnumDescription]:
+        """All messages, enumerations and structs of included nodes, then its own."""
+        for node in (*self._description.icd.included(self.model), self.model):
+            yield from self._description.node(node).declared
 
     @cached_property
     def all_messages(self) -> tuple[MessageDescription, ...]:

@@ -43,9 +43,8 @@ class ScalarDescription(Named[NodePlace]):
         self.enum, self.node_orders = enum, node_orders
         self.storage = enum.storage if enum is not None else storage_of(place.bits, place.is_signed)
         self.steps, self.curve = steps.steps(place), place.curve
-        if (
-            place.derived is not None and place.unit is not None
-        ):  # derived values have no raw value, only a physical one
+        # Derived values have no raw value, only a physical one.
+        if place.derived is not None and place.unit is not None:
             self.name = f"{self.name}_{place.unit.identifier}"
         self.declared_name = self.name
         # Names carry the unit, so that code with a wrong unit is visible where it is written.

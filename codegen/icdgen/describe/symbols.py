@@ -49,10 +49,6 @@ class NamingPolicy:
         """
         return ()
 
-    def public(self, node: NodeDescription, part: Part) -> Symbols:
-        """Names that a node has for a message, enumeration or struct of its own or of an included node."""
-        return ()
-
     def link(self, node: NodeDescription) -> Symbols:
         """Names of the link of a node."""
         return ()
@@ -95,9 +91,6 @@ def symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifi
     yield from policy.fixed(description)
     for node in description.nodes:
         yield from policy.node(node)
-        for included in map(description.node, (*description.icd.included(node.model), node.model)):
-            for part in included.declared:
-                yield from policy.public(node, part)
         for enum in node.enums:
             yield from policy.enumeration(enum)
             for member in enum.members:

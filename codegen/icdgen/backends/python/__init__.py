@@ -67,13 +67,13 @@ class PythonBackend:
             folder = root / node.name
             shared = {**common, "origin": origin(node.model), "node": node}
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
-            yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.of_node(node, description))
+            yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.of_node(node))
             if node.name in linked:
                 yield folder / "_link.py", render(
                     "link.py.j2", **shared, link=literals.expression(link_call(linked[node.name]))
                 )
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **nodes.spoken(node, description), **shared)
+            yield folder / "__init__.py", render("types.py.j2", **nodes.bases(node, description), **shared)
             for enum in node.enums:
                 yield folder / f"{names.module_name(enum)}.py", render("enum.py.j2", enum=enum, **shared)
             for struct in node.structs:

@@ -25,11 +25,9 @@ _OF_PACKAGE = (
 )  # fmt: skip
 
 
-def of_node(node: NodeDescription, description: Description) -> dict[str, object]:
+def of_node(node: NodeDescription) -> dict[str, object]:
     """Return the modules and names that can be imported from a node, and its docstring."""
-    declared: list[tuple[str, str]] = []
-    for owner in map(description.node, (*description.icd.included(node.model), node.model)):
-        declared += ((names.home(part, node.name, ".."), names.class_name(part)) for part in owner.declared)
+    declared = [(names.home(part, node.name, ".."), names.class_name(part)) for part in node.usable]
     declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),
@@ -80,7 +78,7 @@ def listing(names: Iterable[str]) -> str:
     return exploded("[", [literal(name) for name in names], "]")
 
 
-def spoken(node: NodeDescription, description: Description) -> dict[str, object]:
+def bases(node: NodeDescription, description: Description) -> dict[str, object]:
     """Return the included nodes of a node, as the bases of its class."""
     included = [other.name for other in reversed(description.icd.included(node.model))]
     return {"included": included, "bases": f"({', '.join(f'_{name}' for name in included)})" if included else ""}

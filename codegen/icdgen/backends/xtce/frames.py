@@ -118,9 +118,8 @@ class Frames:
         entries: list[Entry] = []
         for part in parts:
             run = run_of_all(part.model.elements(), message.node) if part.count else run_of(part.model, message.node)
-            if part.model.view and (
-                is_sent or frame.lacks
-            ):  # overlays of existing bits; a command sets only the fields themselves
+            # Overlays of existing bits: a command sets only the fields themselves.
+            if part.model.view and (is_sent or frame.lacks):
                 continue
             if run is None:
                 frame.lacks.append(f"`{part.model.name}` is left out: XTCE has no word for the order of its bits")

@@ -17,9 +17,8 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
     best, most = None, 0.0
     for kind, roles in profile.headings.items():
         given = _roles(texts, roles)
-        if (
-            kind == "fields" and "at_bytes" in given and "name" not in given
-        ):  # `Byte | Meaning`: what it means is its name
+        # In `Byte | Meaning`, the meaning is the name.
+        if kind == "fields" and "at_bytes" in given and "name" not in given:
             given = ["name" if role == "description" else role for role in given]
         there = set(given)
         if not all(any(role in there for role in group) for group in profile.needs[kind]):

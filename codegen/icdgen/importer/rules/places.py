@@ -16,6 +16,11 @@ class PlaceReader:
     def __init__(self, rule: Rule, order: Order, error: Callable[[str, str, Spot, str], None]) -> None:
         self.rule, self.order, self.error = rule, order, error
 
+    @property
+    def _orders(self) -> str:
+        """Orders of the node, as a profile states them."""
+        return f"byte_order: {self.order.byte_order}, bit_order: {self.order.bit_order}"
+
     def place(self, numbers: dict[str, int], byte_shift: int, size: int) -> tuple[int, int] | None:
         """Number of the first bit and size of the range, 0 if only its beginning is given; None without a position."""
         if "byte" not in numbers and "bit" not in numbers:
@@ -51,14 +56,18 @@ class PlaceReader:
         """Check a range from a bit of one byte to a bit of another; report one that can be read in two ways."""
         lacking = [role for role in ("byte", "bit") if role not in numbers]
         outside = [role for role in ("bit", "end_bit") if numbers.get(role, 0) > 7]
-        if lacking or outside or "last_bit" in numbers:
+        problem = ""
+        if lacking:
             problem, help = (
-                (f"`end_bit` without `{lacking[0]}`", "give both ends of the range: `{byte}.{bit}-{last_byte}.{end_bit}`")
-                if lacking
-                else (f"a byte has no bit {numbers[outside[0]]}", "`end_bit` and `bit` count from 0 to 7 within their bytes")
-                if outside
-                else ("`end_bit` and `last_bit` exclude each other", "remove one of the roles")
-            )  # fmt: skip
+                f"`end_bit` without `{lacking[0]}`",
+                "give both ends of the range: `{byte}.{bit}-{last_byte}.{end_bit}`",
+            )
+        elif outside:
+            problem = f"a byte has no bit {numbers[outside[0]]}"
+            help = "`end_bit` and `bit` count from 0 to 7 within their bytes"
+        elif "last_bit" in numbers:
+            problem, help = "`end_bit` and `last_bit` exclude each other", "remove one of the roles"
+        if problem:
             self.error("IMP105", f"{where}: {problem}", spot, help)
             return False
         if self.counts_through(numbers):
@@ -66,13 +75,12 @@ class PlaceReader:
         first, last = self.ends(numbers)
         if positions.bits_between(first, last, size, self.order) is not None:
             return True
-        order = f"byte_order: {self.order.byte_order}, bit_order: {self.order.bit_order}"
         self.error(
             "IMP105",
             f"{where}: the place from bit {first[1]} of byte {first[0]} to bit {last[1]} of byte {last[0]} is not clear"
             f"{f' with a size of {size}' if size else ''}",
             spot,
-            f"with `{order}`, such a range can be read in two ways: give a column of sizes the role `bits`, "
+            f"with `{self._orders}`, such a range can be read in two ways: give a column of sizes the role `bits`, "
             "or a type with a width, and compare both with the table",
         )
         return False
@@ -96,7 +104,6 @@ class PlaceReader:
         count = max(printed) - min(printed) + 1
         start = at - min(numbers["bit"], numbers.get("last_bit", numbers["bit"]))  # bit 0 of the bytes
         highest = max(numbers["bit"], numbers.get("last_bit", 0))
-        order = f"byte_order: {self.order.byte_order}, bit_order: {self.order.bit_order}"
         is_ambiguous = self.order not in positions.MONOTONIC
         help = ""
         if "last_byte" in numbers and max(highest + 1, at + size - start) > 8 * count:
@@ -106,9 +113,9 @@ class PlaceReader:
         elif count > 1 and "last_bit" in numbers and highest < 8 and not self.rule.has_byte_range:
             help = "a bit in the last byte has the role `end_bit`; bits that are numbered in all bytes need `{byte}-{last_byte}`"
         elif "last_byte" not in numbers and highest > 7 and is_ambiguous:
-            help = f"with `{order}`, state all bytes in which the bits are numbered: the roles `byte` and `last_byte`"
+            help = f"with `{self._orders}`, state all bytes in which the bits are numbered: the roles `byte` and `last_byte`"
         elif count > 1 and self.order == Order("little", "msb0"):
-            help = f"with `{order}`, bit numbers in several bytes have no order: state that of the source under `node:`"
+            help = f"with `{self._orders}`, bit numbers in several bytes have no order: state that of the source under `node:`"
         if help:
             bytes_ = f"byte {printed[0]}" if count == 1 else f"bytes {printed[0]} to {printed[1]}"
             self.error("IMP105", f"{where}: the place of bit {highest} in {bytes_} is not clear", spot, help)

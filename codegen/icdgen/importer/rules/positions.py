@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from itertools import pairwise
 
 from icdgen.importer.rules.bit_order import ORDERS, Bit, Order
 
@@ -30,10 +29,13 @@ def runs_of(text: str) -> list[tuple[int, int]]:
     for item in _PARTING.split(text.strip()):
         ends = [int(number) for number in re.findall(r"[0-9]+", item)]
         numbers.update(range(min(ends), max(ends) + 1))
-    ascending = sorted(numbers)
-    starts = [ascending[0], *(after for before, after in pairwise(ascending) if after != before + 1)]
-    ends = [*(before for before, after in pairwise(ascending) if after != before + 1), ascending[-1]]
-    return list(zip(starts, ends, strict=True))
+    runs: list[tuple[int, int]] = []
+    for number in sorted(numbers):
+        if runs and number == runs[-1][1] + 1:
+            runs[-1] = runs[-1][0], number
+        else:
+            runs.append((number, number))
+    return runs
 
 
 def bits_between(first: Bit, last: Bit, size: int, order: Order) -> list[Bit] | None:

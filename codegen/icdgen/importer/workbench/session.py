@@ -175,18 +175,18 @@ class Session:
 
     def undo(self) -> None:
         """Take back the last change of the profile; without one, nothing happens."""
-        with self.lock:
-            if self.past:
-                self.future.append(self.text)
-                self.text = self.past.pop()
-                self.apply()
+        self._restore(self.past, self.future)
 
     def redo(self) -> None:
         """Make the change again that was taken back last; without one, nothing happens."""
+        self._restore(self.future, self.past)
+
+    def _restore(self, source: list[str], target: list[str]) -> None:
+        """Replace the text by the last one of ``source``, and append it to ``target``."""
         with self.lock:
-            if self.future:
-                self.past.append(self.text)
-                self.text = self.future.pop()
+            if source:
+                target.append(self.text)
+                self.text = source.pop()
                 self.apply()
 
     def read_document(self) -> None:
