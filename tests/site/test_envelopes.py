@@ -185,3 +185,19 @@ def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):
         assert words in plain, words
     message = (tmp_path / "site" / "autopilot" / "heartbeat.html").read_text("utf-8")
     assert 'title="header: constant, length' in message and 'title="trailer: checksum"' in message
+
+
+def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
+    write(make([LINKS / "ubx.yaml"]), tmp_path / "ubx")
+    page = (tmp_path / "ubx" / "receiver" / "end_of_epoch.html").read_text()
+    assert '<span class="id"><b>01 61</b></span>' in page
+    overview = (tmp_path / "ubx" / "receiver" / "index.html").read_text()
+    assert '<span id="telemetry-353">01 61</span>' in overview and ">Hex<" not in overview
+    assert "telemetry 01 61 " in (tmp_path / "ubx" / "search-index.js").read_text()
+
+
+def test_other_ids_are_written_as_number_and_in_hexadecimal(tmp_path):
+    write(make([LINKS / "mavlink1.yaml"]), tmp_path / "mavlink")
+    pages = [page.read_text() for page in (tmp_path / "mavlink").rglob("*.html")]
+    assert any('<span class="id"><b>11</b> <code>0x0B</code></span>' in page for page in pages)
+    assert any(">Hex<" in page and '<td class="n hex">0B</td>' in page for page in pages)

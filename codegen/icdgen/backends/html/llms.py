@@ -27,7 +27,7 @@ def text(relations: Relations, compared: bool) -> str:
         lines += [f"## {_line(node.title)}", "", *([_line(about), ""] if about else [])]
         lines += [f"- [Overview]({links.node(node.name)})"]
         for message in node.messages:
-            ids = "/".join(str(id) for _, id in texts.ids(message))
+            ids = "/".join(id.text for id in relations.ids(message))
             about = f"{message.kind} {ids}, {length_text(message)}. {message.summary}".rstrip()
             lines.append(f"- [{_line(message.name)}]({links.message(message)}): {_line(about)}")
         lines += [f"- [{_line(enum.name)}]({links.enum(enum)}): enumeration" for enum in node.enums]

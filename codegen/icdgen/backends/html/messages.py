@@ -44,7 +44,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "message": message,
         "node": node,
         "url": relations.links.message(message),
-        "ids": texts.ids(message),
+        "ids": relations.ids(message),
         "names": names(described, in_c),
         "facts": _facts(relations, node, message),
         "drawings": drawings,
@@ -88,7 +88,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
             for owner, row in relations.logged[message.node, message.name]
         ),
         ("Manual", ", ".join(source), ""),
-        ("Spoken by", ", ".join(speaker.title for speaker in relations.speakers[node.name] if speaker is not node), ""),
+        ("Used by", ", ".join(speaker.title for speaker in relations.speakers[node.name] if speaker is not node), ""),
     ]
     return [(label, text, url) for label, text, url in facts if text]
 
@@ -99,7 +99,7 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
     for part in parts:
         until = "up to the end" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
         most = count(part.most, "element" if part.is_array else "byte")
-        yield "Open end" if part is parts[-1] else "Open part", f"{part.name}: up to {most}, {until}", ""
+        yield "Variable end" if part is parts[-1] else "Variable part", f"{part.name}: up to {most}, {until}", ""
 
 
 def _plan(

@@ -99,6 +99,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "document": document(node),
         "facts": [*_facts(node), ("Byte order", f"{node.byte_order}-endian"), ("Bit numbering", numbering)],
         "rows": rows,
+        "has_hex": any(id.hexadecimal for message in used_messages for id in relations.ids(message)),
         "kinds": [
             (kind, title, count)
             for kind, title in _KINDS.items()
@@ -128,14 +129,15 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
 
 def _row(relations: Relations, node: Node, message: Message) -> dict[str, object]:
     own = message.node == node.name
-    ids = texts.ids(message)
+    ids = relations.ids(message)
     mask = [row.bit for owner, row in relations.logged[message.node, message.name] if owner is node]
     return {
         "message": message,
         "url": relations.links.message(message),
         "ids": ids,
         "anchors": [
-            f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids
+            f"{'telemetry' if id.purpose == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id.value}"
+            for id in ids
         ],
         "bytes": (
             message.length if len(message.layout.lengths) == 1 else f"{message.layout.shortest}\u2013{message.length}"

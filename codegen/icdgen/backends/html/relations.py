@@ -108,6 +108,10 @@ class Relations:
         """Return the message as a link."""
         return Place(message.name, self.links.message(message))
 
+    def ids(self, message: Message) -> list[texts.Id]:
+        """Return the ids of a message in the notation of its protocol."""
+        return texts.ids(message, self._speaker(self.icd.node(message.node)).facts.stream)
+
     def shown_fields(self, message: Message) -> list[tuple[str, NodePlace]]:
         """Return names and fields that the page of a message shows; of some arrays,
         only the first element.

@@ -90,20 +90,21 @@ def script(relations: Relations) -> str:
 
 def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[Entry]:
     links = relations.links
-    numbers = texts.ids(message)
-    ids = "/".join(f"{id} (0x{id:02X})" for _, id in numbers)
+    ids = relations.ids(message)
+    shown_ids = "/".join(f"{id.text} (0x{id.hexadecimal})" if id.hexadecimal else id.text for id in ids)
     own = _words(message, node)
     # Manuals and programs write ids in different ways.
     phrases = [spelling for id in message.ids for spelling in (str(id), f"0x{id:02x}", f"{id:02x}h", f"id {id}")]
-    for way, id in numbers:
-        phrases += [f"{message.kind} {id}"] if way == "id" else [f"{way} {id}"]
+    for id in ids:
+        phrases += [f"{message.kind if id.purpose == 'id' else id.purpose} {id.value}"]
+        phrases += [] if id.hexadecimal else [id.text.lower()]
     if message.kind == CONFIGURATION:
         phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
     phrases += _table(message.table)
     speakers = " ".join(speaker.name for speaker in relations.speakers[node.name])
     buses = " ".join(bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node))
     about = f"{speakers} {message.group} {buses} {message.summary}"
-    context = f"{message.kind} {ids} · {node.title}"
+    context = f"{message.kind} {shown_ids} · {node.title}"
     yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message), message.aliases)
     for name, field in relations.shown_fields(message):
         unit = (

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
+from typing import NamedTuple
 
 from icdgen.describe.bounds import allowed_ends
+from icdgen.describe.ids import id_text, pair_bytes
 from icdgen.describe.numbers import exact_text, factor_text
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.places import NodePlace
+from icdgen.protocol.envelope import Stream
 
 MINUS = "\N{MINUS SIGN}"
 BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}
@@ -52,11 +55,23 @@ def type_name(field: NodePlace) -> str:
     return f"{field.type}{field.bits}" if field.type in ("uint", "int", "float") else field.type
 
 
-def ids(message: Message) -> list[tuple[str, int]]:
-    """Return the ids of a message with the purpose of each."""
+class Id(NamedTuple):
+    """One id of a message, with its purpose: ``id``, ``set`` or ``get``."""
+
+    purpose: str
+    value: int
+    text: str  # the notation of the protocol: ``146``, or ``0A 04`` if a header has class and number as two bytes
+    hexadecimal: str  # ``92``; empty if the text is hexadecimal
+
+
+def ids(message: Message, form: Stream | None) -> list[Id]:
+    """Return the ids of a message in the notation of the packets of its node."""
     if message.kind == CONFIGURATION:
-        return [("set", message.set_id or 0), ("get", message.get_id or 0)]
-    return [("id", message.id or 0)]
+        values = [("set", message.set_id or 0), ("get", message.get_id or 0)]
+    else:
+        values = [("id", message.id or 0)]
+    is_hexadecimal = bool(pair_bytes(form))
+    return [Id(purpose, id, id_text(form, id), "" if is_hexadecimal else f"{id:02X}") for purpose, id in values]
 
 
 def capitalized(text: str) -> str:
