@@ -130,3 +130,41 @@ def test_every_finding_about_a_rule_names_its_line(tmp_path):
     trouble = next(t for t in result.troubles if t.code == "IMP102" and "no column" in t.message)
     assert (trouble.place.line, trouble.place.column) == (12, 7)
     assert "its columns are `Num`, `Parameter`" in trouble.help
+
+
+CAPTION = "Table 3: Basic state, id 0x02F4, 5 bytes\n\nNum"
+
+
+@pytest.mark.parametrize(
+    ("caption", "messages"),
+    [
+        (CAPTION, []),
+        (CAPTION.replace("0x02F4", "756"), []),
+        (CAPTION.replace("0x02F4", "0x02F5"), ["`0x02F5` in its caption, `0x02F4` in its heading"]),
+    ],
+)
+def test_caption_and_heading_with_different_ids_are_reported(tmp_path, caption, messages):
+    rules = RULES.replace("{heading:", "{caption: ', id {id}, {length} bytes$', heading:")
+    result, _ = read(tmp_path, TABLE.replace("Num", caption, 1), rules)
+    reported = found(result, "IMP110")
+    assert [text.rsplit("`id`: ")[-1] for text in reported] == messages and result.failed == bool(messages)
+
+
+@pytest.mark.parametrize(
+    ("second", "values"),
+    [("TM\t2", []), ("HK\t0x02", []), ("TC\t2", ["`telemetry` and `telecommand`"]), ("TM\t3", ["`2` and `3`"])],
+)
+def test_rows_that_give_a_message_two_kinds_or_lengths_are_reported(tmp_path, second, values):
+    rules = r"""rules:
+  - tables: {head: Id | Message | Kind | Length}
+    columns: {Id: id, Message: message, Kind: kind, Length: length, Field: name, Type: type}
+    map: {kind: {TM: telemetry, TC: telecommand, HK: telemetry}}
+"""
+    table = f"""1 Messages
+
+Id\tMessage\tKind\tLength\tField\tType
+5\tState\tTM\t2\tMode\tuint8
+5\tState\t{second}\tFault\tuint8
+"""
+    result, _ = read(tmp_path, table, rules)
+    assert [text.rsplit(": ")[-1].removesuffix(" in its rows") for text in found(result, "IMP110")] == values

@@ -110,12 +110,34 @@ class _Interpreter:
             own = {role: roles.given.pop(role) for role in list(roles.given) if role in of_message}
             key = tuple(own.get(role, "") for role in ("message", "id", "set_id", "get_id", "of"))
             part = parts.setdefault(key, Part(rule, table, dict(message)))
+            self.check_rows_agree(part, own)
             part.given.update(own)
+            part.stated_in_rows.update(own)
             if is_field or not own or rule.what not in ("message", "registers"):
                 self.row(part, roles, reader)  # else the row is a message without fields
         if not parts and {"message", "id", "set_id"} & set(message) and rule.what in ("message", "registers"):
             parts[()] = Part(rule, table, message)  # without parameters
         self.parts += parts.values()
+
+    def check_rows_agree(self, part: Part, own: dict[str, str]) -> None:
+        """Report a row that gives a message another kind or length than an earlier row of the table."""
+        for role in ("kind", "length"):
+            earlier = part.stated_in_rows.get(role, "")
+            if earlier and own.get(role) and not _is_equal(part.rule, role, earlier, own[role]):
+                self.disagree(
+                    part.rule, part.where, part.table.spot, role, f"`{earlier}` and `{own[role]}` in its rows"
+                )
+
+    def disagree(self, rule: Rule, where: str, spot: Spot, role: str, values: str) -> None:
+        """Report two values of a role of one message."""
+        self.notes.error(
+            "IMP110",
+            f"{where}: rule `{rule.name}` reads two values of `{role}`: {values}",
+            spot,
+            "correct the pattern that reads something else, or, if the document contradicts itself, correct the table "
+            "with `--tables`",
+            rule.place,
+        )
 
     def row(self, part: Part, roles: Roles, reader: FieldReader) -> None:
         """Add what one row gives."""
@@ -146,17 +168,20 @@ class _Interpreter:
     def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
         """The roles that the rule states, or finds in texts around the table and in its rows; the nearest text first."""
         given = dict(rule.literals)
+        sources: dict[str, str] = {}  # role -> source that gave it; literals have none
         missing: list[tuple[str, Pattern]] = []
         for source, patterns in rule.sources.items():
             for pattern in patterns:
-                if pattern.roles <= set(given):
-                    continue
                 taken = next((t for text in self.texts(rule, table, source) if (t := take([pattern], text))), None)
                 if taken is None:
                     missing.append((source, pattern))
                     continue
-                self.doubt(rule, table, taken.roles, taken.left)
-                given.update({role: value for role, value in taken.roles.items() if role not in given})
+                self.check_sources_agree(rule, table, source, taken.roles, given, sources)
+                new = {role: value for role, value in taken.roles.items() if role not in given}
+                if new:
+                    self.doubt(rule, table, taken.roles, taken.left)
+                given.update(new)
+                sources.update(dict.fromkeys(new, source))
         for source, pattern in missing:
             if source not in rule.optional and not pattern.roles <= set(given):
                 self.notes.error(
@@ -170,6 +195,25 @@ class _Interpreter:
             if (meaning := words.get(given.get(role, "").casefold())) is not None:
                 given[role] = meaning
         return given
+
+    def check_sources_agree(
+        self,
+        rule: Rule,
+        table: SourceTable,
+        source: str,
+        roles: dict[str, str],
+        given: dict[str, str],
+        sources: dict[str, str],
+    ) -> None:
+        """Report a source that gives a message another id, kind or length than the source that is used.
+
+        Patterns of one source are alternatives. Names are not compared: a caption and a heading often have two names.
+        """
+        for role, value in roles.items():
+            used = sources.get(role, source)
+            if role in (*_IDS, "kind", "length") and used != source and not _is_equal(rule, role, given[role], value):
+                values = f"`{given[role]}` in its {used}, `{value}` in its {source}"
+                self.disagree(rule, table.title, table.spot, role, values)
 
     def texts(self, rule: Rule, table: SourceTable, source: str) -> list[str]:
         """The texts of a source, the nearest first. Of rows: each of them, then those above the headings as one text."""
@@ -320,6 +364,15 @@ class _Interpreter:
                         )
                     )
                     ids_with_table |= ids
+
+
+def _is_equal(rule: Rule, role: str, first: str, second: str) -> bool:
+    """Return whether two texts give a role the same value: the same number, or words with one meaning."""
+    if role == "kind":
+        words = rule.map.get(role, {})
+        return words.get(first.casefold(), first) == words.get(second.casefold(), second)
+    numbers = whole_number(first, rule.base), whole_number(second, rule.base)
+    return numbers[0] == numbers[1] if None not in numbers else first == second
 
 
 def _what(choice: Choice, ignored: bool) -> str:
