@@ -48,3 +48,16 @@ def test_messages_with_parts_of_variable_length_accept_the_lengths_of_their_last
         tests = length_tests_of_frame(layout.lengths)
         accepted = [length for length in range(layout.longest + 9) if all(passes(test, length) for test in tests)]
         assert accepted == list(layout.parts[0].lengths) == list(layout.lengths)
+
+
+def test_a_decoder_accepts_exactly_the_counters_of_a_variable_part():
+    icd = read(ROOT / "tests/conformance/odd_icds")
+    messages = [message for node in describe(icd).nodes for message in node.messages]
+    parts = [part for message in messages for part in message.variable_parts if not part.is_rest]
+    assert {bool(part.counter_tests) for part in parts} == {True, False}
+    for part in parts:
+        low, high = part.model.low, part.model.high
+        for value in {0, low - 1, low, high, high + 1, part.counter.storage.max}:
+            if 0 <= value <= part.counter.storage.max:
+                accepted = all(passes(test, value) for test in part.counter_tests)
+                assert accepted == (part.model.fewest <= value + part.model.plus <= part.model.most)

@@ -15,6 +15,7 @@ from icdgen.describe.comments import Comment, field_comment, struct_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import Thing, first_owners, owners_elsewhere
+from icdgen.describe.lengths import ElementBytes, LengthTest, length_tests
 from icdgen.describe.named import Named
 from icdgen.describe.scalar import ScalarDescription
 from icdgen.icd.layout import UNDECLARED, Layout, Orders, VariablePart
@@ -227,9 +228,35 @@ class VariablePartDescription(NamedTuple):
         return self.field.element_struct
 
     @property
+    def is_rest(self) -> bool:
+        """Whether the length of the frame gives the number of elements, and no field of the frame."""
+        return self.counter.model.is_count
+
+    @property
+    def counter_tests(self) -> tuple[LengthTest, ...]:
+        """Comparisons that every valid value of the counter passes and another value of its type can fail."""
+        tests = length_tests(range(self.model.low, self.model.high + 1))
+        return tuple(test for test in tests if test.kind != "at most" or test.value < self.counter.storage.max)
+
+    @property
     def needs_count_check(self) -> bool:
         """Whether the type of the counter can store numbers of elements that the part cannot have."""
-        return self.model.low > 0 or self.counter.storage.max > self.model.high
+        return bool(self.counter_tests)
+
+    @property
+    def place(self) -> ElementBytes:
+        """First byte of an element in the longest frame, by its index."""
+        return ElementBytes(self.model.begin, self.model.step)
+
+    @property
+    def bytes_beyond_fewest(self) -> ElementBytes:
+        """Bytes up to the end of the part in the longest frame, by the number of elements beyond the fewest."""
+        return ElementBytes(self.model.shortest, self.model.step)
+
+    @property
+    def counter_of_text(self) -> int:
+        """Value of the counter minus number of characters of a text. The text is padded to the fewest characters."""
+        return -self.model.plus
 
 
 WithFields = TypeVar("WithFields", bound=Message | Struct)

@@ -1,4 +1,4 @@
-"""Tests of the length of a frame: the comparisons by which a decoder accepts the lengths of a message."""
+"""Lengths of frames: bytes of elements, and the comparisons by which a decoder accepts the lengths of a message."""
 
 from __future__ import annotations
 
@@ -11,6 +11,13 @@ class LengthTest(NamedTuple):
     kind: Literal["equal", "at least", "at most", "multiple"]
     value: int
     without: int = 0  # bytes to subtract first, for a multiple
+
+
+class ElementBytes(NamedTuple):
+    """Number of bytes that depends on a number of elements: ``before`` plus ``step`` for each element."""
+
+    before: int
+    step: int
 
 
 def length_tests(lengths: range, minimum: int = 0) -> tuple[LengthTest, ...]:

@@ -18,6 +18,7 @@ from icdgen.describe.description import (
     VariablePartDescription,
 )
 from icdgen.describe.enums import EnumDescription
+from icdgen.describe.lengths import LengthTest, length_tests
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
@@ -68,6 +69,14 @@ class MessageDescription(Composite[Message]):
         return tuple(
             VariablePartDescription(part, by_name[part.name], by_name[part.counter]) for part in self.model.layout.parts
         )
+
+    @property
+    def length_tests(self) -> tuple[LengthTest, ...]:
+        """Tests of the length of a frame of variable length, with all parts in front of the last one in full."""
+        assert self.last_part is not None
+        last = self.last_part.model
+        # Before these tests, a decoder with several parts has put all of the earlier ones in front of the last.
+        return length_tests(last.lengths, last.begin if self.earlier_parts else 0)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

@@ -167,25 +167,19 @@ def _of_variable_length(message: MessageDescription, last: VariablePartDescripti
             "reading": reading,
             "walking": names.walking(message, last.field.name) if not message.earlier_parts else "",
             "there": decoding.there(last),
-            "place": decoding.place(last.model.begin, last.model.step),
+            "place": decoding.place(last.place),
             "decode": decoding.of_elements(last, reading),
-            "encode": [
-                decoding.for_each(
-                    last.field.member, decoding.elements(last), writing, last.model.begin, last.model.step
-                )
-            ],
+            "encode": [decoding.for_each(last.field.member, decoding.elements(last), writing, last.place)],
         }
     return {
         "element": of_element,
         "earlier": decoding.of_earlier_parts(message),
         "size": encoding.size(message),
-        "misfit_length": decoding.misfit_length(
-            last, names.constant(message, "length"), last.model.begin if message.earlier_parts else 0
-        ),
+        "misfit_length": decoding.misfit_length(message),
         "miscounted": decoding.miscounted(last),
         "elements": decoding.elements(last),
         "counted_text": encoding.counted_text(last),
-        "miscount": decoding.miscount(last) if last.needs_count_check else "",
+        "miscount": decoding.miscount(last),
     }
 
 

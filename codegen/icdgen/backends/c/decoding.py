@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.names import stem
+from icdgen.backends.c.names import constant, stem
 from icdgen.backends.c.statement import call, either, failed_length_test, loop
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
@@ -15,7 +15,7 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.arrays import ElementRounds, StructArray
 from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import Flags, Group, Rounds, Row, Thresholds
-from icdgen.describe.lengths import length_tests
+from icdgen.describe.lengths import ElementBytes
 
 THRESHOLDS = Thresholds(flags=(8, 4), row=8)
 """Sizes of groups for which the support header has macros."""
@@ -58,7 +58,7 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     lines = [_field(item) if isinstance(item, FieldDescription) else _group(item, message) for item in groups]
-    if message.last_part is not None and message.last_part.counter.model.is_count:
+    if message.last_part is not None and message.last_part.is_rest:
         counter = message.last_part.counter
         lines.append(f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};")
     return lines
@@ -66,23 +66,21 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 
 def _count(part: VariablePartDescription) -> str:
     """Return the number of elements in ``length`` bytes beyond the fewest."""
-    remaining = f"length - {part.model.shortest}u" if part.model.shortest else "length"
-    if part.model.step == 1:
+    before, step = part.bytes_beyond_fewest
+    remaining = f"length - {before}u" if before else "length"
+    if step == 1:
         return remaining
-    return f"({remaining}) / {part.model.step}u" if part.model.shortest else f"{remaining} / {part.model.step}u"
+    return f"({remaining}) / {step}u" if before else f"{remaining} / {step}u"
 
 
-def misfit_length(part: VariablePartDescription, longest: str, minimum: int = 0) -> str:
-    """Return the condition for a ``length`` that no frame has. ``longest`` is the macro of the longest.
-
-    The code before it rejects frames of less than ``minimum`` bytes.
-    """
-    return either([failed_length_test(test, longest) for test in length_tests(part.model.lengths, minimum)])
+def misfit_length(message: MessageDescription) -> str:
+    """Return the condition for a ``length`` that no frame has."""
+    return either([failed_length_test(test, constant(message, "length")) for test in message.length_tests])
 
 
 def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
     """Return type and statement of the count in a frame, as ``value``, and the condition that it does not match the length."""
-    if part.counter.model.is_count:
+    if part.is_rest:
         return None
     bits = max(part.counter.storage.bits, 32)
     value = "value" if part.counter.storage.bits == bits else cast("value", bits)
@@ -96,39 +94,40 @@ def of_earlier_parts(message: MessageDescription) -> list[dict[str, object]]:
         {
             "type": type_of(part.counter),
             "reading": number(part.counter, "value"),
-            "misfit": miscount(part, "value") if part.needs_count_check else "",
+            "misfit": miscount(part, "value"),
             "begin": part.model.begin,
-            "there": _bytes(elements(part, "value"), part.model.step),
-            "given": _bytes(elements(part), part.model.step),
-            "miscount": miscount(part) if part.needs_count_check else "",
+            "there": in_bytes(elements(part, "value"), part.model.step),
+            "given": in_bytes(elements(part), part.model.step),
+            "miscount": miscount(part),
             "counter": part.counter,
         }
         for part in message.earlier_parts
     ]
 
 
-def _bytes(count: str, step: int) -> str:
+def in_bytes(count: str, step: int) -> str:
+    """Return the bytes of elements of ``step`` bytes."""
     return count if step == 1 else f"{count} * {step}u"
 
 
 def of_elements(part: VariablePartDescription, reading: str) -> list[str]:
     """Return the statements that read the structs of the last variable part from ``buffer``."""
     name = part.field.member
-    loop_over = for_each(name, there(part), reading, part.model.begin, part.model.step)
+    loop_over = for_each(name, there(part), reading, part.place)
     return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
-def for_each(name: str, count: str, function: str, begin: int, step: int) -> str:
+def for_each(name: str, count: str, function: str, bytes: ElementBytes) -> str:
     """Return the loop that calls a function with each element of an array of structs and its place in ``buffer``."""
     if count == "1u":
-        return call(function, (f"&message->{name}[0]", f"&buffer[{begin}]"))
-    statement = call(function, (f"&message->{name}[element]", f"&buffer[{place(begin, step)}]"), depth=2)
+        return call(function, (f"&message->{name}[0]", f"&buffer[{bytes.before}]"))
+    statement = call(function, (f"&message->{name}[element]", f"&buffer[{place(bytes)}]"), depth=2)
     return f"{loop('element', count)}\n{STEP * 2}{statement}\n{STEP}}}"
 
 
 def of_array(array: StructArray, function: str) -> str:
     """Return the loop that calls a function with each element of a complete array of structs."""
-    return for_each(array.field.member, f"{array.field.count}u", function, array.begin, array.step)
+    return for_each(array.field.member, f"{array.field.count}u", function, ElementBytes(array.begin, array.step))
 
 
 def there(part: VariablePartDescription) -> str:
@@ -138,8 +137,9 @@ def there(part: VariablePartDescription) -> str:
     return count + (f" + {part.model.fewest}u" if part.model.fewest else "")
 
 
-def place(begin: int, step: int, in_round: int = 1) -> str:
+def place(bytes: ElementBytes, in_round: int = 1) -> str:
     """Return the first byte of ``element``, or of the round that starts with it."""
+    begin, step = bytes
     number = "element" if in_round == 1 else f"(element / {in_round}u)"
     offset = number if step == 1 else f"{number} * {step}u"
     return f"{begin}u + {f'({offset})' if step > 1 else offset}" if begin else offset
@@ -154,16 +154,18 @@ def elements(part: VariablePartDescription, counter: str = "") -> str:
 
 
 def miscount(part: VariablePartDescription, counter: str = "") -> str:
-    """Return the condition for a count that the variable part cannot have."""
+    """Return the condition for a count that the variable part cannot have; empty if it can have all."""
     count = counter or f"message->{part.counter.name}"
-    tests = [f"{count} < {part.model.low}u"] if part.model.low else []
-    tests += [f"{count} > {part.model.high}u"] if part.counter.storage.max > part.model.high else []
-    return either(tests)
+    failed = {"at least": "<", "at most": ">"}
+    tests = [f"{count} {failed[test.kind]} {test.value}u" for test in part.counter_tests]
+    return either(tests) if tests else ""
 
 
 def in_rounds(rounds: ElementRounds, const: str, lines: Iterable[str]) -> str:
     """Return the loop around the lines of a round. ``part`` points to the bytes of the round, ``const`` if they are read."""
-    pointer = f"{const}uint8_t *const part = &buffer[{place(rounds.begin, rounds.step, rounds.in_round)}];"
+    pointer = (
+        f"{const}uint8_t *const part = &buffer[{place(ElementBytes(rounds.begin, rounds.step), rounds.in_round)}];"
+    )
     body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))
     return f"{loop('element', f'{rounds.elements}u', rounds.in_round)}\n{body}{STEP}}}"
 

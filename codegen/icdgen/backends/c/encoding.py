@@ -5,7 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.decoding import Groups, Structs, elements, in_rounds, macro_of, members_of_round, of_array
+from icdgen.backends.c.decoding import (
+    Groups,
+    Structs,
+    elements,
+    in_bytes,
+    in_rounds,
+    macro_of,
+    members_of_round,
+    of_array,
+)
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
@@ -15,17 +24,14 @@ from icdgen.describe.groups import Flags, FrameBytes, Rounds, Row
 
 def size(message: MessageDescription) -> list[str]:
     """Return the length of the frame of a message as the terms of a sum."""
-    last = message.last_part
-    assert last is not None
-    parts = [
-        _encoded_elements(part) if part.model.step == 1 else f"{_encoded_elements(part)} * {part.model.step}u"
-        for part in (*message.earlier_parts, last)
-    ]
+    parts = [in_bytes(_encoded_elements(part), part.model.step) for part in message.variable_parts]
+    fixed = message.model.layout.length
     if message.earlier_parts:
-        return [f"{message.model.layout.length}u", *parts]
-    if not last.model.begin:
+        return [f"{fixed}u", *parts]
+    if not fixed:
         return parts
-    return [f"{last.model.begin}u", parts[0] if last.model.step == 1 else f"({parts[0]})"]
+    (part,) = message.variable_parts
+    return [f"{fixed}u", *(parts if part.model.step == 1 else [f"({parts[0]})"])]
 
 
 def _encoded_elements(last: VariablePartDescription) -> str:
@@ -36,10 +42,11 @@ def _encoded_elements(last: VariablePartDescription) -> str:
 
 
 def counted_text(last: VariablePartDescription) -> str:
-    """Return the value of the counter for a ``text``, which is padded to the fewest characters."""
-    if last.model.fewest:
-        return f"(strlen(text) > {last.model.fewest}u) ? (strlen(text) - {last.model.fewest}u) : 0u"
-    return f"strlen(text) + {last.model.low}u" if last.model.low else "strlen(text)"
+    """Return the value of the counter for a ``text``."""
+    more = last.counter_of_text
+    if more < 0:
+        return f"(strlen(text) > {-more}u) ? (strlen(text) - {-more}u) : 0u"
+    return f"strlen(text) + {more}u" if more else "strlen(text)"
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:

@@ -135,7 +135,7 @@ def inner(message: MessageDescription) -> list[str]:
 
 def open_part(part: VariablePartDescription) -> str:
     """Return ``_base.Tail(...)``: the attributes of a variable part and its counter, and sizes."""
-    counter = "" if part.counter.model.is_count else part.counter.name
+    counter = "" if part.is_rest else part.counter.name
     plus = f", {part.model.plus}" if part.model.plus else ""
     return f'_base.Tail("{part.field.name}", "{counter}", {part.model.step}, {part.model.most}{plus})'
 

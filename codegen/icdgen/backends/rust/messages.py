@@ -13,6 +13,7 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, Into, VariablePartDescription
 from icdgen.describe.groups import bytes_of_flags
+from icdgen.describe.lengths import ElementBytes
 
 _SUPPORT = frozenset("""
     array arrays beginning counted each element_of elements first flags longest message number power present put put_array
@@ -53,10 +54,10 @@ def _of_variable_length(message: MessageDescription, last: VariablePartDescripti
     return {
         "bytes_of_end": _times(last.model.step, f"count + {last.model.fewest}" if last.model.fewest else "count"),
         "bytes_of_elements": _times(last.model.step, "count"),
-        "length_of_frame": _length(last.model.shortest, last.model.step),
-        "length_of_elements": _length(last.model.begin, last.model.step),
+        "length_of_frame": _length(last.bytes_beyond_fewest),
+        "length_of_elements": _length(last.place),
         "counted_text": _counted_text(last),
-        "variable_parts": [(part, _number(part)) for part in (*message.earlier_parts, last)],
+        "variable_parts": [(part, _number(part)) for part in message.variable_parts],
     }
 
 
@@ -116,17 +117,18 @@ def _constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
     return "f64", double(constant.double)
 
 
-def _length(before: int, step: int) -> str:
-    """Return the length of a frame with ``count`` elements behind ``before`` bytes."""
-    elements_bytes = _times(step, "count")
-    return f"{before} + {elements_bytes}" if before else elements_bytes
+def _length(bytes: ElementBytes) -> str:
+    """Return the number of bytes for ``count`` elements."""
+    elements_bytes = _times(bytes.step, "count")
+    return f"{bytes.before} + {elements_bytes}" if bytes.before else elements_bytes
 
 
 def _counted_text(last: VariablePartDescription) -> str:
-    """Return the value of the counter for a ``text``, which is padded to the fewest characters."""
-    if last.model.fewest:
-        return f"text.len().saturating_sub({last.model.fewest})"
-    return f"(text.len() + {last.model.low})" if last.model.low else "text.len()"
+    """Return the value of the counter for a ``text``."""
+    more = last.counter_of_text
+    if more < 0:
+        return f"text.len().saturating_sub({-more})"
+    return f"(text.len() + {more})" if more else "text.len()"
 
 
 def _number(last: VariablePartDescription) -> str:
