@@ -54,7 +54,7 @@ def test_a_decoder_accepts_exactly_the_counters_of_a_variable_part():
     icd = read(ROOT / "tests/conformance/odd_icds")
     messages = [message for node in describe(icd).nodes for message in node.messages]
     parts = [part for message in messages for part in message.variable_parts if not part.is_rest]
-    assert {bool(part.counter_tests) for part in parts} == {True, False}
+    assert parts
     for part in parts:
         low, high = part.model.low, part.model.high
         for value in {0, low - 1, low, high, high + 1, part.counter.storage.max}:
