@@ -19,10 +19,10 @@ import jinja2
 import pytest
 
 from icdgen import codec
-from icdgen.backends.c import physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.types import type_of
 from icdgen.describe import FieldDescription, describe
+from icdgen.describe.accessors import accessors_of
 from icdgen.icd.model import Icd
 from icdgen.icd.places import NodePlace
 from tests.c import harness, odd
@@ -70,7 +70,7 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
 
 
 def row(field: FieldDescription) -> dict[str, object]:
-    whole, name = physical.scaled(field).integers, stem(field.message)
+    name = stem(field.message)
     found = {
         "type": f"{name}_t",
         "name": field.name,
@@ -80,10 +80,10 @@ def row(field: FieldDescription) -> dict[str, object]:
         "setter": f"{name}_set_{field.physical_name}",
         "get_whole": None,
     }
-    if whole:
-        found["get_whole"] = f"{name}_{field.integer_name(whole.scale.per)}"
-        found["set_whole"] = f"{name}_set_{field.integer_name(whole.scale.per)}"
-        found["whole"] = whole.type
+    for accessor in accessors_of(field, "integer"):
+        found["get_whole"] = f"{name}_{accessor.name}"
+        found["set_whole"] = f"{name}_set_{accessor.name}"
+        found["whole"] = f"int{accessor.integers.bits}_t"
     return found
 
 

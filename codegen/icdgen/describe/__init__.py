@@ -6,6 +6,7 @@
 |---|---|
 | the set, its nodes, messages and members | `nodes`, `description`, `scalar`, `enums`, `named` |
 | integers that store raw values; physical values | `storage`, `steps`, `integer_scale`, `arithmetic`, `derived`, `bounds` |
+| accessors of physical values | `accessors` |
 | loops, groups of members, bytes of a frame, lengths | `arrays`, `groups`, `lengths`, `contained` |
 | constants, errata, comments, numbers for people | `constants`, `errata`, `comments`, `shared_ids`, `numbers`, `display`, `ids` |
 | links, examples | `links`, `examples` |

@@ -6,9 +6,9 @@ from icdgen import layout
 from icdgen.describe import steps
 from icdgen.describe.arithmetic import Arithmetic, arithmetic_of
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import takes_text, words
+from icdgen.describe.comments import takes_text
 from icdgen.describe.enums import EnumDescription
-from icdgen.describe.integer_scale import IntegerScale, integer_scale, part_of_unit
+from icdgen.describe.integer_scale import IntegerScale, integer_scale
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.icd.curve import Curve
@@ -126,18 +126,6 @@ class ScalarDescription(Named[NodePlace]):
     def is_text(self) -> bool:
         """Whether its bytes are characters. Its physical value is a text in every language."""
         return self.model.type == "text"
-
-    def integer_name(self, per: int) -> str:
-        """Return the name of the physical value in whole parts of the unit: ``estimated_roll_angle_mdeg``."""
-        return f"{self.declared_name}_{part_of_unit(self.model, per)[0]}"
-
-    def integer_title(self, per: int) -> str:
-        """Return the title of the physical value in whole parts of the unit: ``Estimated Roll Angle in thousandths of deg``."""
-        return f"{words(self.model.name)} in {words(part_of_unit(self.model, per)[1])}"
-
-    def integer_comment(self, scale: IntegerScale) -> str:
-        """Return the comment of the physical value in whole parts of the unit: its title and range."""
-        return f"{self.integer_title(scale.per)}, exact: {scale.low} to {scale.high}."
 
     @property
     def size(self) -> int:

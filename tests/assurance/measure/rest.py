@@ -15,13 +15,13 @@ from icdgen.backends.c.names import stem
 from icdgen.backends.c.parts import part_name
 from icdgen.backends.c.text import literal
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.accessors import accessors_of
 from icdgen.describe.contained import contained_messages
 from icdgen.describe.links import links_of
 from icdgen.icd.model import Icd
 from icdgen.vectors.make import Row, message_vectors
 
 HERE = Path(__file__).parent
-_BITS = {"int32_t": 32, "int64_t": 64}
 
 
 def source(icd: Icd) -> str:
@@ -37,15 +37,15 @@ def source(icd: Icd) -> str:
 
 def _message(message: MessageDescription) -> dict[str, Any]:
     wholes = {
-        field.model.name: (field.integer_name(whole.scale.per), whole)
+        field.model.name: (accessor.name, accessor.integers)
         for field in message.fields
-        if field.steps is not None and (whole := physical.scaled(field).integers)
+        for accessor in accessors_of(field, "integer")
     }
     beyond = []
     for field in message.fields:
         if field.model.name in wholes:
             name, whole = wholes[field.model.name]
-            limit = 1 << (_BITS[whole.type] - 1)
+            limit = 1 << (whole.bits - 1)
             steps = (field.model.raw_min - 1, field.model.raw_max + 1)
             values = (int(field.model.scale.physical(raw) * whole.scale.per) for raw in steps)
             beyond += [(name, physical.int64(value)) for value in values if -limit <= value < limit]

@@ -66,7 +66,7 @@ def _lines(message: MessageDescription) -> Iterator[str]:
         index, option = ("0", ".unwrap()") if field.count else ("", "")
         for one in accessors(field) if field.steps else ():
             value = f"one.{one.name}({index}){option}"
-            if one.raw and not field.model.view:
+            if one.raw:
                 given = ", ".join(filter(None, (index, "value")))
                 yield f"let value = {value}; one.set_{one.name}({given}).unwrap();"
             else:

@@ -107,7 +107,7 @@ def _composite(composite: Composite[Any], more_headers: Iterable[str] = ()) -> d
         "initial": members.initial(composite),
         "declaration": types.declaration,
         "integer_accessors": accessors.integer_accessors(composite),
-        "accessors": accessors.accessors(composite),
+        "double_accessors": accessors.double_accessors(composite),
         "known": constants.table(composite),
     }
 

@@ -3,75 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from itertools import accumulate
-from typing import NamedTuple
 
 from icdgen.backends.c.types import cast
 from icdgen.describe import FieldDescription
-from icdgen.describe.arithmetic import Arithmetic, IntegerAccess
-from icdgen.describe.integer_scale import IntegerScale
+from icdgen.describe.arithmetic import IntegerAccess
 from icdgen.describe.steps import Steps, wide_parts
 from icdgen.describe.storage import Storage
 from icdgen.icd.curve import Curve
 
-RAW = "{raw}"
-"""Placeholder of the raw value in expressions."""
 INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 
 
-class IntegerAccessors(NamedTuple):
-    """Accessors in whole parts of the unit. ``setter`` is the raw value of ``value`` if no condition of ``refused`` holds."""
-
-    scale: IntegerScale
-    type: str  # "int32_t" | "int64_t"
-    getter: str  # expression over ``{raw}``
-    refused: tuple[str, ...]
-    setter: str
-
-
-class Scaled(NamedTuple):
-    """Conversion of raw values to physical values and back."""
-
-    getter: str  # expression of a double over ``{raw}``
-    setter: tuple[str, ...]  # function, and its arguments behind the raw value
-    declared: tuple[str, ...] = ()  # declarations for both
-    integers: IntegerAccessors | None = None
-
-
-def scaled(field: FieldDescription) -> Scaled:
-    """Return the conversion of a field with a scale or calibration."""
+def declarations(field: FieldDescription) -> Iterator[str]:
+    """List the lines at the start of the accessors in double precision: a calibration, or a scale of many digits."""
     if field.curve is not None:
-        return _on_curve(field, field.curve)
-    assert field.arithmetic is not None
-    return _scaled(field.arithmetic)
+        yield from _curve(field.curve)
+    elif field.steps is not None and field.steps.is_wide:
+        yield from _wide_scale(field.steps)
 
 
-@lru_cache(maxsize=2048)
-def _scaled(arithmetic: Arithmetic) -> Scaled:
-    steps, integers = arithmetic.steps, arithmetic.integers
-    declared = tuple(_wide_scale(steps)) if steps.is_wide else ()
-    accessors = None if integers is None else _integers(integers, arithmetic.storage)
-    return Scaled(_double_getter(arithmetic), _double_setter(arithmetic), declared, accessors)
-
-
-def _on_curve(field: FieldDescription, curve: Curve) -> Scaled:
-    count, storage = f"{len(curve.pieces)}u", field.storage
-    getter = f"icdgen_curve(ICDGEN_CAST(double, {RAW}), curve, {count})"
-    if field.model.type == "float":
-        setter: tuple[str, ...] = f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
-    else:
-        limits = (_limit(end, storage) for end in field.model.settable_raws)
-        setter = f"icdgen_set_curve_{_kind(storage)}", "value", "curve", count, *limits
-    return Scaled(getter, setter, tuple(_declared(curve)))
-
-
-def _kind(storage: Storage, bits: int = 0) -> str:
-    """Return the end of the name of a function: ``u16``; with ``bits`` for integers of this width."""
-    return f"{'i' if storage.signed else 'u'}{bits or storage.bits}"
-
-
-def _declared(curve: Curve) -> Iterator[str]:
+def _curve(curve: Curve) -> Iterator[str]:
     """List the declarations of a calibration: the terms of all pieces, then the pieces."""
     terms = [", ".join(map(repr, piece.terms)) for piece in curve.pieces]
     begin = accumulate((len(piece.terms) for piece in curve.pieces), initial=0)
@@ -92,44 +44,18 @@ def _array(head: str, rows: list[str]) -> Iterator[str]:
     yield "};"
 
 
+def _wide_scale(steps: Steps) -> Iterator[str]:
+    """List the declaration of a scale whose terms have more than 64 bits."""
+    yield "static const icdgen_scale_t scale = {"
+    for term in steps.terms:
+        parts = (f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32))
+        yield f"    {{{{{', '.join(parts)}}}}},"
+    yield "};"
+
+
 def int64(value: int) -> str:
     """Return the literal of a signed integer of 64 bits."""
     return "INT64_MIN" if value == -INT64 - 1 else f"INT64_C({value})" if abs(value) > INT32 else str(value)
-
-
-def _plus(value: str, offset: int, bits: int) -> str:
-    if offset == 0:
-        return value
-    return f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})"
-
-
-def _double_getter(arithmetic: Arithmetic) -> str:
-    steps, storage = arithmetic
-    kind = _kind(storage, 64)
-    if steps.is_wide:
-        return f"icdgen_wide_physical_{kind}({RAW}, &scale)"
-    if arithmetic.is_exact_in_int64:
-        p, c, q = steps.terms
-        return f"icdgen_quotient({_integer_getter(p, c, 64, storage)}, {int64(q)})"
-    *terms, is_negated = arithmetic.int64_terms
-    value = f"icdgen_physical_{kind}({', '.join((RAW, *map(int64, terms)))})"
-    return f"0.0 - {value}" if is_negated else value
-
-
-def _double_setter(arithmetic: Arithmetic) -> tuple[str, ...]:
-    steps, storage = arithmetic
-    ends = (steps.raw_min, steps.raw_max) if storage.signed else (steps.raw_max,)
-    limits = (_limit(end, storage) for end in ends)
-    if steps.is_wide:
-        return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits
-    *terms, is_negated = arithmetic.int64_terms
-    return f"icdgen_set_{_kind(storage)}", "-value" if is_negated else "value", *map(int64, terms), *limits
-
-
-def _wide_scale(steps: Steps) -> list[str]:
-    """Return the declaration of a scale whose terms have more than 64 bits."""
-    rows = ((f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32)) for term in steps.terms)
-    return ["static const icdgen_scale_t scale = {", *(f"    {{{{{', '.join(row)}}}}}," for row in rows), "};"]
 
 
 def _limit(value: int, storage: Storage) -> str:
@@ -142,27 +68,73 @@ def _limit(value: int, storage: Storage) -> str:
     return f"UINT64_C({value})" if value >= 1 << 32 else f"{value}u"
 
 
-def _integers(access: IntegerAccess, storage: Storage) -> IntegerAccessors:
-    scale = access.scale
-    refused = [] if access.least is None else [f"value < {int64(access.least)}"]
-    refused += [] if access.most is None else [f"value > {int64(access.most)}"]
-    getter = _integer_getter(scale.factor, scale.offset, access.bits, storage)
-    setter = _integer_setter(scale.factor, scale.offset, access.setter_bits, storage)
-    return IntegerAccessors(scale, f"int{access.bits}_t", getter, tuple(refused), setter)
+def _kind(storage: Storage, bits: int = 0) -> str:
+    """Return the end of the name of a function: ``u16``; with ``bits`` for integers of this width."""
+    return f"{'i' if storage.signed else 'u'}{bits or storage.bits}"
 
 
-def _integer_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:
+def double_value(field: FieldDescription, raw: str) -> str:
+    """Return the physical value of a raw value as a double."""
+    if field.curve is not None:
+        return f"icdgen_curve(ICDGEN_CAST(double, {raw}), curve, {len(field.curve.pieces)}u)"
+    assert field.arithmetic is not None
+    steps, storage = field.arithmetic
+    kind = _kind(storage, 64)
+    if steps.is_wide:
+        return f"icdgen_wide_physical_{kind}({raw}, &scale)"
+    if field.arithmetic.is_exact_in_int64:
+        p, c, q = steps.terms
+        return f"icdgen_quotient({_scaled(raw, p, c, 64, storage)}, {int64(q)})"
+    *terms, is_negated = field.arithmetic.int64_terms
+    value = f"icdgen_physical_{kind}({', '.join((raw, *map(int64, terms)))})"
+    return f"0.0 - {value}" if is_negated else value
+
+
+def double_setter(field: FieldDescription) -> tuple[str, ...]:
+    """Return the function that sets a raw value to the nearest one of ``value``, and its arguments behind the raw value."""
+    storage, ends = field.storage, field.model.settable_raws
+    limits = [_limit(end, storage) for end in ends]
+    if field.curve is not None:
+        if field.model.type == "float":
+            return f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
+        return f"icdgen_set_curve_{_kind(storage)}", "value", "curve", f"{len(field.curve.pieces)}u", *limits
+    assert field.arithmetic is not None
+    limits = limits if storage.signed else limits[1:]
+    if field.arithmetic.steps.is_wide:
+        return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits
+    *terms, is_negated = field.arithmetic.int64_terms
+    return f"icdgen_set_{_kind(storage)}", "-value" if is_negated else "value", *map(int64, terms), *limits
+
+
+def integer_value(access: IntegerAccess, storage: Storage, raw: str) -> str:
+    """Return the physical value of a raw value in whole parts of the unit."""
+    return _scaled(raw, access.scale.factor, access.scale.offset, access.bits, storage)
+
+
+def _scaled(raw: str, factor: int, offset: int, bits: int, storage: Storage) -> str:
     # An unsigned operand of 64 bits would make the product unsigned.
-    raw = cast(RAW, 64, True) if storage.bits == 64 and not storage.signed else RAW
+    raw = cast(raw, 64, True) if storage.bits == 64 and not storage.signed else raw
     return _plus(raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits)
 
 
-def _integer_setter(factor: int, offset: int, wide: int, storage: Storage) -> str:
+def _plus(value: str, offset: int, bits: int) -> str:
+    return f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})" if offset else value
+
+
+def integer_range(access: IntegerAccess) -> list[str]:
+    """Return the conditions for values that a setter refuses."""
+    refused = [] if access.least is None else [f"value < {int64(access.least)}"]
+    return refused + ([] if access.most is None else [f"value > {int64(access.most)}"])
+
+
+def integer_raw(access: IntegerAccess, storage: Storage) -> str:
+    """Return the raw value of ``value`` in whole parts of the unit."""
+    factor, offset, bits = access.scale.factor, access.scale.offset, access.setter_bits
     # The support header rounds for positive divisors only, so a negative factor swaps the operands of the difference.
     if factor > 0:
-        value = _plus("value", -offset, wide)
+        value = _plus("value", -offset, bits)
     else:
-        value = f"{'-' if offset < 0 else ''}INT{wide}_C({abs(offset)}) - value"
+        value = f"{'-' if offset < 0 else ''}INT{bits}_C({abs(offset)}) - value"
     if abs(factor) != 1:
-        value = f"icdgen_nearest{wide}({value}, {int64(abs(factor))})"
+        value = f"icdgen_nearest{bits}({value}, {int64(abs(factor))})"
     return cast(value, storage.bits, storage.signed)

@@ -8,6 +8,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.c import names
 from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe.accessors import accessors_of
 from icdgen.describe.arrays import all_struct_arrays
 from icdgen.describe.constants import Constant
 from icdgen.describe.contained import contained_messages
@@ -111,19 +112,13 @@ class CNames(NamingPolicy):
             yield field.identifier(f"members of {names.stem(composite)}_t", field.name)
         if field.model.when:
             yield field.identifier(FILE, names.has(field))
-        for end in _physical_names(field) if field.has_physical else ():
-            yield field.identifier(FILE, names.getter(composite, end))
-            if field.is_settable:
-                yield field.identifier(FILE, names.setter(composite, end))
+        for accessor in accessors_of(field, "text", "double", "integer"):
+            yield field.identifier(FILE, names.getter(composite, accessor.name))
+            if accessor.is_settable:
+                yield field.identifier(FILE, names.setter(composite, accessor.name))
 
     def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
         yield field.identifier(FILE, names.constant(composite, constant.name))
 
 
 C_NAMES = CNames()
-
-
-def _physical_names(field: FieldDescription) -> tuple[str, ...]:
-    """Names of the physical value as text or a double, and of the value in whole parts of the unit."""
-    integers = None if field.arithmetic is None else field.arithmetic.integers
-    return (field.physical_name,) if integers is None else (field.physical_name, field.integer_name(integers.scale.per))

@@ -14,6 +14,7 @@ from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.nodes import Direction
 from icdgen.icd.model import Icd, Message
@@ -163,6 +164,12 @@ class _Rows:
         # Elements of an array have equal tables, which would multiply the code size.
         tables = tables_by_line.setdefault(line, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
+        settings = vectors.settings.get(field.name)
+        accessors = {
+            accessor.kind: _accessors(accessor, settings)
+            for accessor in accessors_of(description, "text", "double", "integer")
+            if accessor.kind != "integer" or accessor.is_settable
+        }
         return FieldRow(
             field=description,
             stem=stem,
@@ -174,9 +181,9 @@ class _Rows:
             fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
             view=type_of(description) if field.view else "",
             unfit=list(map(_unsigned, unfit)),
-            integer=None if field.view else _integer_accessors(description),
-            scaled=_scaled(description, vectors.settings.get(field.name)) if description.is_scaled else None,
-            text=_texts(description, vectors.settings[field.name]) if description.is_text else None,
+            integer=accessors.get("integer"),
+            scaled=accessors.get("double"),
+            text=accessors.get("text"),
         )
 
 
@@ -246,12 +253,19 @@ def _tail(message: MessageDescription, tail: VariablePartDescription, vectors: M
     }
 
 
-def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) -> Accessors:
-    stem = names.stem(field.declaration.message)
-    return Accessors(f"{stem}_{end}", f"{stem}_set_{end}", type, rows)
+def _accessors(accessor: Accessor, settings: Settings | None) -> Accessors:
+    """Return accessors with test values. An overlay has no setter, and its ``settings`` are None."""
+    if accessor.kind == "text":
+        type, rows = "char", _text_rows(settings or [])
+    elif accessor.kind == "integer":
+        type, rows = f"int{accessor.integers.bits}_t", _integer_rows(accessor)
+    else:
+        type, rows = "double", [] if settings is None else _double_rows(accessor.field, settings)
+    stem = names.stem(accessor.field.declaration.message)
+    return Accessors(f"{stem}_{accessor.name}", f"{stem}_set_{accessor.name}", type, rows)
 
 
-def _texts(field: FieldDescription, settings: Settings) -> Accessors:
+def _text_rows(settings: Settings) -> list[str]:
     """Return assignments of texts: the resulting bytes, or a refusal.
 
     C strings cannot represent all bytes, so other contents are omitted.
@@ -261,7 +275,7 @@ def _texts(field: FieldDescription, settings: Settings) -> Accessors:
         assert not isinstance(raw, int)
         octets = "NULL" if raw is None else f"(const uint8_t[]){{{', '.join(map(hex, raw))}}}"
         lines.append(f"{{{_text(text)}, {octets}}},")
-    return _accessors(field, field.physical_name, "char", lines)
+    return lines
 
 
 def _text(text: str | None) -> str:
@@ -273,34 +287,27 @@ def _number(value: int | bytes) -> int:
     return value
 
 
-def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
-    """Return assignments of doubles.
-
-    An overlay has no setter, and its ``settings`` have the value None.
-    """
-    lines: list[str] = []
-    if settings is None:
-        return _accessors(field, field.physical_name, "double", lines)
+def _double_rows(field: FieldDescription, settings: Settings) -> list[str]:
+    """Return assignments of doubles: the resulting raw value, or a refusal."""
+    lines = []
     # Floats accept NaN and infinities.
     never = () if field.model.type == "float" else NEVER
     for bits, raw in [*settings, *((bits, None) for bits in never)]:
         assert not isinstance(raw, bytes)
         lines.append(f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},")
-    return _accessors(field, field.physical_name, "double", lines)
+    return lines
 
 
-def _integer_accessors(field: FieldDescription) -> Accessors | None:
-    """Return the integer accessors with their exact values; None if the field has none."""
-    integers = physical.scaled(field).integers if field.steps else None
-    if integers is None or field.steps is None:
-        return None
-    lines = []
+def _integer_rows(accessor: Accessor) -> list[str]:
+    """Return raw values with their exact values in whole parts of the unit."""
+    field, lines = accessor.field, []
+    assert field.steps is not None
     for raw in values(field.model):
         assert isinstance(raw, int)
-        exact = field.steps.physical(raw) * integers.scale.per
+        exact = field.steps.physical(raw) * accessor.integers.scale.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
-    return _accessors(field, field.integer_name(integers.scale.per), integers.type, lines)
+    return lines
 
 
 def _unsigned(value: int) -> str:

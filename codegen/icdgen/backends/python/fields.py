@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 
 from icdgen.backends.lines import STEP, exploded
-from icdgen.backends.python.names import class_name
+from icdgen.backends.python.names import accessors_in_python, class_name
 from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.accessors import Accessor
 from icdgen.describe.constants import Constant
 from icdgen.describe.derived import derived
 from icdgen.describe.description import VariablePartDescription
@@ -183,7 +185,16 @@ def physical(field: FieldDescription) -> str:
     return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
 
 
-def scaled(field: FieldDescription) -> str:
+def accessors(field: FieldDescription) -> Iterator[tuple[str, str]]:
+    """List the declarations of the physical value of a field, with their comments."""
+    for accessor in accessors_in_python(field):
+        if accessor.kind == "text":
+            yield _text(field), f"{accessor.comment} A byte that is none reads as U+FFFD."
+        else:
+            yield _scaled(field) if accessor.scale is None else _whole(accessor, accessor.scale), accessor.comment
+
+
+def _scaled(field: FieldDescription) -> str:
     """Return the declaration of a physical value: ``estimated_roll_angle_deg: float = _base.scaled(...)``."""
     curve, steps, first = field.curve, field.steps, _double(field.initial_physical)
     first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _optional(field, "float"))
@@ -206,16 +217,16 @@ def _double(value: float) -> str:
     return repr(value) if math.isfinite(value) else f'float("{value}")'
 
 
-def text(field: FieldDescription) -> str:
+def _text(field: FieldDescription) -> str:
     """Return the declaration of a text: ``version_text: str = _base.text(...)``."""
     first = _repeated(field, '""') if field.count else '""'
     return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
 
 
-def exact(field: FieldDescription, scale: IntegerScale) -> str:
+def _whole(accessor: Accessor, scale: IntegerScale) -> str:
     """Return the declaration of whole parts of the unit: ``estimated_roll_angle_mdeg: int = _base.whole(...)``."""
-    note = "tuple[int, ...]" if field.count else _optional(field, "int")
-    return _statement(field.integer_name(scale.per), note, "whole", [str(scale.factor), str(scale.offset)])
+    note = "tuple[int, ...]" if accessor.field.count else _optional(accessor.field, "int")
+    return _statement(accessor.name, note, "whole", [str(scale.factor), str(scale.offset)])
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import keyword
+from collections.abc import Iterator
 from typing import Any
 from zlib import crc32
 
-from icdgen.describe import EnumDescription
+from icdgen.describe import EnumDescription, FieldDescription
+from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.description import Composite
 from icdgen.naming import camel
 
@@ -30,6 +32,13 @@ IN_PACKAGE["wire"] = "the package `wire`"
 
 TYPES = "_types"  # the subpackage of a node that holds its messages and enumerations
 _LONGEST = 200  # characters of a module's name, for the sake of file systems
+
+
+def accessors_in_python(field: FieldDescription) -> Iterator[Accessor]:
+    """List the accessors of a physical value. Classes have no integers of read-only values."""
+    if field.model.view:
+        return accessors_of(field, "double")
+    return accessors_of(field, "text", "double", "integer", "long integer")
 
 
 def class_name(one: Composite[Any] | EnumDescription) -> str:

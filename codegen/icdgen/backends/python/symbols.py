@@ -48,12 +48,10 @@ class PythonNames(NamingPolicy):
     def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
         if field.model.is_count:
             return
-        scope, exact = self._members(composite), field.integer_scale
+        scope = self._members(composite)
         yield from _in_class(field, scope, field.name)
-        if field.has_physical:
-            yield from _in_class(field, scope, field.physical_name)
-        if exact is not None and not field.model.view:  # classes have no integer accessors of read-only values
-            yield from _in_class(field, scope, field.integer_name(exact.per))
+        for accessor in names.accessors_in_python(field):
+            yield from _in_class(field, scope, accessor.name)
 
     def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
         return _in_class(field, self._members(composite), names.constant_name(constant.name))

@@ -6,68 +6,55 @@ from typing import NamedTuple
 
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.rust.names import field_name, struct_path
-from icdgen.backends.rust.physical import curve_name, curve_value, physical, raw_value, single
+from icdgen.backends.rust.physical import (
+    accessors_in_rust,
+    curve_name,
+    double_raw,
+    double_value,
+    integer_raw,
+    integer_value,
+    single,
+)
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
-from icdgen.describe.arithmetic import IntegerAccess
-from icdgen.describe.comments import physical_comment, physical_name
-from icdgen.describe.integer_scale import IntegerScale
+from icdgen.describe.accessors import Accessor
 
 
-class Accessor(NamedTuple):
-    """Getter, and setter if ``raw`` is not empty."""
+class AccessorCode(NamedTuple):
+    """Code of the getter of a physical number, and of the setter if ``raw`` is not empty."""
 
     name: str
     type: str
     about: str
     value: str  # expression over the raw value
+    raw: str = ""  # expression of the raw value over ``value``, a Result
     what: str = ""  # action of the setter
     refused: str = ""  # values that the setter refuses
-    raw: str = ""  # expression of the raw value over ``value``, a Result
 
 
-def accessors(field: FieldDescription) -> list[Accessor]:
+def accessors(field: FieldDescription) -> list[AccessorCode]:
     """Return the accessors of a field with a scale or calibration."""
-    name, about, what = field.physical_name, physical_comment(field.model), physical_name(field.model)
-    sets = f"Set {'an element of ' if field.count else ''}{{}} to the nearest raw value, ties to even"
-    end = ", or if there is no such element." if field.count else "."
-    if field.curve is not None:
-        kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
-        raw = f"{curve_name(field)}.{kind}(value)" if field.is_settable else ""
-        refused = f"if it is beyond the values of the field, or not finite{end}"
-        return [Accessor(name, "f64", about, curve_value(field), sets.format(what), refused, raw)]
-    scale, refused = field.declared_name.upper(), f"if it does not fit or is not finite{end}"
-    result = [
-        Accessor(name, "f64", about, physical(field), sets.format(what), refused, f"{scale}.raw(value)"),
-        Accessor(single_name(field), "f32", f"{what}, the nearest float of 32 bits.", single(field)),
-    ]
-    integers = integers_of(field)
-    if integers is not None:
-        exact, bits = integers.scale, integers.bits
-        value = "value" if bits == 64 else "value.into()"
-        raw = f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})"
-        name, about, what = field.integer_name(exact.per), field.integer_comment(exact), field.integer_title(exact.per)
-        read = _integer_value(field, exact, bits)
-        result.append(Accessor(name, f"i{bits}", about, read, sets.format(what), f"if it does not fit{end}", raw))
-    return result
+    return [_code(accessor) for accessor in accessors_in_rust(field) if accessor.kind != "text"]
 
 
-def single_name(field: FieldDescription) -> str:
-    """Return the name of the accessor in single precision: ``estimated_roll_angle_deg_f32``."""
-    return f"{field.physical_name}_f32"
-
-
-def integers_of(field: FieldDescription) -> IntegerAccess | None:
-    """Return the accessors in whole parts of the unit. `Wide` of the support module, for scales of many digits, has none."""
-    arithmetic = field.arithmetic
-    return None if arithmetic is None or arithmetic.steps.is_wide else arithmetic.integers
-
-
-def _integer_value(field: FieldDescription, exact: IntegerScale, bits: int) -> str:
-    raw = raw_value(field)
-    value = raw if field.storage == (bits, True) else f"i{bits}::from({raw})"
-    value = value if exact.factor == 1 else f"{value} * {integer(exact.factor)}"
-    return value if not exact.offset else f"{value} {'+' if exact.offset > 0 else '-'} {integer(abs(exact.offset))}"
+def _code(accessor: Accessor) -> AccessorCode:
+    field = accessor.field
+    if accessor.kind == "single":
+        return AccessorCode(accessor.name, "f32", accessor.comment, single(field))
+    if accessor.kind == "integer":
+        type, refused = f"i{accessor.integers.bits}", "if it does not fit"
+        value, raw = integer_value(field, accessor.integers), integer_raw(field, accessor.integers)
+    else:
+        type, value, raw = "f64", double_value(field), double_raw(field)
+        refused = (
+            "if it is beyond the values of the field, or" if field.curve is not None else "if it does not fit or is"
+        )
+        refused += " not finite"
+    if not accessor.is_settable:
+        return AccessorCode(accessor.name, type, accessor.comment, value)
+    of_element, no_element = ("an element of ", ", or if there is no such element") if field.count else ("", "")
+    what = f"Set {of_element}{accessor.title} to the nearest raw value, ties to even"
+    return AccessorCode(accessor.name, type, accessor.comment, value, raw, what, f"{refused}{no_element}.")
 
 
 def scale_of(field: FieldDescription) -> str:

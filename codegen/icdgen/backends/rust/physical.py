@@ -6,8 +6,10 @@ from collections.abc import Iterator
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust.names import RESERVED, field_name
-from icdgen.backends.rust.text import assigned, double, mask, whole_double
+from icdgen.backends.rust.text import assigned, double, integer, mask, whole_double
 from icdgen.describe import FieldDescription
+from icdgen.describe.accessors import Accessor, accessors_of
+from icdgen.describe.arithmetic import IntegerAccess
 from icdgen.describe.derived import derived
 from icdgen.describe.steps import Steps, wide_parts
 
@@ -27,6 +29,13 @@ def has_constant(field: FieldDescription) -> bool:
     return arithmetic is not None and not (arithmetic.is_exact_in_doubles and arithmetic.is_exact_in_singles)
 
 
+def accessors_in_rust(field: FieldDescription) -> Iterator[Accessor]:
+    """List the accessors. `Wide` of the support module, for scales of many digits, has no integers."""
+    if field.steps is not None and field.steps.is_wide:
+        return accessors_of(field, "double", "single")
+    return accessors_of(field, "text", "double", "single", "integer")
+
+
 def raw_value(field: FieldDescription) -> str:
     """Return the raw value: the member, or the method of an overlay field.
 
@@ -40,23 +49,43 @@ def curve_name(field: FieldDescription) -> str:
     return f"{field.declared_name.upper()}__CURVE"
 
 
-def curve_value(field: FieldDescription) -> str:
-    """Return the physical value of a field with a calibration."""
-    raw, bits = raw_value(field), field.storage.bits
-    if bits == 64 and field.model.type != "float":
-        return f"{curve_name(field)}.whole({raw})"
-    return f"{curve_name(field)}.physical({raw if bits == 64 else f'f64::from({raw})'})"
+def double_value(field: FieldDescription) -> str:
+    """Return the physical value as a double.
 
-
-def physical(field: FieldDescription) -> str:
-    """Return the physical value of a field with a scale.
-
-    It is computed in doubles if every step is exact there, else in 128-bit integers by the support module.
+    With a scale it is computed in doubles if every step is exact there, else in 128-bit integers by the support module.
     """
-    assert field.arithmetic is not None
+    raw, is_long = raw_value(field), field.storage.bits == 64
+    if field.arithmetic is None:
+        if is_long and field.model.type != "float":
+            return f"{curve_name(field)}.whole({raw})"
+        return f"{curve_name(field)}.physical({raw if is_long else f'f64::from({raw})'})"
     if not field.arithmetic.is_exact_in_doubles:
-        return f"{field.declared_name.upper()}.physical({raw_value(field)})"
-    return _quotient(field.arithmetic.steps, f"f64::from({raw_value(field)})")
+        return f"{field.declared_name.upper()}.physical({raw})"
+    return _quotient(field.arithmetic.steps, f"f64::from({raw})")
+
+
+def double_raw(field: FieldDescription) -> str:
+    """Return the raw value of the double ``value``, a Result."""
+    if field.curve is None:
+        return f"{field.declared_name.upper()}.raw(value)"
+    kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
+    return f"{curve_name(field)}.{kind}(value)"
+
+
+def integer_value(field: FieldDescription, access: IntegerAccess) -> str:
+    """Return the physical value in whole parts of the unit."""
+    raw, factor, offset = raw_value(field), access.scale.factor, access.scale.offset
+    value = raw if field.storage == (access.bits, True) else f"i{access.bits}::from({raw})"
+    value = value if factor == 1 else f"{value} * {integer(factor)}"
+    return f"{value} {'+' if offset > 0 else '-'} {integer(abs(offset))}" if offset else value
+
+
+def integer_raw(field: FieldDescription, access: IntegerAccess) -> str:
+    """Return the raw value of ``value`` in whole parts of the unit, a Result."""
+    value = "value" if access.bits == 64 else "value.into()"
+    return (
+        f"{field.declared_name.upper()}.whole({value}, {integer(access.scale.factor)}, {integer(access.scale.offset)})"
+    )
 
 
 def single(field: FieldDescription) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.rust import arrays, names
-from icdgen.backends.rust.accessors import integers_of, single_name
+from icdgen.backends.rust.physical import accessors_in_rust
 from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite
@@ -81,18 +81,10 @@ class RustNames(NamingPolicy):
         yield field.identifier(methods if is_read_only else f"fields of {scope}", name)
         if field.model.when:
             yield field.identifier(methods, names.has(field))
-        if field.has_physical:
-            yield field.identifier(methods, field.physical_name)
-            if field.is_settable:
-                yield field.identifier(methods, names.setter(field.physical_name))
-        if field.steps is not None:
-            yield field.identifier(methods, single_name(field))
-        integers = integers_of(field)
-        if integers is not None:
-            name = field.integer_name(integers.scale.per)
-            yield field.identifier(methods, name)
-            if not is_read_only:
-                yield field.identifier(methods, names.setter(name))
+        for accessor in accessors_in_rust(field):
+            yield field.identifier(methods, accessor.name)
+            if accessor.is_settable:
+                yield field.identifier(methods, names.setter(accessor.name))
 
     def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
         yield field.identifier(f"constants of {_scope(composite)}", constant.name.upper())
