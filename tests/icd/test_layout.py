@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-from operator import is_
 from pathlib import Path
 
 import pytest
@@ -11,7 +9,6 @@ import pytest
 from icdgen import layout as bits
 from icdgen.icd.frames import flatten
 from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef, size_of, walk
-from icdgen.icd.layout_copies import without_nodes
 from icdgen.icd.model import Icd, Message, Node
 from tests.conformance.icds import read
 from tests.conftest import ROOT
@@ -166,21 +163,3 @@ def test_layouts_of_an_icd_are_the_same_from_the_cache(tmp_path: Path):
         declared = {id(struct.layout) for struct in node.structs}
         for message in node.messages:
             assert {id(layout) for layout in structs_of(message.layout)} <= declared
-
-
-@pytest.mark.parametrize("path", SETS)
-def test_a_layout_without_a_node_has_nothing_that_depends_on_it(path):
-    for _, node, message in messages(path):
-        layout = message.layout
-        assert without_nodes(layout, lambda one: False) is layout
-        for left_out in layout.nodes:
-            smaller = without_nodes(layout, partial(is_, left_out))
-            names = {one.name for one in smaller.nodes}
-            sizes = [size_of(one) for one in smaller.sequence]
-            assert left_out not in smaller.nodes
-            assert all(size.counter in names for size in sizes if isinstance(size, Counted))
-            assert smaller.sequence in (layout.sequence, ())
-            assert all(names.issuperset(one.derivation.fields) for one in smaller.derived)
-            kept = {one.name for one in layout.fixed} - {left_out.name}
-            assert kept == {one.name for one in smaller.fixed}
-            flatten(smaller, node.orders)

@@ -181,8 +181,8 @@ class NodeDescription:
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:
-        """Enumerations that the node declares."""
-        return tuple(map(self._description.enum, self.model.enums))
+        """Enumerations that the node declares. In an ICD with errors, fields refer to the last one of a name."""
+        return tuple(map(self._description.enum, {enum.name: enum for enum in self.model.enums}.values()))
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
@@ -202,8 +202,9 @@ class NodeDescription:
     @property
     def usable(self) -> Iterator[Composite[Any] | EnumDescription]:
         """All messages, enumerations and structs of included nodes, then its own."""
-        for node in (*self._description.icd.included(self.model), self.model):
-            yield from self._description.node(node).declared
+        included = (node.name for node in self._description.icd.included(self.model))
+        for name in dict.fromkeys((*included, self.name)):
+            yield from self._description.node(name).declared
 
     @cached_property
     def all_messages(self) -> tuple[MessageDescription, ...]:
@@ -290,8 +291,9 @@ class Description:
         self.icd = icd
         self.declared = Declarations(icd)
         self._messages: dict[tuple[str, str], MessageDescription] = {}
-        self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
-        self.nodes = tuple(self._nodes.values())
+        # In an ICD with errors, includes refer to the first node of a name.
+        self._nodes = {node.name: NodeDescription(self, node) for node in reversed(icd.nodes)}
+        self.nodes = tuple(dict.fromkeys(map(self.node, icd.nodes)))
 
     @cached_property
     def id_bits(self) -> int:

@@ -2,39 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeVar
 
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.layout import Array, Counted, Derived, Layout, LayoutNode, Overlay, scalar_of, size_of, struct_layout_of
+from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, Overlay, scalar_of, struct_layout_of
 
 NodeT = TypeVar("NodeT", bound=LayoutNode)
-
-
-def without_nodes(layout: Layout, is_left_out: Callable[[LayoutNode], bool]) -> Layout:
-    """Return a layout without some of its own nodes; the same object if no node is removed.
-
-    Also removes values that are derived from a removed node. If a variable-length node, or the counter of one, is removed,
-    removes all variable-length nodes, because their positions depend on each other.
-    """
-    if not any(map(is_left_out, layout.nodes)):
-        return layout
-    fixed = tuple(node for node in layout.fixed if not is_left_out(node))
-    names = {node.name for node in fixed}
-    sequence = layout.sequence
-    for node in layout.sequence:
-        size = size_of(node)
-        if is_left_out(node) or (isinstance(size, Counted) and size.counter not in names):
-            sequence = ()
-    names.update(node.name for node in sequence)
-    derived: list[Derived] = []
-    # A derived value can be an operand of the derived values after it.
-    for value in layout.derived:
-        if not is_left_out(value) and names.issuperset(value.derivation.fields):
-            derived.append(value)
-            names.add(value.name)
-    return replace(layout, fixed=fixed, sequence=sequence, derived=tuple(derived))
 
 
 def with_attributes(node: NodeT, **changes: Any) -> NodeT:
