@@ -17,12 +17,12 @@ static icd_event_t done(int port, icd_status_t started)
         exit(EXIT_FAILURE);
     }
     end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, repeats requests of telemetry */
-    if (end.kind == ICD_EVENT_REFUSED) {                    /* end.reason: the role of the code in the ICD */
+    if (end.kind == ICD_EVENT_REFUSED) {                    /* end.reason: its meaning, such as ICD_REASON_LENGTH */
         fprintf(stderr, "refused, code %u\n", (unsigned)end.code);
         exit(EXIT_FAILURE);
     }
     if (end.kind != ICD_EVENT_DONE) {
-        fprintf(stderr, "no answer, attempts: %u\n", (unsigned)end.attempts);
+        fprintf(stderr, "no response, attempts: %u\n", (unsigned)end.attempts);
         exit(EXIT_FAILURE);
     }
     return end;

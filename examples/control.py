@@ -36,7 +36,7 @@ def main(place: str) -> None:
     except RefusedError as error:  # error.event has the code, and as `reason` what the ICD says of it
         sys.exit(f"refused, code {error.event.code}")
     except ReplyTimeoutError as error:
-        sys.exit(f"no answer, attempts: {error.event.attempts}")
+        sys.exit(f"no response, attempts: {error.event.attempts}")
     except (IcdError, OSError) as error:  # what cannot be sent or read; what the port says
         sys.exit(str(error))
 

@@ -72,7 +72,7 @@ def programs(headers, crate, package, tmp_path_factory) -> dict[str, list[str | 
             (0, "roll 0.00 deg\nestimation mode 12 has no name\n", ""),
         ),
         (["--fault", "nack=100%"], (1, "", "refused, code 3\n")),
-        (["--fault", "drop=100%@acknowledge"], (1, "", "no answer, attempts: 1\n")),
+        (["--fault", "drop=100%@acknowledge"], (1, "", "no response, attempts: 1\n")),
     ],
 )
 def test_each_language_says_the_same_of_the_same_node(programs, options, said):

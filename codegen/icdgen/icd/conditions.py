@@ -51,7 +51,7 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
     when, fields = _when(item), _fields(message)
     for name in when:
         if name not in fields:
-            text = f"`{item['name']}` depends on `{name}`, but `{message['name']}` has no such field"
+            text = f"`{item['name']}` depends on `{name}`, but the message `{message['name']}` has no such field"
             names = (other for other, field in fields.items() if field is not item and _can_decide(field))
             yield Fault.at_key(when, name, text, *suggestion(name, names, _REQUIREMENT))
         elif not _is_sound(fields[name]):
@@ -79,6 +79,7 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
                 yield Fault.at_key(when, name, text, "list the values as numbers")
             elif raw is None:
                 help = f"`{name}` {_possible_values(field, enums)}"
+                help += ", never a text" if isinstance(value, str) and field["type"] != "enum" else ""
                 yield Fault.at_key(when, name, f"`{name}` is never {_shown(value)}", help)
             elif "const" in field and raw != field["const"]:
                 text = f"`{name}` is always {field['const']}, so `{item['name']}` is never present"

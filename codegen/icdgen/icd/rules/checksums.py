@@ -66,7 +66,7 @@ def checksums_have_an_effect(ctx: Context) -> Iterator[Fault]:
         if uses_can and CAN in telemetry.get("buses", (CAN,)):
             crc8 = node.source["protocol"]["crc8"]
             place = telemetry.at("buses") if "buses" in telemetry else crc8.key_at("telemetry")
-            message = "frames on CAN have no checksum, so this one has no effect there"
+            message = "frames on CAN have no checksum, so the checksum of telemetry has no effect there"
             help = (
                 "remove `can` from `buses`"
                 if "buses" in telemetry

@@ -94,18 +94,24 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
                 continue  # another element of the same array
             if counterpart is None:
                 reported.add(id(source))
-                text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
+                text = (
+                    f"{quote(field.name)} begins at bit {field.at:,}, which is bit {field.at - start:,} of "
+                    f"{quote(frame.name)}, where no field begins"
+                )
                 if field.at < start:
                     text = f"{quote(field.name)} crosses bit {start:,}, where {quote(frame.name)} begins"
-                yield Fault.at(source, "at", text, _compare(frame, source.at("at")))
+                yield Fault.at(source, "at", text, _position_in(frame, field.name, start, source.at("at")))
             else:
                 differences = list(_differences(field, counterpart, frame))
                 reported |= {id(fault.owner) for fault in differences}
                 yield from differences
         if missing:
-            names = [f"{quote(field.name)} at bit {at:,}" for at, field in list(missing.items())[:3]]
+            names = [f"{quote(field.name)} (bit {at:,})" for at, field in list(missing.items())[:3]]
             more = [f"{len(missing) - 3} more"] if len(missing) > 3 else []
-            text = f"{quote(message.name)} lacks fields of {quote(frame.name)}: {listing(names + more)}"
+            text = (
+                f"{quote(message.name)} repeats {quote(frame.name)}, but no field begins where "
+                f"{listing(names + more)} should begin"
+            )
             yield Fault(message.source, row.at("at"), text, _compare(frame, row.at("at")))
 
 
@@ -117,6 +123,15 @@ def _fields_with_bits(message: Message) -> list[NodePlace]:
 def _compare(frame: Message, here: Place) -> str:
     """Return the help that points to the repeated frame."""
     return f"compare with {quote(frame.name)} ({line_of(frame.source.at('name'), here)})"
+
+
+def _position_in(frame: Message, name: str, start: int, here: Place) -> str:
+    """Return the help with the position of the field of this name in the repeated frame, which begins at bit ``start``."""
+    same_name = next((field for field in _fields_with_bits(frame) if field.name == name), None)
+    if same_name is None:
+        return _compare(frame, here)
+    where = f"{quote(frame.name)} has {quote(name)} at bit {same_name.at:,} ({line_of(same_name.scalar.source.at('at'), here)})"
+    return f"{where}, which is bit {start + same_name.at:,} here: correct `at`, or the field before it"
 
 
 def _quoted_value(source: Map, key: str) -> str:

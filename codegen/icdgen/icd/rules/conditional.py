@@ -44,7 +44,8 @@ def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, "when", text, "write the fields of the struct into the message, or remove `when`")
         elif reason:
             text = f"{quote(field.name)} is {reason}, but only a number, a flag or an enumeration value can be optional"
-            yield Fault.at(source, "when", text, "remove `when`")
+            help = "write its elements as single fields, each with `when`, or remove `when`"
+            yield Fault.at(source, "when", text, help if source.get("count") else "remove `when`")
         elif variable_length.variable_fields(message.source):
             text = f"{quote(message.name)} has a variable-length field, so its other fields cannot be optional"
             yield Fault.at(source, "when", text, "remove `when`")

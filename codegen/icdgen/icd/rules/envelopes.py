@@ -75,8 +75,8 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at_key(client, key, message, "remove it")
         for key in ("framing", "acknowledge"):
             if isinstance(uart, Map) and key in uart:
-                message = f"`uart: {key}` and `stream` describe how messages are delimited, each in another way"
-                yield Fault.at_key(uart, key, message, "remove one of them")
+                message = f"`uart: {key}` and `stream` are two ways to delimit messages, and a device uses one of them"
+                yield Fault.at_key(uart, key, message, f"remove `{key}`, or remove `stream`")
     for node in ctx.icd.nodes:
         checksums = section_of(node, "checksums")
         if checksums is not None and "stream" not in ctx.protocol_of(node):

@@ -178,8 +178,10 @@ def _remedy(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int
     if not ranges and ctx.is_linked(node):
         return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except a `stream`"
     if not ranges:
-        needed = next(bits for bits in (8, 16, 24, 32) if use.id < 1 << bits)
-        return f"correct `{use.key}`, or give the width of all ids in `node`: `id_bits: {needed}`"
+        # Identifiers of CAN have 11 or 29 bits, other ids whole bytes.
+        widths = (29, 32) if node.id_bits == 11 else (8, 16, 24, 32)
+        needed = next(bits for bits in widths if use.id < 1 << bits)
+        return f"correct `{use.key}`, or widen the ids of all messages: `id_bits: {needed}` in `node`"
     other = next((direction for direction, (first, last) in ranges.items() if first <= use.id <= last), None)
     written = ctx.written(use.source, use.key)
     wrong = f"{written} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"

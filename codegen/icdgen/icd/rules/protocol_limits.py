@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import ceil
 
+from icdgen.diagnostics import Related
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, Node
 from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, listing, of_wide_value, quote
+from icdgen.icd.rules.wording import count, line_of, listing, of_wide_value, quote
 from icdgen.icd.trees import at_path, mappings
 
 BYTE = 255
@@ -142,7 +143,7 @@ def roles_occur_once(
     """
     if not isinstance(section.get(key), Seq):
         return
-    seen: set[str] = set()
+    first_with: dict[str, Map] = {}
     for row in mappings(section[key]):
         key_of_role = "role" if "role" in row else "name"
         role = row.get(key_of_role)
@@ -150,10 +151,14 @@ def roles_occur_once(
         # nothing else is reported.
         if not isinstance(role, str):
             return
-        if role in roles and role in seen:
-            yield Fault.at(row, key_of_role, f"a second {role}", "remove one of them, or correct its role")
-        seen.add(role)
-    missing = [f"`{role}`" for role in roles if role not in seen]
+        first = first_with.setdefault(role, row)
+        if role in roles and first is not row:
+            other = first.at("role" if "role" in first else "name")
+            here = row.at(key_of_role)
+            message = f"`{role}` is given twice, here and in {line_of(other, here)}"
+            remedy = f"correct the `{key_of_role}` of one part, or remove it"
+            yield Fault.at(row, key_of_role, message, remedy, related=Related(other, f"the first `{role}`"))
+    missing = [f"`{role}`" for role in roles if role not in first_with]
     if missing:
         yield Fault.at(section, key, f"{lacks} {listing(missing)}", help)
 

@@ -71,8 +71,10 @@ def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
                 value = row.get(key)
                 first = seen.setdefault((key, value), row) if isinstance(value, int | str) else row
                 if first is not row:
-                    other = f"{quote(first.get('name'))} ({line_of(first.at(key), row.at(key))})"
-                    message = f"the value {value} already belongs to {other}" if key == "value" else f"a second {other}"
+                    line = line_of(first.at(key), row.at(key))
+                    message = f"the name {quote(value)} is given twice, here and in {line}"
+                    if key == "value":
+                        message = f"the value {value} already belongs to {quote(first.get('name'))} ({line})"
                     related = Related(first.at(key), f"the first `{key}`")
                     yield Fault.at(row, key, message, f"correct one `{key}`", related=related)
 

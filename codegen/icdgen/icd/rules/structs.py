@@ -84,8 +84,13 @@ def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
     for row, _, _ in _uses(ctx):
         for key in row:
             if key not in _KEYS_OF_USES:
-                message = f"{quote(row['name'])} is a struct, which cannot have `{key}`; its fields can"
-                yield Fault.at(row, key, message, f"move it to the fields of {quote(row['struct'])}, or remove it")
+                if key == "when":
+                    message = f"{quote(row['name'])} is a struct, and optional structs are not supported"
+                    help = "write the fields of the struct into the message, each with `when`, or remove `when`"
+                else:
+                    message = f"{quote(row['name'])} is a struct, which cannot have `{key}`; its fields can"
+                    help = f"move it to the fields of the struct {quote(row['struct'])}, or remove it"
+                yield Fault.at(row, key, message, help)
     for struct, _ in ctx.structs:
         for row in mappings(struct.source.get("fields")):
             if variable_length.is_variable(row) and isinstance(row.get("name"), str):

@@ -26,10 +26,10 @@ def members_fit_their_fields(ctx: Context) -> Iterator[Fault]:
         if field.enum and top is not None and not _can_represent(field, top):
             misfits = sum(not _can_represent(field, member) for member in field.enum.members)
             also = f" (nor do {misfits - 1} others)" if misfits > 2 else " (nor does another)" if misfits == 2 else ""
-            member = f"{quote(top.name)} = {top.values} of {quote(field.enum.name)}"
-            text = f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{also}"
+            member = f"{quote(top.name)} = {top.values} of the enumeration {quote(field.enum.name)}"
+            text = f"{member} does not fit the {count(field.bits, 'bit')} of the field {quote(field.name)}{also}"
             help = f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
-            help += ", as others of the enumeration are negative" if field.is_signed and top.value >= 0 else ""
+            help += ", because the enumeration also has negative values" if field.is_signed and top.value >= 0 else ""
             yield Fault.at(field.source, "bits", text, help)
 
 
@@ -102,7 +102,8 @@ def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
         return None
     shown = str(value) if abs(value) < 1 << 64 else f"of {value.bit_length()} bits"
     what = f"{shown} does not fit {quote(field.name)}"
-    return what, f"{count(field.bits, 'bit')} of `{field.type}` hold {field.raw_min} to {field.raw_max}"
+    limits = f"{count(field.bits, 'bit')} of `{field.type}` hold {field.raw_min} to {field.raw_max}"
+    return what, limits + (", because the enumeration has negative values" if field.enum and field.is_signed else "")
 
 
 @rule("ICD036")

@@ -39,7 +39,7 @@ fn main() -> ExitCode {
         Ok(()) => return ExitCode::SUCCESS,
         // `reason` is what the ICD says of the code.
         Err(Failure::Refused { code, .. }) => eprintln!("refused, code {}", code.unwrap_or(0)),
-        Err(Failure::Timeout { attempts, .. }) => eprintln!("no answer, attempts: {attempts}"),
+        Err(Failure::Timeout { attempts, .. }) => eprintln!("no response, attempts: {attempts}"),
         Err(Failure::Port(error)) => eprintln!("{error}"),
         Err(other) => eprintln!("{other}"), // what cannot be sent or read
     }
