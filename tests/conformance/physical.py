@@ -56,7 +56,7 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, NodePlace]]:
     for node in icd.nodes:
         for message in node.messages:
             for field in message.fields:
-                if field.has_formula and field.is_invertible and not field.view:
+                if field.has_formula and field.is_invertible and not field.is_read_only:
                     yield message, field
 
 

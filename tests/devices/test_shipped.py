@@ -67,7 +67,7 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
     """The messages of one length each of an ICD, with the library's reading of them."""
     found = []
     for message in devices().node(node).messages:
-        fields = [plain(one.source) for one in places_in(message.layout) if not one.view]
+        fields = [plain(one.source) for one in places_in(message.layout) if not one.is_read_only]
         scaled = {one["name"] for one in fields if "formula" in one}
 
         def read(data: bytes, name: str = message.name) -> Values:

@@ -34,7 +34,7 @@ def layouts(node: Node) -> dict:
         fields = [
             (line.name, line.at, line.bits, line.own_count, line.type, line.unit_symbol, line.scale, line.curve and line.formula,
              line.const, line.enum and (line.enum.name, [(m.value, m.name) for m in line.enum.members]))
-            for line in lines(message.layout) if not line.view and not line.is_count
+            for line in lines(message.layout) if not line.is_read_only and not line.is_count
         ]  # fmt: skip
         ids = message.id, message.set_id, message.get_id
         made[message.name] = message.kind, ids, message.length, sorted(fields, key=lambda field: field[1])

@@ -15,8 +15,8 @@ def same(node: Node, message: Message, other_node: Node, other: Message) -> bool
 def _facts(node: Node, message: Message) -> tuple:
     fields = [
         (
-            f.name, f.type, f.bits, f.view, f.derived and f.derived.sense({}), _place(node, f), f.scale, f.curve, f.const,
-            f.special, f.limits, f.when, tuple((m.value, m.to, m.name) for m in f.enum.members) if f.enum else None,
+            f.name, f.type, f.bits, f.is_read_only, f.derived and f.derived.sense({}), _place(node, f), f.scale, f.curve, f.const,
+            f.special, f.limits, f.conditions, tuple((m.value, m.to, m.name) for m in f.enum.members) if f.enum else None,
         )
         for f in message.fields
     ]  # fmt: skip

@@ -66,7 +66,7 @@ def everything(icd: Icd) -> Iterator[str]:
             for field in (field for field in message.declared_members if field.is_scaled):
                 one, templates = field.physical_name, (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
                 template = templates[not field.is_settable]
-                value = "Option<f64>" if field.model.when else "f64"
+                value = "Option<f64>" if field.model.conditions else "f64"
                 yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}", value=value)
         for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):
             if messages:

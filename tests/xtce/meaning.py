@@ -42,7 +42,9 @@ def messages(icd: Icd, node: Node) -> dict[tuple[str, str], dict]:
 def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
     has_views = not is_sent and all(is_ordered(field, node) for field in raw_fields_in(one.layout))
-    fields = [field for field in one.fields if not (field.is_count or field.derived) and (has_views or not field.view)]
+    fields = [
+        field for field in one.fields if not (field.is_count or field.derived) and (has_views or not field.is_read_only)
+    ]
     own, parts = one.layout, one.layout.parts
     open_ = bool(parts) and not has_open_end(one)
     fields = [field for field in fields if not (open_ and field.at >= own.length * 8) and is_ordered(field, node)]
@@ -112,8 +114,8 @@ def _field(field: NodePlace, bits: list[int]) -> dict:
         "special": {(one.value, one.number): line(one.meaning) for one in field.special},
         "limits": _limits(field),
         "summary": line(field.summary),
-        "view": field.view,
-        "when": {(one.field, tuple(sorted(one.values))) for one in field.when},
+        "view": field.is_read_only,
+        "when": {(one.field, tuple(sorted(one.values))) for one in field.conditions},
     }
 
 

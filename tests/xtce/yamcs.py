@@ -116,7 +116,7 @@ def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple
         if (
             is_left_out
             or field.is_bytes
-            or (field.view and not all(is_ordered(one, node) for one in raw_fields_in(message.layout)))
+            or (field.is_read_only and not all(is_ordered(one, node) for one in raw_fields_in(message.layout)))
         ):
             continue
         name, index = line(field.name), None

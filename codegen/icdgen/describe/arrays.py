@@ -97,7 +97,7 @@ def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
     None if there are few elements, if the array does not start at a byte, or if its words are copied.
     """
     at, bits = first.model.at, first.model.bits
-    if at % 8 or first.is_copied or first.model.when:
+    if at % 8 or first.is_copied or first.model.conditions:
         return None
     in_round = 8 // gcd(8, bits)  # the fewest elements that end at a byte
     rounds = ElementRounds(in_round, count // in_round, at // 8, in_round * bits // 8)

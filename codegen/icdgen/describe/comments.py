@@ -122,7 +122,7 @@ def presence_comment(field: NodePlace, message: Message) -> str:
 
 
 def _conditions(field: NodePlace, message: Message) -> str:
-    return " and ".join(condition_text(condition, message) for condition in field.when)
+    return " and ".join(condition_text(condition, message) for condition in field.conditions)
 
 
 def part_comment(part: Message, positions: Sequence[int]) -> str:
@@ -190,8 +190,8 @@ def field_comment(field: NodePlace, elsewhere: Mapping[str, str], message: Messa
     if field.derived is not None:
         head = f"{words(field.name)}{_unit(field)}: derived as `{words(field.formula)}`, computed in doubles; it has no setter."
         return _comment(head, (sentence(field.summary),), field.errata, elsewhere)
-    facts = ["Overlay field: reads bits of other fields and has no setter."] if field.view else []
-    if field.when:
+    facts = ["Overlay field: reads bits of other fields and has no setter."] if field.is_read_only else []
+    if field.conditions:
         facts.append(f"Present only if {_conditions(field, message)}.")
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")

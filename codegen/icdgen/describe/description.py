@@ -145,7 +145,7 @@ class FieldDescription(ScalarDescription):
     @property
     def is_initially_zero(self) -> bool:
         """Whether all of it is 0 or absent in a new message. A single struct has the initial values of its own members."""
-        if self.model.when:
+        if self.model.conditions:
             return not self.is_initially_present
         if self.struct is not None and not self.is_in_last_part:
             return True
@@ -159,10 +159,10 @@ class FieldDescription(ScalarDescription):
     @cached_property
     def needs(self) -> tuple[Need, ...]:
         """Conditions of an optional field, which must all be met."""
-        members = {member.model.name: member for member in self.message.members} if self.model.when else {}
+        members = {member.model.name: member for member in self.message.members} if self.model.conditions else {}
         return tuple(
             Need(members[condition.field], tuple(sorted(condition.values)))
-            for condition in self.model.when
+            for condition in self.model.conditions
             if condition.field in members
         )
 
@@ -301,7 +301,7 @@ class Composite(Named[WithFields]):
     @cached_property
     def read_only_members(self) -> tuple[FieldDescription, ...]:
         """Overlay fields and derived values: getters compute them, and nothing sets them."""
-        return tuple(member for member in self.declared_members if member.model.view)
+        return tuple(member for member in self.declared_members if member.model.is_read_only)
 
     @cached_property
     def overlays(self) -> tuple[FieldDescription, ...]:
@@ -318,7 +318,7 @@ class Composite(Named[WithFields]):
         """Members that own bits or count elements, in the order of the ICD; an array is one member, and so is a struct."""
         if not self.read_only_members:
             return self.declared_members
-        return tuple(member for member in self.declared_members if not member.model.view)
+        return tuple(member for member in self.declared_members if not member.model.is_read_only)
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:

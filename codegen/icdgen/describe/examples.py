@@ -52,7 +52,7 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
     numbers = [
         member
         for member in message.members
-        if not member.model.when
+        if not member.model.conditions
         and member.model.name not in selectors
         and member.model.const is None
         and not member.model.is_bytes

@@ -61,7 +61,7 @@ Group = Flags | Row | Rounds | FieldDescription
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
     """List the scalars that have bits in every frame, except scalars in arrays of structs."""
     for member in composite.walk(Into.STRUCTS):
-        if member.element_struct is None and not member.model.is_count and not member.model.when:
+        if member.element_struct is None and not member.model.is_count and not member.model.conditions:
             yield from member.scalars
 
 
@@ -140,7 +140,7 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
 def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
     """Return the bytes of a frame with at least so many flags. Optional flags and flags that a loop reads do not count."""
     members = (
-        member for member in composite.walk(Into.STRUCTS) if member.model.type == "bool" and not member.model.when
+        member for member in composite.walk(Into.STRUCTS) if member.model.type == "bool" and not member.model.conditions
     )
     flags = (flag for member in members if loop_of(member) is None for flag in member.elements)
     counts = Counter(flag.pieces[0].byte for flag in flags)

@@ -50,7 +50,7 @@ class MessageDescription(Composite[Message]):
     @cached_property
     def optional_members(self) -> tuple[FieldDescription, ...]:
         """Members that are present only if other fields have certain values."""
-        return tuple(member for member in self.members if member.model.when)
+        return tuple(member for member in self.members if member.model.conditions)
 
     @property
     def last_part(self) -> VariablePartDescription | None:

@@ -145,7 +145,7 @@ class ScalarDescription(Named[NodePlace]):
     @property
     def is_settable(self) -> bool:
         """Whether it can be set by a physical value."""
-        return not self.model.view and self.model.is_invertible
+        return not self.model.is_read_only and self.model.is_invertible
 
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:

@@ -170,7 +170,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     if lengths == NO:
         return NO, length_reasons
     # Overlays repeat bits of other fields
-    own = [p for p in pair.parts if not p.any.view]
+    own = [p for p in pair.parts if not p.any.is_read_only]
     derived = [(p, "another formula") for p in pair.common if is_derived_otherwise(p)]
     # Fields that the reader expects but the sender does not have.
     absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
@@ -180,7 +180,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     reasons = [*length_reasons, *_group_by_reason((p.any.name, why) for p, why in (*wrong, *derived))]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == sum(not line.view for line in lines(reader.layout)) else PARTLY
+    verdict = NO if len(absent) + len(wrong) == sum(not line.is_read_only for line in lines(reader.layout)) else PARTLY
     return verdict, tuple(reasons)
 
 
@@ -203,7 +203,7 @@ def _misread(pair: FieldPair) -> str:
     # explains the others.
     if not pair.same_bits:
         return "other bits"
-    if set(old.when) != set(new.when):
+    if set(old.conditions) != set(new.conditions):
         return "there in other messages"
     if kind(old) != kind(new):
         return f"read as {read_as(new)}, or as {read_as(old)}"
@@ -232,7 +232,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     lengths, length_reasons = _lengths(old, new, "are sent")
     if lengths == NO:
         return NO, length_reasons
-    results = [(part, *_disobeyed(part)) for part in pair.parts if not part.any.view]
+    results = [(part, *_disobeyed(part)) for part in pair.parts if not part.any.is_read_only]
     reasons = [*length_reasons, *_group_by_reason((part.any.name, why) for part, why, _ in results if why)]
     return (NO if any(refused for *_, refused in results) else PARTLY if reasons else YES), tuple(reasons)
 

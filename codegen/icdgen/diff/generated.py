@@ -254,7 +254,14 @@ def _sample(line: Line, name: str, source: Map) -> Scalar:
 
 
 def _decisive(field: Line) -> object:
-    raw = field.type, field.bits, field.count, field.enum.name if field.enum else None, field.const, bool(field.when)
+    raw = (
+        field.type,
+        field.bits,
+        field.count,
+        field.enum.name if field.enum else None,
+        field.const,
+        bool(field.conditions),
+    )
     return raw, field.unit, field.scale, field.curve, field.special, field.limits
 
 

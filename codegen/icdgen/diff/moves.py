@@ -95,7 +95,7 @@ def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
     # Only fields between the previous common field and the move can have caused it.
     start_old = before_old.old.at if before_old else -1
     start_new = before_new.new.at if before_new else -1
-    lost, gained = ([pair for pair in side if not pair.any.view] for side in (message.lost, message.gained))
+    lost, gained = ([pair for pair in side if not pair.any.is_read_only] for side in (message.lost, message.gained))
     move.lost = [pair for pair in lost if start_old <= pair.old.at < first.old.at]
     move.gained = [pair for pair in gained if start_new <= pair.new.at < first.new.at]
     # A field that only changed its width shifts all fields behind it.

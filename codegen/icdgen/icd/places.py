@@ -109,12 +109,12 @@ class NodePlace(OfScalar):
         return self.node.source
 
     @property
-    def when(self) -> tuple[Condition, ...]:
+    def conditions(self) -> tuple[Condition, ...]:
         """Conditions of an optional field: a frame has the field if all of them are met."""
         return self.node.present_if
 
     @property
-    def view(self) -> bool:
+    def is_read_only(self) -> bool:
         """Whether the node is an overlay field or a derived value, so it owns no bits."""
         return isinstance(self.node, Overlay | Derived)
 
@@ -196,7 +196,7 @@ def scalars_in(layout: Layout) -> tuple[NodePlace, ...]:
 @cached_by_owner
 def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:
     """Return the scalars of the longest frame with a raw value: all except overlay fields and derived values."""
-    return tuple(scalar for scalar in scalars_in(layout) if not scalar.view)
+    return tuple(scalar for scalar in scalars_in(layout) if not scalar.is_read_only)
 
 
 def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ...]:

@@ -68,13 +68,13 @@ def remarks(
         earlier = [other for other in message.layout.parts[:-1] if other.begin < field.at // 8 and other is not part]
         if earlier:
             yield f"behind {earlier[-1].name}"
-    if field.when:
-        yield f"only there if {' and '.join(condition_text(condition, message) for condition in field.when)}"
+    if field.conditions:
+        yield f"only there if {' and '.join(condition_text(condition, message) for condition in field.conditions)}"
     if field.aliases:
         yield f"also called {', '.join(field.aliases)}"
     if field.derived is not None:
         yield f"derived: {field.formula}"
-    elif field.view:
+    elif field.is_read_only:
         yield "a view of bits that other fields have"
     if orders := orders_text(field):
         yield orders

@@ -137,8 +137,8 @@ def _field(field: NodePlace) -> _Object:
         display=field.display.plain if field.display else None,
         # Exact, like `scale`.
         limits={bound.key: str(bound.value) for bound in bounds(field.limits)},
-        view=True if field.view else None,
-        when={condition.field: list(condition.values) for condition in field.when},
+        view=True if field.is_read_only else None,
+        when={condition.field: list(condition.values) for condition in field.conditions},
         **_ids(field.errata),
     )
 

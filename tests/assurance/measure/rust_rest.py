@@ -61,7 +61,7 @@ def _path(message: MessageDescription) -> str:
 def _lines(message: MessageDescription) -> Iterator[str]:
     """What is asked of a message: accessors, texts, views and parts."""
     for field in message.declared_members:
-        if field.model.view:
+        if field.model.is_read_only:
             yield f"let _ = one.{field_name(field)}();"
         index, option = ("0", ".unwrap()") if field.count else ("", "")
         for one in accessors(field) if field.steps else ():
@@ -71,7 +71,7 @@ def _lines(message: MessageDescription) -> Iterator[str]:
                 yield f"let value = {value}; one.set_{one.name}({given}).unwrap();"
             else:
                 yield f"let _ = {value};"
-        if field.is_text and not field.model.view:
+        if field.is_text and not field.model.is_read_only:
             yield f'one.set_{field.physical_name}("").unwrap();'
             yield f'assert_eq!(one.{field.physical_name}(), Some(""));'
     for part in parts(message):

@@ -42,11 +42,12 @@ def _message(message: Message) -> dict[str, Any]:
                 "type": field.type,
                 "bits": field.bits,
                 "scaled": field.has_formula or field.type == "text",
-                "settable": ((field.has_formula and field.is_invertible) or field.type == "text") and not field.view,
-                "view": field.view,
-                "conditional": bool(field.when),
+                "settable": ((field.has_formula and field.is_invertible) or field.type == "text")
+                and not field.is_read_only,
+                "view": field.is_read_only,
+                "conditional": bool(field.conditions),
             }
-            for field in sorted(scalars_in(message.layout), key=lambda field: field.view)
+            for field in sorted(scalars_in(message.layout), key=lambda field: field.is_read_only)
         ],
     }
 

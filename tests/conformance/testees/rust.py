@@ -115,7 +115,7 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.is_scaled:
         get, set = f"{within}.{field.physical_name}", f"{within}.set_{field.physical_name}"
         index = field.model.index
-        if field.model.when:
+        if field.model.conditions:
             get, set = f"|m| {get}().unwrap_or_default()", f"|m, value| {set}(value)"
         elif index is None:
             get, set = f"|m| {get}()", f"|m, value| {set}(value)"
@@ -133,7 +133,7 @@ def _field(field: FieldDescription) -> FieldEntry:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in known if key != "special")
         limits = f"|| vec![{values}]"
     name = field_name(field)
-    value = f"View(|m| Box::new(m.{name}()))" if field.model.view else f"Member(|m| &mut m.{name})"
+    value = f"View(|m| Box::new(m.{name}()))" if field.model.is_read_only else f"Member(|m| &mut m.{name})"
     return FieldEntry(value, scale, text, special, limits)
 
 

@@ -57,9 +57,9 @@ def _renamed(case: Case, pair: MessagePair) -> Case:
     if "raw" in answer:
         answer["raw"] = {names.get(name, name): value for name, value in answer["raw"].items()}
         for part in pair.parts:  # views that came or went are no bytes
-            if part.before is None and part.new.view:
+            if part.before is None and part.new.is_read_only:
                 answer["raw"][part.new.name] = EVERYTHING
-            elif part.after is None and part.old.view:
+            elif part.after is None and part.old.is_read_only:
                 del answer["raw"][part.old.name]
         answer["physical"] = EVERYTHING
     return Case(case.about, request, answer)

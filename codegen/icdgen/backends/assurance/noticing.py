@@ -75,7 +75,7 @@ class MessageWatch:
             ]
         lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
         # The reduced message must contain the fields on which the presence depends.
-        needed = {condition.field for condition in (*old.when, *now.when)}
+        needed = {condition.field for condition in (*old.conditions, *now.conditions)}
         reduced_message = self._message_of(
             now, *(place for place in scalars_in(message.layout) if place.name in needed)
         )
@@ -105,7 +105,7 @@ class MessageWatch:
             scalar = replace(
                 field.scalar, name=field.name, at=field.at, bits=field.bits, length=None, orders=field.declared_orders
             )
-            fixed.append(overlay_of(scalar) if field.view else scalar)
+            fixed.append(overlay_of(scalar) if field.is_read_only else scalar)
         layout = self.message.layout
         return replace(
             self.message, layout=Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early)
@@ -148,7 +148,7 @@ class MessageWatch:
         empty.
         """
         # An absent optional field has no initial value.
-        if field.when and field.name not in self._initial:
+        if field.conditions and field.name not in self._initial:
             return False
         return field.is_count or field.at < 8 * self._initial_length
 
@@ -195,7 +195,7 @@ class MessageWatch:
         """For each field, the bits that all other fields set in the frame of each row."""
         columns = []
         for field in scalars_in(self.message.layout):
-            if field.view or field.is_count:
+            if field.is_read_only or field.is_count:
                 columns.append([0] * len(self.vectors.rows))
                 continue
             reduced_message = self._message_of(replace(field, scalar=replace(field.scalar, present_if=())))
@@ -229,7 +229,7 @@ def _notices(
     if raw is None or read is None:
         return raw is not read
     # An overlay must have the value in the encoded frame too.
-    if now.view and codec.decode(node, reduced_message, long.encoded)[now.name] != raw:
+    if now.is_read_only and codec.decode(node, reduced_message, long.encoded)[now.name] != raw:
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
@@ -302,7 +302,7 @@ def _physical(field: NodePlace, raw: Any) -> object:
 
 def _set_back(field: NodePlace, raw: Any) -> object:
     """Return the raw value that results from setting the physical value of a raw value."""
-    double = None if field.view else codec.physical_double(field, raw)
+    double = None if field.is_read_only else codec.physical_double(field, raw)
     return None if double is None else _attempt(codec.raw_from_physical, field, double)
 
 

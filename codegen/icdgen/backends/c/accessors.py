@@ -119,7 +119,7 @@ def overlay(field: FieldDescription) -> dict[str, str]:
 
 def _raw(field: FieldDescription) -> str:
     """Return the raw value of a field of ``message``."""
-    return f"{stem(field.message)}_{field.name}(message)" if field.model.view else _member(field)
+    return f"{stem(field.message)}_{field.name}(message)" if field.model.is_read_only else _member(field)
 
 
 def _member(field: FieldDescription) -> str:

@@ -106,11 +106,11 @@ class CNames(NamingPolicy):
             yield composite.identifier(FILE, f"{stem}_{part_name(part.message)}")
 
     def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
-        if field.model.view:
+        if field.model.is_read_only:
             yield field.identifier(FILE, names.getter(composite, field.name))
         else:
             yield field.identifier(f"members of {names.stem(composite)}_t", field.name)
-        if field.model.when:
+        if field.model.conditions:
             yield field.identifier(FILE, names.has(field))
         for accessor in accessors_of(field, "text", "double", "integer"):
             yield field.identifier(FILE, names.getter(composite, accessor.name))

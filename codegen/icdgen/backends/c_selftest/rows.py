@@ -179,7 +179,7 @@ class _Rows:
             packed=(field.bits + 7) // 8,
             type=_type(field),
             fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
-            view=type_of(description) if field.view else "",
+            view=type_of(description) if field.is_read_only else "",
             unfit=list(map(_unsigned, unfit)),
             integer=accessors.get("integer"),
             scaled=accessors.get("double"),

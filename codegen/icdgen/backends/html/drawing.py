@@ -114,13 +114,13 @@ class _Canvas:
         alternatives.
         """
         field, name = scalars_in(self.message.layout)[key - 1], self.repeats.short(key)
-        if not field.when:
+        if not field.conditions:
             return name
         own_mask = layout.mask(field, self.node)
         alternatives = [
             place.name
             for place in scalars_in(self.message.layout)
-            if place.when and layout.mask(place, self.node) & own_mask
+            if place.conditions and layout.mask(place, self.node) & own_mask
         ]
         return " / ".join([name, *(other for other in alternatives if other != field.name)][:4])
 
@@ -132,7 +132,7 @@ class _Canvas:
         for shape, place in zip(self.shapes, scalars_in(self.message.layout), strict=True):
             # Overlays share their bits with other fields; a counter of the rest has
             # none.
-            if place.view or place.is_count:
+            if place.is_read_only or place.is_count:
                 continue
             if place.is_bytes:
                 owner[place.at : place.at + place.bits] = [shape.key] * place.bits

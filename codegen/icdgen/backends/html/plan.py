@@ -80,7 +80,7 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
         "type": "bytes" if field.is_bytes else field.type,
         "bits": field.bits,
         "signed": field.is_signed,
-        "view": field.view,
+        "view": field.is_read_only,
         "implied": field.is_count,
         "text": field.type == "text",
         "first": field.at // 8 if field.is_bytes else None,
@@ -99,7 +99,8 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
         # Bits of floats
         "special": [[integer(special.value), special.meaning] for special in field.special] or None,
         "limits": limits or None,  # numerator and denominator of each
-        "when": [[places[condition.field], list(map(integer, condition.values))] for condition in field.when] or None,
+        "when": [[places[condition.field], list(map(integer, condition.values))] for condition in field.conditions]
+        or None,
         "derived": (
             [[places[name] for name in how.fields], list(how.numbers), list(map(list, how.steps))] if how else None
         ),

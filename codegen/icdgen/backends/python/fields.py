@@ -31,7 +31,7 @@ def annotation(field: FieldDescription) -> str:
 
 def _optional(field: FieldDescription, note: str) -> str:
     """Return the type of an attribute. Absent optional fields have the value None."""
-    return f"_lazy.Optional[{note}]" if field.model.when else note
+    return f"_lazy.Optional[{note}]" if field.model.conditions else note
 
 
 def _annotation(field: FieldDescription) -> str:

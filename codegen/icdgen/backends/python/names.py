@@ -36,7 +36,7 @@ _LONGEST = 200  # characters of a module's name, for the sake of file systems
 
 def accessors_in_python(field: FieldDescription) -> Iterator[Accessor]:
     """List the accessors of a physical value. Classes have no integers of read-only values."""
-    if field.model.view:
+    if field.model.is_read_only:
         return accessors_of(field, "double")
     return accessors_of(field, "text", "double", "integer", "long integer")
 

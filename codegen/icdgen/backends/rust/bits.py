@@ -171,7 +171,7 @@ def fitting(field: FieldDescription) -> list[str]:
 def _source(field: FieldDescription, owner: str = "self") -> str:
     """Return the expression to write: the member, or the variable with the value of an optional field."""
     name = field_name(field)
-    return RAW if field.model.when else f"{owner}.{name}" if owner else name
+    return RAW if field.model.conditions else f"{owner}.{name}" if owner else name
 
 
 def writing(field: FieldDescription, owner: str = "self", within: str = "") -> list[str]:

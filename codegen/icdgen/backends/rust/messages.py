@@ -29,10 +29,12 @@ DERIVES_DEFAULT = 32
 def values(message: MessageDescription) -> dict[str, object]:
     """Return the values for the template of a message."""
     fields, tables, last = message.members, bytes_of_flags(message, bits.FLAGS_FROM), message.last_part
-    readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
+    readings = ["None" if field.model.conditions else bits.reading(field, tables) for field in fields]
     overlays = [(field, bits.reading(field, set(), depth=2)) for field in message.overlays]
     conditions = conditional.conditional(message)
-    writings = [line for member in message.walk(Into.STRUCTS) if not member.model.when for line in bits.writing(member)]
+    writings = [
+        line for member in message.walk(Into.STRUCTS) if not member.model.conditions for line in bits.writing(member)
+    ]
     return {
         **of_composite(message),
         "refused": message.is_narrow or bool(conditions),
@@ -89,7 +91,7 @@ def of_composite(composite: Composite[Any]) -> dict[str, object]:
     narrow = [field for field in fields if field.needs_range_check]
     return {
         "constants": _constants(composite),
-        "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
+        "fits": [line for field in narrow if not field.model.conditions for line in bits.fitting(field)],
         "scales": [field for field in composite.declared_members if has_constant(field)],
         "curves": [field for field in composite.declared_members if field.curve is not None],
         "default": None if has_default else elements.literal(fields, [_initial(field) for field in fields]),
@@ -151,7 +153,7 @@ def _initial(field: FieldDescription) -> str:
         absent = f"Self::{arrays.reader(field.name)}(&[0; {length}])" if length else _valued(field, 0)
         few = field.initial_count if field.has_initial_value else 0
         return f"first({few}, {value}, {absent})" if few else f"[{absent}; {field.count}]"
-    if field.model.when:
+    if field.model.conditions:
         return f"Some({value})" if field.is_initially_present else "None"
     return f"[{value}; {field.count}]" if field.count else value
 

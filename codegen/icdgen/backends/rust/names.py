@@ -88,7 +88,7 @@ def integer_type(field: FieldDescription) -> str:
 
 def raw_type(field: FieldDescription) -> str:
     """Type of the raw value in the message's struct."""
-    if field.model.when:
+    if field.model.conditions:
         return f"Option<{one_type(field)}>"
     return f"[{one_type(field)}; {field.count}]" if field.count else one_type(field)
 

@@ -24,7 +24,7 @@ def big_parts(value: int) -> list[str]:
 def has_constant(field: FieldDescription) -> bool:
     """Return whether code needs the constant of a scale: to set a field, to test a raw value, or to compute a physical value."""
     arithmetic = field.arithmetic
-    if not field.model.view:
+    if not field.model.is_read_only:
         return arithmetic is not None or field.is_narrow
     return arithmetic is not None and not (arithmetic.is_exact_in_doubles and arithmetic.is_exact_in_singles)
 
@@ -41,7 +41,11 @@ def raw_value(field: FieldDescription) -> str:
 
     Elements and optional fields are in the variable ``raw``.
     """
-    return "raw" if field.count or field.model.when else f"self.{field_name(field)}{'()' if field.model.view else ''}"
+    return (
+        "raw"
+        if field.count or field.model.conditions
+        else f"self.{field_name(field)}{'()' if field.model.is_read_only else ''}"
+    )
 
 
 def curve_name(field: FieldDescription) -> str:

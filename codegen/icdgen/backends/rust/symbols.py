@@ -74,12 +74,12 @@ class RustNames(NamingPolicy):
             yield composite.identifier(methods, arrays.writer(name))
 
     def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
-        scope, is_read_only = _scope(composite), field.model.view
+        scope, is_read_only = _scope(composite), field.model.is_read_only
         methods, name = f"methods of {scope}", names.field_name(field)
         if composite.last_part is not None and (field.is_in_last_part or field.is_in_earlier_part):
             yield field.identifier(methods, name)
         yield field.identifier(methods if is_read_only else f"fields of {scope}", name)
-        if field.model.when:
+        if field.model.conditions:
             yield field.identifier(methods, names.has(field))
         for accessor in accessors_in_rust(field):
             yield field.identifier(methods, accessor.name)

@@ -44,7 +44,7 @@ def _cell(value: object) -> Cell:
 
 def _fields(message: Message) -> Iterator[dict[str, object]]:
     for line in lines(message.layout):
-        if line.view or line.is_count:
+        if line.is_read_only or line.is_count:
             continue  # no bits of its own
         outer = line.levels[0]
         if not line.is_of_struct:

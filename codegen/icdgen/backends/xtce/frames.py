@@ -119,7 +119,7 @@ class Frames:
         for part in parts:
             run = run_of_all(part.model.elements(), message.node) if part.count else run_of(part.model, message.node)
             # Overlays of existing bits: a command sets only the fields themselves.
-            if part.model.view and (is_sent or frame.lacks):
+            if part.model.is_read_only and (is_sent or frame.lacks):
                 continue
             if run is None:
                 frame.lacks.append(f"`{part.model.name}` is left out: XTCE has no word for the order of its bits")
@@ -243,7 +243,9 @@ def _add_row(frame: Frame, part: FieldDescription, type_: str, most: int = 0) ->
     """Declare the parameter or argument of a field, and note its omissions."""
     model = part.model
     name, special = frame.names[part.name], model.special
-    frame.rows.append(Row(name, type_, model.name, model.summary, special, model.const, is_view=model.view, most=most))
+    frame.rows.append(
+        Row(name, type_, model.name, model.summary, special, model.const, is_view=model.is_read_only, most=most)
+    )
     if not is_complete(model):
         frame.notes.append(f"`{model.name}`: beyond its table it has the value of the last point")
 

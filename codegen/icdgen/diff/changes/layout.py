@@ -100,13 +100,13 @@ def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 
 def _conditions(field: Line) -> set[tuple[str, frozenset[int]]]:
-    return {(condition.field, frozenset(condition.values)) for condition in field.when}
+    return {(condition.field, frozenset(condition.values)) for condition in field.conditions}
 
 
 def _needs(field: Line, message: Message) -> str:
-    if not field.when:
+    if not field.conditions:
         return "always there"
-    return f"there if {' and '.join(condition_text(condition, message) for condition in field.when)}"
+    return f"there if {' and '.join(condition_text(condition, message) for condition in field.conditions)}"
 
 
 def _an_array(elements: int) -> str:
@@ -174,14 +174,14 @@ def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 @rule("DIF113", "field", when="gone")
 def field_removed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
-    if not pair.old.view and not ctx.is_reported_for_message(pair):
+    if not pair.old.is_read_only and not ctx.is_reported_for_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
         yield CheckResult(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
 @rule("DIF114", "field", when="come", severity="note", addition=True)
 def field_added(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
-    if not pair.new.view and not ctx.is_reported_for_message(pair):
+    if not pair.new.is_read_only and not ctx.is_reported_for_message(pair):
         where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
         text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
         yield CheckResult(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

@@ -88,7 +88,7 @@ def names_gone(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
 @rule("DIF307", "field")
 def retyped(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
-    same = (old.type, old.bits, old.count, not old.when) == (new.type, new.bits, new.count, not new.when)
+    same = (old.type, old.bits, old.count, not old.conditions) == (new.type, new.bits, new.count, not new.conditions)
     if same and ctx.match.same_enum(old.enum, new.enum):
         return
     changed = ctx.generated.retyped(pair)
@@ -152,7 +152,7 @@ def names_come(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
 def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     was, now = map(_origin, (pair.old, pair.new))
     if was != now:
-        is_view = pair.new.view and pair.new.derived is None
+        is_view = pair.new.is_read_only and pair.new.derived is None
         details = ("The encoded value follows from the fields that own the bits.",) if is_view else ()
         yield CheckResult(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
 
@@ -160,4 +160,4 @@ def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 def _origin(line: Line) -> str:
     if line.derived is not None:
         return "derived from other fields"
-    return "a view" if line.view else "a field with bits of its own"
+    return "a view" if line.is_read_only else "a field with bits of its own"

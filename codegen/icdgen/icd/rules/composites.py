@@ -117,7 +117,7 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
 
 def _fields_with_bits(message: Message) -> list[NodePlace]:
     """Return the fields of the longest frame that own bits."""
-    return [field for field in scalars_in(message.layout) if not (field.is_count or field.view)]
+    return [field for field in scalars_in(message.layout) if not (field.is_count or field.is_read_only)]
 
 
 def _compare(frame: Message, here: Place) -> str:

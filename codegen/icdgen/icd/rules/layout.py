@@ -134,7 +134,7 @@ def _overlaps_among(owner: Owner, icd_node: Node, fields: Iterable[NodePlace]) -
         mask = _mask(field.at, field.bits, field.orders_in_effect(icd_node.orders).bit)
         for other, other_mask in before:
             shared = mask & other_mask
-            if shared and not are_exclusive(other.when, field.when):
+            if shared and not are_exclusive(other.conditions, field.conditions):
                 yield Overlap(other, field, _bits_of(shared))
                 break
         before.append((field, mask))
@@ -162,14 +162,14 @@ def _fault(overlap: Overlap) -> Fault:
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
     text = f"{quote(second.name)} overlaps {other} in {bits}"
-    text += ", and both can be present" if first.when or second.when else ""
+    text += ", and both can be present" if first.conditions or second.conditions else ""
     related = Related(first.source.at("at"), f"{quote(first.name)} begins here")
     return Fault.at(second.source, "at", text, _help(first, second), related=related)
 
 
 def _help(first: NodePlace, second: NodePlace) -> str:
     """Return the help for an overlap."""
-    if first.when and second.when:
+    if first.conditions and second.conditions:
         return _ALTERNATIVES
     help = "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
     for place in (first, second):
@@ -238,7 +238,7 @@ def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(source, "const", text, "give `const` to the field that has the bits")
         free = _mask(node.at, field.bits, line.orders.bit)
         for other in scalars_in(message.layout):
-            if _has_own_bits(other) and not other.when:
+            if _has_own_bits(other) and not other.conditions:
                 free &= ~_mask(other.at, other.bits, other.orders_in_effect(icd_node.orders).bit)
         if free and is_read(message):
             always = "always " if message.has_conditions else ""

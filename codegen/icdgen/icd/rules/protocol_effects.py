@@ -86,7 +86,7 @@ def fields_can_have_their_roles(ctx: Context) -> Iterator[Fault]:
 
 def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Iterator[Fault]:
     """Yield the faults of fields that have two roles, or a role that they cannot have."""
-    by_name = {field.name: field for field in fields if not field.view}
+    by_name = {field.name: field for field in fields if not field.is_read_only}
     seen: dict[str, str] = {}
     for key in keys:
         field = named(by_name, owner.get(key))

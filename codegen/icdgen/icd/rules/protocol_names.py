@@ -86,8 +86,8 @@ def named_fields_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
             fields = scalars_in(message.layout)
-            names = {field.name for field in fields if not field.view}
-            if any(field.name == owner[key] and field.view for field in fields):
+            names = {field.name for field in fields if not field.is_read_only}
+            if any(field.name == owner[key] and field.is_read_only for field in fields):
                 text = (
                     f"{quote(owner[key])} of {quote(message.name)} is an overlay field, but links read fields with bits"
                 )
