@@ -120,7 +120,7 @@ def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
         ),
         ("IMP085", None, "`receivers` of `signal` is not used (5 times, first: message `Wide`, `Speed`)"),
     ]
-    assert faulty.failed and (faulty.held, faulty.definitions.total) == (4, 4)
+    assert faulty.failed and (faulty.imported, faulty.definitions.total) == (4, 4)
 
 
 def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):

@@ -188,7 +188,7 @@ def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
         for id, name in enumerate(("Status", "STATUS", "status", "STATus", "class", "Class"), 1)
     ]
     read = imported(HEAD + "\n".join(blocks), tmp_path)
-    assert (read.held, read.definitions.total) == (6, 6)
+    assert (read.imported, read.definitions.total) == (6, 6)
     assert all(len(one["fields"]) == len(names) for one in tree_of(read)["messages"])
     assert [one for one in read.definitions.troubles if one.severity == "error"] == []
     model(read, tmp_path)

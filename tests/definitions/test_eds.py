@@ -167,7 +167,7 @@ def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
     read = imported("camera.xml", folder)
     why = "no file in the folder defines `${MISSION/NAME_LENGTH}`"
     assert ("IMP081", f"message `Shoot`: from `File` on only bytes are imported: {why}") in said(read)
-    assert read.held == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
+    assert read.imported == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
     (folder / "mission.xml").unlink()
     assert "no file in the folder defines `${MISSION/HEADER}`" in why_not("camera.xml", folder)
 
@@ -340,7 +340,7 @@ def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeyp
 def test_a_file_beside_it_that_is_broken_is_named_and_others_are_not_looked_at(tmp_path):
     (tmp_path / "other.xml").write_text("<other><unclosed></other>")
     (tmp_path / "good.xml").write_text(sheet(container("A")))
-    assert run.read(tmp_path / "good.xml", eds.Eds()).held == 1
+    assert run.read(tmp_path / "good.xml", eds.Eds()).imported == 1
     (tmp_path / "broken.xml").write_text(sheet("")[:-5])
     with pytest.raises(Findings) as raised:
         run.read(tmp_path / "good.xml", eds.Eds())

@@ -43,7 +43,7 @@ def test_each_way_in_which_values_let_the_sequence_go_on_is_a_message_told_by_th
         ("probe with delay power", [1, 1]), ("probe with delay places", [1, 2]),
         ("probe power", [0, 1]), ("probe places", [0, 2]),
     ]  # fmt: skip
-    assert {one["id"] for one in tree["messages"]} == {1} and probe.definitions.total == probe.held == 4
+    assert {one["id"] for one in tree["messages"]} == {1} and probe.definitions.total == probe.imported == 4
     assert (
         field(probe, "probe with delay power", "volts_raw")["at"] == field(probe, "probe power", "volts_raw")["at"] + 16
     )

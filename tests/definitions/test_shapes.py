@@ -60,7 +60,7 @@ def test_xtce_conditions_on_members_of_aggregates_tell_messages_apart(kite):
 
 
 def test_xtce_a_container_that_only_others_are_based_on_is_a_note_and_no_missing_message(kite):
-    assert findings(kite) == [("IMP087", "note")] and kite.held == kite.definitions.total == 5
+    assert findings(kite) == [("IMP087", "note")] and kite.imported == kite.definitions.total == 5
     assert "`TelemetryPacket`" in kite.definitions.troubles[0].message
 
 
@@ -80,7 +80,7 @@ def edited(tmp_path, *changes):
 
 def test_xtce_a_member_that_an_aggregate_does_not_have_costs_the_message_alone(tmp_path):
     read = edited(tmp_path, ('"Section/Kind"', '"Section/Sort"'))
-    assert read.held == 4
+    assert read.imported == 4
     assert "`Sails` is not imported: it depends on `Section/Sort`, which it does not have" in "".join(
         one.message for one in read.definitions.troubles
     )
@@ -95,7 +95,7 @@ def test_xtce_a_packet_without_data_costs_itself_and_not_the_file(tmp_path):
     assigned = '<ArgumentAssignment argumentName="Packet_ID" argumentValue="{}"/>'
     entry = '<EntryList><ArgumentRefEntry argumentRef="Packet_ID"/></EntryList>'
     read = edited(tmp_path, (entry, "<EntryList/>"), (assigned.format(1), ""), (assigned.format(2), ""))
-    assert read.held == 4 and "SwitchOn" in {one["name"] for one in read.trees["kite"]["messages"]}
+    assert read.imported == 4 and "SwitchOn" in {one["name"] for one in read.trees["kite"]["messages"]}
     (lost,) = [one.message for one in read.definitions.troubles if one.severity == "error"]
     assert lost.startswith("message `Reboot` is not imported: it has no data")
 
@@ -121,13 +121,13 @@ def test_xtce_a_field_within_the_header_is_left_out_with_a_finding(tmp_path):
     read = edited(tmp_path, (entry, entry + placed("Wheel", 25)))
     (lost,) = [one for one in read.definitions.troubles if one.severity == "error"]
     assert (lost.code, lost.message) == ("IMP086", "message `Orbit`: `Wheel` lies within the header")
-    assert read.held == 5
+    assert read.imported == 5
 
 
 def test_kaitai_types_without_a_sequence_and_sizes_of_0_have_no_bytes():
     read = imported(SHAPES / "cases.ksy")
     (tree,) = read.trees.values()
-    assert findings(read) == [] and read.held == 3
+    assert findings(read) == [] and read.imported == 3
     assert [(one["name"], one["length"]) for one in tree["messages"]] == [
         ("cases power", 5), ("cases nothing", 1), ("cases unknown", 1),
     ]  # fmt: skip
@@ -155,7 +155,7 @@ def test_kaitai_a_library_of_types_says_that_it_has_no_sequence(tmp_path):
 
 def test_xtce_files_that_refer_to_each_other_are_one_database_called_like_their_folder():
     (read,) = imported_set(SHAPES / "pus").values()
-    assert findings(read) == [] and read.held == read.definitions.total == 4
+    assert findings(read) == [] and read.imported == read.definitions.total == 4
     (name, tree), = read.trees.items()  # fmt: skip
     assert name == "pus" and [(one["name"], one["id"]) for one in tree["messages"]] == [
         ("report", 7), ("alive", 7), ("connected", 7), ("ask alive", 7),
@@ -183,12 +183,12 @@ def test_xtce_two_files_that_define_one_name_are_reported_with_both(tmp_path):
     lost = {one.message: one for one in errors(read)}
     one = lost["the container `/Service/report` is in `again.xml` and in `service.xml`"]
     assert (one.code, one.help, one.spot.line) == ("IMP076", "the first one is taken", 23)
-    assert one.spot.file.endswith("service.xml") and read.held == 4
+    assert one.spot.file.endswith("service.xml") and read.imported == 4
 
 
 def test_eds_sheets_of_module_folders_find_types_and_design_parameters_of_each_other():
     reads = imported_set(SHAPES / "cfs")
-    assert {one: read.held for one, read in reads.items()} == {
+    assert {one: read.imported for one, read in reads.items()} == {
         "config.xml": 0, "base_types.xml": 0, "packets.xml": 0, "pump.xml": 1, "lamp.xml": 1,
     }  # fmt: skip
     assert not any(errors(read) for read in reads.values())
@@ -218,7 +218,7 @@ def test_eds_an_alias_of_itself_costs_what_uses_it(tmp_path):
     types.write_text(types.read_text().replace('name="Counter" type="uint16"', 'name="Counter" type="Counter"'))
     reads = imported_set(folder)
     (lost,) = errors(reads["pump.xml"])
-    assert "is an alias of itself" in lost.message and reads["lamp.xml"].held == 1
+    assert "is an alias of itself" in lost.message and reads["lamp.xml"].imported == 1
 
 
 def test_eds_a_sheet_alone_says_which_package_it_lacks_and_how_to_give_it():
@@ -234,7 +234,7 @@ def test_a_broken_file_of_a_set_costs_itself(tmp_path):
     reads = imported_set(folder)
     (lost,) = errors(reads["broken.xml"])
     assert lost.code == "IMP005" and lost.message.startswith("not XML")
-    assert sum(one.held for one in reads.values()) == 4
+    assert sum(one.imported for one in reads.values()) == 4
 
 
 def test_a_folder_is_imported_by_the_command(tmp_path):
@@ -327,7 +327,7 @@ def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeyp
     read = imported(SHAPES / "aggregate.xml")
     (lost,) = errors(read)
     assert lost.code == "IMP070" and lost.message.startswith("the header is not imported: the length of")
-    assert read.held == 5 and "protocol" not in read.trees["aggregate"]
+    assert read.imported == 5 and "protocol" not in read.trees["aggregate"]
 
 
 def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp_path):
@@ -340,7 +340,7 @@ def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp
     (lost,) = errors(read)
     assert (lost.code, lost.spot.line) == ("IMP081", 83)
     assert lost.message == "message `Orbit`: from `Position` on only bytes are imported: it has a length prefix"
-    assert read.held == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
+    assert read.imported == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
         ("Elapsed", "uint"), ("Position", "bytes"),
     ]  # fmt: skip
     assert unused(read) and "`Shadow`" in "".join(text for text, _ in unused(read))
@@ -353,4 +353,4 @@ def test_xtce_what_tells_a_message_apart_must_be_held(tmp_path):
         f"message `{name}` is not imported: it depends on `Section/Kind`, which is in or behind `Section`: {why}"
         for name in ("Sails", "Wheels")
     ]
-    assert read.held == 3
+    assert read.imported == 3

@@ -88,7 +88,7 @@ def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are
     assert said.message == (
         "message `curves` is not imported: `Pt`, which has any number of repetitions, is inside another group"
     )
-    assert (charger.held, charger.definitions.total) == (2, 3)
+    assert (charger.imported, charger.definitions.total) == (2, 3)
     assert said.help == (
         "if your device always has the same number, write it into a copy of the file: "
         "as `count` of `Pt` and as `value` of the point `NPt`"
@@ -135,7 +135,7 @@ def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
     (tmp_path / "models.json").write_text(json.dumps(models))
     read = run.read(tmp_path / "models.json", sunspec.SunSpec())
     assert why in [one.message.split(": ", 1)[1] for one in read.definitions.troubles if one.severity == "error"]
-    assert read.held == 1
+    assert read.imported == 1
 
 
 @pytest.mark.parametrize(

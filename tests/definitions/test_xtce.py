@@ -48,7 +48,7 @@ def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
     )
     read = run.read(tmp_path / "probe.xml", xtce.Xtce())
     header = read.trees["probe"]["protocol"]["stream"]["header"]
-    assert read.held == 2 and header[2]["value"] == {"telecommand": 0, "telemetry": 1}
+    assert read.imported == 2 and header[2]["value"] == {"telecommand": 0, "telemetry": 1}
 
 
 def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(probe):

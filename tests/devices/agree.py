@@ -15,7 +15,7 @@ from icdgen.icd.build import special
 from icdgen.icd.formula import coefficients, parse
 from icdgen.icd.layout import Scalar
 from tests.conformance.driver import Answering
-from tests.devices.definition import Definition, NotHeld, Values
+from tests.devices.definition import Definition, NotSupported, Values
 
 ROUNDS_OFF = 1e-9  # as far as a library's double may be from the exact value, relative to it or as so many units
 
@@ -66,7 +66,7 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
         answer = next(of_shared) if is_shared else answer
         try:
             raw, physical = one.raw(data), one.physical(data)
-        except NotHeld:
+        except NotSupported:
             into.refused += 1
             continue
         into.frames += 1

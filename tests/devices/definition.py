@@ -13,7 +13,7 @@ from icdgen.icd.units import SPELLINGS, STANDARD
 Values = dict[str, object]  # by name of the field; integers, the bits of floats, bytes, lists of these
 
 
-class NotHeld(ValueError):
+class NotSupported(ValueError):
     """The format cannot say this; the text is the cause, short enough to be counted."""
 
 
@@ -72,9 +72,9 @@ def open_end(name: str, at: int, bits: int, type_: str, counter: str | dict, mos
 def open_structs(
     owner: str, name: str, at: int, fields: list[dict], bits: int, counter: str | dict, most: int
 ) -> tuple[dict, dict]:
-    """Likewise with elements that are structs of so many bits: the field, and the struct. Raises `NotHeld`."""
+    """Likewise with elements that are structs of so many bits: the field, and the struct. Raises `NotSupported`."""
     if bits % 8:
-        raise NotHeld("a struct that does not end with a byte")
+        raise NotSupported("a struct that does not end with a byte")
     struct = {"name": f"{owner} {name}", "length": bits // 8, "fields": fields}
     return {"at": at, "name": name, "struct": struct["name"], "count": counter, "up_to": most}, struct
 

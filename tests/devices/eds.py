@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 from icdgen.definitions import eds, run
 from icdgen.diagnostics import Findings
 from tests.conftest import ROOT
-from tests.devices.definition import Definition, Definitions, NotHeld, Values
+from tests.devices.definition import Definition, Definitions, NotSupported, Values
 
 OWN = ROOT / "tests" / "definitions" / "files" / "eds"
 OTHERS = (
@@ -166,7 +166,7 @@ class _Judge:
         return self.types[name] if found is None else found
 
     def read(self, container: ElementTree.Element, data: bytes, skipped: int) -> list[Found]:
-        """Everything in a frame, and zeros of its header of so many bits. Raises `NotHeld` where a constraint is broken."""
+        """Everything in a frame, and zeros of its header of so many bits. Raises `NotSupported` where a constraint is broken."""
         frame = _Frame(self, bytes(skipped // 8) + data, skipped)
         frame.container(container, "")
         return frame.found
@@ -181,7 +181,7 @@ class _Frame:
 
     def bits(self, count: int, is_little: bool = False) -> int:
         if self.at + count > 8 * len(self.data):
-            raise NotHeld("a frame that ends too early")
+            raise NotSupported("a frame that ends too early")
         value = int.from_bytes(self.data, "big") >> 8 * len(self.data) - self.at - count & (1 << count) - 1
         self.at += count
         return int.from_bytes(value.to_bytes(count // 8, "big"), "little") if is_little else value
@@ -206,11 +206,11 @@ class _Frame:
         if one.tag == "ValueConstraint":
             said = self.judge.text(one, "value")
             if re.fullmatch("(0x)?[0-9A-Fa-f]+", said) and value != int(said, 0):
-                raise NotHeld(f"{path} is not {said}")
+                raise NotSupported(f"{path} is not {said}")
         else:
             (limits,) = one
             if not self.judge.number(limits, "min") <= int(str(value)) <= self.judge.number(limits, "max"):
-                raise NotHeld(f"{path} is not in its range")
+                raise NotSupported(f"{path} is not in its range")
 
     def entry(self, entry: ElementTree.Element, before: str) -> None:
         if entry.tag == "PaddingEntry":

@@ -16,7 +16,7 @@ from icdgen.definitions import run
 from icdgen.definitions.kaitai import Kaitai
 from icdgen.diagnostics import Findings
 from tests.devices import ksy
-from tests.devices.definition import Definition, Definitions, NotHeld, Values
+from tests.devices.definition import Definition, Definitions, NotSupported, Values
 
 FORMATS = (
     "co65",
@@ -104,14 +104,14 @@ def _reader(judge: Any, fields: list[dict]) -> Callable[[bytes], Values]:
         try:  # behind the bytes that are held as such it reads on
             found = _flat(judge(KaitaiStream(BytesIO(data + bytes(_BEHIND)))), ())
         except (EOFError, ValueError, AttributeError, KeyError, TypeError) as error:
-            raise NotHeld(str(error)) from None
+            raise NotSupported(str(error)) from None
         made: Values = {}
         for part in fields:
             same = [path for path in found if " ".join(path[-1 - part["name"].count(" ") :]) == part["name"]]
             if len(same) == 1:
                 made |= _values(part, found[same[0]])
             elif part["type" if "type" in part else "struct"] != "bytes" and " bit" not in part["name"]:
-                raise NotHeld(f"there is no {part['name']}")
+                raise NotSupported(f"there is no {part['name']}")
         return made
 
     return read

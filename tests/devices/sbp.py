@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, NotHeld, node, open_end, open_structs
+from tests.devices.definition import Definition, Definitions, NotSupported, node, open_end, open_structs
 
 LONGEST = 255  # bytes of a payload
 
@@ -27,14 +27,14 @@ def _definition(id: int, message: Any) -> Definition:
     structs: list[dict] = []
     try:
         end = _fields(parser.subcons, fields, 0, "", structs, message.__name__) if parser is not None else 0
-    except NotHeld as error:
+    except NotSupported as error:
         return Definition(message.__name__, id, "telemetry", 0, [], cause=str(error))
     read = lambda data: _read(parser, data, fields[-1]) if fields else {}  # noqa: E731
     return Definition(message.__name__, id, "telemetry", end // 8, fields, raw=read, structs=structs)
 
 
 def _fields(parts: list[Any], fields: list[dict], at: int, before: str, structs: list[dict], owner: str) -> int:
-    """Appends the parts' fields, and the struct of what is open at the end; where they end. Raises `NotHeld`."""
+    """Appends the parts' fields, and the struct of what is open at the end; where they end. Raises `NotSupported`."""
     for part in parts:
         name, inner = before + part.name, part.subcon
         kind = type(inner).__name__
@@ -56,15 +56,15 @@ def _fields(parts: list[Any], fields: list[dict], at: int, before: str, structs:
                 at = _fields(inner.subcon.subcons, fields, at, f"{name} {number + 1} ", structs, owner)
         elif kind.startswith("Greedy"):
             if part is not parts[-1] or before:
-                raise NotHeld("more behind what goes up to the end")
+                raise NotSupported("more behind what goes up to the end")
             fields.append(_end(name, kind, inner, at, structs, owner))
         else:
-            raise NotHeld(kind)
+            raise NotSupported(kind)
     return at
 
 
 def _end(name: str, kind: str, inner: Any, at: int, structs: list[dict], owner: str) -> dict:
-    """What goes up to the end of a frame. Raises `NotHeld`."""
+    """What goes up to the end of a frame. Raises `NotSupported`."""
     left = LONGEST - at // 8
     if kind == "GreedyBytes":
         return open_end(name, at, 8, "bytes", "rest", left)

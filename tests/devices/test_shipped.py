@@ -25,7 +25,7 @@ from tests.conformance.driver import Testee
 from tests.conformance.languages import all_languages
 from tests.conftest import ROOT
 from tests.devices.agree import Agreement, compare
-from tests.devices.definition import Definition, NotHeld, Values
+from tests.devices.definition import Definition, NotSupported, Values
 from tests.devices.mavlink import _read as mavlink_reads
 
 DEVICES = {path.stem: path for path in sorted((ROOT / "examples" / "devices").glob("*/*.yaml"))}
@@ -150,7 +150,7 @@ def ubx_message(name: str, data: bytes) -> Values:
     mode = pyubx2.GET if message.kind == "telemetry" else pyubx2.SET
     found = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
     if found.identity != name:
-        raise NotHeld(found.identity)
+        raise NotSupported(found.identity)
     return {key: value for key, value in found.__dict__.items() if not key.startswith("_")}
 
 

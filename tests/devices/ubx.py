@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from decimal import Decimal
 
-from tests.devices.definition import Definition, Definitions, NotHeld, formula, node, open_end, open_structs, twice
+from tests.devices.definition import Definition, Definitions, NotSupported, formula, node, open_end, open_structs, twice
 
 LONGEST = 1024  # bytes of a payload, where only its length says how many elements there are
 
@@ -93,7 +93,7 @@ def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) 
         return Definition(name, 0, kind, 0, [], cause=CAUSES[direction, name])
     try:
         end = _fields(payload, fields, 0, "", structs, name, PLUS.get((direction, name), 0))
-    except NotHeld as error:
+    except NotSupported as error:
         return Definition(name, 0, kind, 0, [], cause=str(error))
     high = {
         one["name"][3:] for one in fields if one["name"].startswith("_HP")
@@ -117,9 +117,9 @@ def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) 
                 found = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
                 other = data and found._get_dict(payload=data) is not payload
         except (pyubx2.UBXTypeError, pyubx2.UBXMessageError, KeyError) as error:
-            raise NotHeld("another layout under the same id") from error
+            raise NotSupported("another layout under the same id") from error
         if other:
-            raise NotHeld("another layout under the same id")
+            raise NotSupported("another layout under the same id")
         values = {k: v for k, v in found.__dict__.items() if not k.startswith("_") and k not in high}
         for end in fields:
             if "struct" in end:
@@ -175,7 +175,7 @@ def _gathered(values: dict[str, object], end: dict) -> dict[str, object]:
 def _fields(
     payload: dict, fields: list[dict], at: int, before: str, structs: list[dict], owner: str, plus: int = 0
 ) -> int:
-    """Appends the fields of a payload, and the struct of an open group; where those that every frame has end. Raises `NotHeld`.
+    """Appends the fields of a payload, and the struct of an open group; where those of every frame end. Raises `NotSupported`.
 
     ``plus``: so many elements more than its counter says.
     """
@@ -183,7 +183,7 @@ def _fields(
         factor = "1"
         is_group = isinstance(what, tuple) and isinstance(what[1], dict) and not isinstance(what[0], int)
         if fields and "up_to" in fields[-1] and not (is_group and "rest" not in fields[-1].values()):
-            raise NotHeld("more behind a counted group")
+            raise NotSupported("more behind a counted group")
         if isinstance(what, tuple) and isinstance(what[1], dict):
             count, inner = what
             if isinstance(count, int):
@@ -215,7 +215,7 @@ def _fields(
 def _group(
     group: str, inner: dict, count: str, fields: list[dict], at: int, structs: list[dict], owner: str, plus: int
 ) -> dict:
-    """A group that a field counts, or that goes up to the end: an array of numbers or texts, else of structs. Raises `NotHeld`."""
+    """A group that a field counts, or up to the end: an array of numbers or texts, else of structs. Raises `NotSupported`."""
     parts: list[dict] = []
     bits = _fields(inner, parts, 0, "", structs, owner)
     counter = next((one for one in fields if one["name"] == count), None)
@@ -226,7 +226,7 @@ def _group(
         if next(iter(inner.values()))[0] == "C":
             return {"at": at, "bits": bits, "name": parts[0]["name"], "type": "text", "count": told, "up_to": most}
         if parts[0]["type"] == "bytes":
-            raise NotHeld("an array of bytes")
+            raise NotSupported("an array of bytes")
         return open_end(parts[0]["name"], at, bits, parts[0]["type"], told, most)
     end, struct = open_structs(owner, group, at, parts, bits, told, most)
     structs.append(struct)

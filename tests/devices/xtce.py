@@ -12,7 +12,7 @@ from typing import Any
 from icdgen.definitions import run, xtce, xtce_layout
 from icdgen.diagnostics import Findings
 from tests.conftest import ROOT
-from tests.devices.definition import Definition, Definitions, NotHeld, Values
+from tests.devices.definition import Definition, Definitions, NotSupported, Values
 
 OWN = ROOT / "tests" / "definitions" / "files"
 OTHERS = "XTCE_FILES"  # in the environment: a folder with files of others, such as the tests of space-packet-parser
@@ -105,7 +105,7 @@ def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], 
                 UnrecognizedPacketTypeError,
                 ValueError,
             ) as error:  # a frame that ends before those of its constants
-                raise NotHeld(str(error)) from None
+                raise NotSupported(str(error)) from None
         if raw:
             return {name: _raw(found[name].raw_value) for name in parts if name in found}
         return {name: float(found[name]) for name, part in parts.items() if name in found and "formula" in part}

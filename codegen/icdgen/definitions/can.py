@@ -11,7 +11,7 @@ from typing import Any
 from icdgen.definitions import can_accounting, dbc, frames, safe_xml
 from icdgen.definitions.accounting import Account, AccountedObject
 from icdgen.definitions.enumerations import Enumerations
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, raws, unreadable
 from icdgen.definitions.wording import formula, limits, line, node_name, printed, summary, unit
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
@@ -163,7 +163,7 @@ def _network(title: str, messages: list[Any], account: Account, to: Definitions)
         of, signals = AccountedObject(message), [AccountedObject(signal) for signal in message.signals]
         try:
             network.messages.append(_message(of, signals, id, order, enums, to))
-        except NotHeld as why:
+        except NotSupported as why:
             to.left_out(message.name, why)
             continue
         account.attributes(of, "message", f"`{message.name}`")
@@ -176,7 +176,7 @@ def _network(title: str, messages: list[Any], account: Account, to: Definitions)
 
 def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enumerations, to: Definitions) -> Item:
     if message.is_container:
-        raise NotHeld("it contains other messages in an order that differs from frame to frame")
+        raise NotSupported("it contains other messages in an order that differs from frame to frame")
     item: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
     item |= {"kind": "telemetry", "length": message.length}
     senders = [sender for sender in message.senders if sender not in _UNKNOWN_SENDERS]
@@ -201,7 +201,7 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
             continue
         try:
             field = _field(message, signal, signals, enums, to)
-        except NotHeld as why:
+        except NotSupported as why:
             to.without_field(message.name, signal.name, why)
             signal.settle()
             continue
@@ -293,15 +293,15 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
     name = signal.multiplexer_signal
     multiplexer = next((candidate for candidate in signals if candidate.name == name), None)
     if multiplexer is None:
-        raise NotHeld(f"it depends on `{name}`, which is not a signal of the message")
+        raise NotSupported(f"it depends on `{name}`, which is not a signal of the message")
     if multiplexer.multiplexer_ids is not None:
-        raise NotHeld(f"it depends on `{name}`, which is optional itself")
+        raise NotSupported(f"it depends on `{name}`, which is optional itself")
     if multiplexer.is_float or (multiplexer.scale, multiplexer.offset) != (1, 0):
-        raise NotHeld(f"it depends on `{name}`, which is scaled or not an integer")
+        raise NotSupported(f"it depends on `{name}`, which is scaled or not an integer")
     first, last = raws(multiplexer.length, multiplexer.is_signed)
     values = sorted(set(signal.multiplexer_ids))
     within = [value for value in values if first <= value <= last]
     if not within:
-        raise NotHeld(f"it depends on values of `{name}` that it cannot have")
+        raise NotSupported(f"it depends on values of `{name}` that it cannot have")
     condition: list[Any] = [bool(value) for value in within] if _is_flag(multiplexer) else within
     return {name: condition[0] if len(condition) == 1 else condition}

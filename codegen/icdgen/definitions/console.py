@@ -35,7 +35,7 @@ def _lines(read: Read, colour: bool) -> list[str]:
 def _summary(read: Read) -> list[str]:
     names, definitions = read.identifiers, read.definitions
     lines = [
-        f"{definitions.files}: {read.kind}, {read.held} of {definitions.total} messages imported",
+        f"{definitions.files}: {read.kind}, {read.imported} of {definitions.total} messages imported",
         shared.severities(definitions.troubles),
     ]
     if names:
@@ -64,5 +64,5 @@ def _as_item(read: Read) -> dict[str, Any]:
     for finding in definitions.troubles:
         place = {"file": finding.spot.file} if finding.spot.file else {}
         findings.append({**shared.finding_as_json(finding), **place, "line": finding.spot.line})
-    return {"definition": definitions.file, "kind": read.kind, "messages": definitions.total, "held": read.held,
+    return {"definition": definitions.file, "kind": read.kind, "messages": definitions.total, "held": read.imported,
             "findings": findings, "identifiers": read.identifiers}  # fmt: skip

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
 from icdgen.definitions.frames import BIG, LITTLE
-from icdgen.definitions.model import Definitions, Item, NotHeld, again
+from icdgen.definitions.model import Definitions, Item, NotSupported, replace_keys
 from icdgen.icd.variable_length import MOST_BYTES, REST
 
 AS_BYTES = "IMP081"
@@ -76,7 +76,7 @@ class Lost(NamedTuple):
     """First entry that cannot be imported, with the reason. The frame is imported as bytes from this entry on."""
 
     name: str
-    why: NotHeld
+    why: NotSupported
 
     def report(self, message: str, to: Definitions, line: int | None = None, file: str = "") -> None:
         """Report the entry as an error of a message (IMP081)."""
@@ -110,11 +110,11 @@ class Container(Generic[AnyPart]):
         self.at = part.end
 
     def check_size(self) -> None:
-        """Raise `NotHeld` if the container exceeds the fields or bytes that an ICD supports."""
+        """Raise `NotSupported` if the container exceeds the fields or bytes that an ICD supports."""
         if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
-            raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
+            raise NotSupported(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
 
-    def lose(self, remainder: AnyPart, why: NotHeld, before: int) -> None:
+    def lose(self, remainder: AnyPart, why: NotSupported, before: int) -> None:
         """Replace all but the first ``before`` parts by ``remainder``, the bytes up to the end of the frame.
 
         Raises ``why`` if ``remainder`` does not begin at a byte boundary, or if the part in front of it is missing or has
@@ -127,18 +127,18 @@ class Container(Generic[AnyPart]):
         self.parts.append(remainder)
         self.at, self.lost = remainder.at, Lost(remainder.path[-1], why)
 
-    def missing(self, name: str) -> NotHeld:
+    def missing(self, name: str) -> NotSupported:
         """Return the error for a condition on a part that the container does not contain."""
         if self.lost is None:
-            return NotHeld(f"it depends on `{name}`, which it does not have")
+            return NotSupported(f"it depends on `{name}`, which it does not have")
         text = f"it depends on `{name}`, which is in or behind `{self.lost.name}`: {self.lost.why}"
-        return NotHeld(text, self.lost.why.help)
+        return NotSupported(text, self.lost.why.help)
 
 
 def check_only_value(item: Item, raw: int, name: str) -> None:
-    """Raise `NotHeld` if a field has a constant that differs from the raw value of a condition."""
+    """Raise `NotSupported` if a field has a constant that differs from the raw value of a condition."""
     if item.get("const", raw) != raw:
-        raise NotHeld(f"it depends on `{name}`, which is both {item['const']} and {raw}")
+        raise NotSupported(f"it depends on `{name}`, which is both {item['const']} and {raw}")
 
 
 def fixed_field(part: Part, name: str, at: int) -> Item:
@@ -147,28 +147,30 @@ def fixed_field(part: Part, name: str, at: int) -> Item:
     ``at`` is its position in the message, in bits.
     """
     if "struct" in part.item:
-        return again(part.item, {"at": at, "name": name, **part.item})
+        return replace_keys(part.item, {"at": at, "name": name, **part.item})
     bits = int(part.item.get("bits", part.bits))
     is_number = part.item["type"] not in ("bytes", "text")
     # Byte order has no meaning for a single byte, bytes and texts.
     order = {"byte_order": LITTLE} if part.order == LITTLE and bits > 8 and is_number else {}
-    return again(part.item, {"at": at, "bits": bits, "name": name, **part.item, **order})
+    return replace_keys(part.item, {"at": at, "bits": bits, "name": name, **part.item, **order})
 
 
 def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> Item:
     """Return the ICD field of a variable-length part. ``names`` maps the `id` of each part of the message to its name.
 
-    Raises `NotHeld` if the field does not begin at a byte boundary, or if its counter is not in the message.
+    Raises `NotSupported` if the field does not begin at a byte boundary, or if its counter is not in the message.
     """
     if at % 8:
-        raise NotHeld(f"`{name}`, whose length is not fixed, begins within a byte")
+        raise NotSupported(f"`{name}`, whose length is not fixed, begins within a byte")
     size: object = REST
     if part.counter is not None:
         counter = names.get(id(part.counter.part))
         if counter is None:
-            raise NotHeld(f"`{name}` is counted by a field of the header")
+            raise NotSupported(f"`{name}` is counted by a field of the header")
         size = {"field": counter, "plus": part.counter.plus} if part.counter.plus else counter
     # The largest frame leaves room for this number of elements after the preceding fields.
     room = max(1, (8 * MOST_BYTES - at) // part.element)
     key = "count" if part.item.keys() & {"bits", "struct"} else "size"
-    return again(part.item, {"at": at, "name": name, **part.item, key: size, "up_to": min(part.item["up_to"], room)})
+    return replace_keys(
+        part.item, {"at": at, "name": name, **part.item, key: size, "up_to": min(part.item["up_to"], room)}
+    )

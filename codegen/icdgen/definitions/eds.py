@@ -15,7 +15,7 @@ from icdgen.definitions.eds_layout import Layout, Structs
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import Types, described
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, Source
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, Source
 from icdgen.definitions.wording import line, node_name
 from icdgen.diagnostics import Findings
 
@@ -113,7 +113,7 @@ class _Message:
         self.header = head._replace(apid=apid) if head is not None and head.apid is None else head
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """Return the ICD message from the bit ``start`` on. Raises `NotHeld` if it is not supported."""
+        """Return the ICD message from the bit ``start`` on. Raises `NotSupported` if it is not supported."""
         fields = self.layout.fields(start)
         covered = max((part.end for part in self.layout.parts), default=start)
         # Trailing padding belongs to the length, but no field covers it.
@@ -135,7 +135,7 @@ def _read_message(sending: Sending, sheets: Sheets, types: Types, structs: Struc
     try:
         layout.read(container)
         return _Message(sending, layout, {**_group(sheets, container), **described(container)}, sheets)
-    except NotHeld as why:
+    except NotSupported as why:
         to.left_out(line(container.get("name"), 200), why, sheets.line(container))
         settle(container)
         return None

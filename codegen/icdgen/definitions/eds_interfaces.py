@@ -10,7 +10,7 @@ from icdgen.definitions import packets
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import CONTAINER
 from icdgen.definitions.eds_values import whole
-from icdgen.definitions.model import NotHeld, unreadable
+from icdgen.definitions.model import NotSupported, unreadable
 
 _SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
 MOST_STEPS = 200_000  # containers that interfaces carry, with their base containers
@@ -79,7 +79,7 @@ class Interfaces:
         try:
             reference = self.sheets.attribute(of, key)
             return self.sheets.find("type", reference, of) if reference else None
-        except NotHeld:
+        except NotSupported:
             return None  # reported when the container is read
 
     def sent(self) -> tuple[list[Sending], list[Element]]:
@@ -150,7 +150,7 @@ class Interfaces:
     def _is_abstract(self, container: Element) -> bool:
         try:
             return self.sheets.says(container, "abstract")
-        except NotHeld:
+        except NotSupported:
             return False
 
     def _carried_containers(self, is_mapped: bool) -> Iterator[Sending]:
@@ -198,7 +198,7 @@ class Interfaces:
             for base in bases:
                 try:
                     declared = self.sheets.find("interface", self.sheets.attribute(base, "type"), base)
-                except NotHeld:
+                except NotSupported:
                     continue
                 if declared not in result:
                     result.append(declared)
@@ -223,7 +223,7 @@ class Interfaces:
             try:
                 text = self.sheets.attribute(variable, "initialValue")
                 values[variable.get("name", "")] = whole(text, "a value", 0)
-            except NotHeld:
+            except NotSupported:
                 continue
         result: dict[str, tuple[str, int]] = {}
         for element in component.iterfind("Implementation/ParameterMapSet/ParameterMap"):

@@ -14,7 +14,7 @@ from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import ARRAY, CONTAINER, Types, described
 from icdgen.definitions.eds_values import whole
 from icdgen.definitions.frames import LITTLE
-from icdgen.definitions.model import Item, NotHeld, again
+from icdgen.definitions.model import Item, NotSupported, replace_keys
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, shortest
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
@@ -48,7 +48,7 @@ class Layout(Container[Part]):
     def read(self, container: Element) -> None:
         """Add the parts of a container and apply its constraints.
 
-        Raises `NotHeld` if the container is not supported.
+        Raises `NotSupported` if the container is not supported.
         """
         self._add(container, (), self.within)
         for constraint in self.constraints:
@@ -69,7 +69,7 @@ class Layout(Container[Part]):
         chain = self.chain(container)
         if any(ancestor in within for ancestor in chain) or len(within) > _DEEPEST:
             circle = " -> ".join(ancestor.get("name", "") for ancestor in (*within[-5:], container))
-            raise NotHeld(f"containers contain each other in a circle, or too deep: {line(circle, 200)}")
+            raise NotSupported(f"containers contain each other in a circle, or too deep: {line(circle, 200)}")
         # Entries of a base container may not contain a container that derives from it.
         users = {ancestor: (*within, *chain[: number + 1]) for number, ancestor in enumerate(chain)}
         for ancestor in reversed(chain):
@@ -83,17 +83,17 @@ class Layout(Container[Part]):
     def chain(self, container: Element) -> list[Element]:
         """Return a container, followed by its base containers.
 
-        Raises `NotHeld` if a base is not a container, or for a circular or too deep inheritance.
+        Raises `NotSupported` if a base is not a container, or for a circular or too deep inheritance.
         """
         chain = [container]
         while base := self.sheets.attribute(chain[-1], "baseType"):
             self.types.step()
             ancestor = self.sheets.find("type", base, chain[-1])
             if ancestor.tag != CONTAINER:
-                raise NotHeld(f"it is based on `{line(base, 60)}`, which is not a container")
+                raise NotSupported(f"it is based on `{line(base, 60)}`, which is not a container")
             if ancestor in chain or len(chain) > _DEEPEST:
                 circle = " -> ".join(type_.get("name", "") for type_ in (*chain[-5:], ancestor))
-                raise NotHeld(f"containers are based on each other in a circle, or too deep: {line(circle, 200)}")
+                raise NotSupported(f"containers are based on each other in a circle, or too deep: {line(circle, 200)}")
             chain.append(ancestor)
         return chain
 
@@ -106,24 +106,24 @@ class Layout(Container[Part]):
                 self._add_entry(entry, path, within)
             except TooMuch:  # the limit applies to the file, so the rest cannot become bytes
                 raise
-            except NotHeld as why:
+            except NotSupported as why:
                 name = line(entry.get("name"), 100) or f"unnamed {at}"
                 self.lose(Part((*path, name), {}, at, 0, entry=entry), why, before)
 
     def _add_entry(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
-        """Add an entry at the current position. Raises `NotHeld` if the entry is not supported."""
+        """Add an entry at the current position. Raises `NotSupported` if the entry is not supported."""
         self.types.step()
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
         if entry.find("PresentWhen") is not None:
-            raise NotHeld(f"`{name}` is present only on a condition")
+            raise NotSupported(f"`{name}` is present only on a condition")
         if self.is_open:
-            raise NotHeld(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed")
+            raise NotSupported(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed")
         if entry.tag == "PaddingEntry":
             self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
         elif entry.tag in (*_FIELDS, "ListEntry"):
             self._add_field_or_container(entry, name, path, within)
         else:
-            raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
+            raise NotSupported(f"it has a `{line(entry.tag, 60)}`")
         self.check_size()
 
     def _add_field_or_container(
@@ -137,7 +137,7 @@ class Layout(Container[Part]):
             self._add_list(entry, type_, count, path, within)
         elif type_.tag == CONTAINER and count == 1:
             if entry.tag != "Entry":
-                raise NotHeld(f"`{name}` is a container, and has a value")
+                raise NotSupported(f"`{name}` is a container, and has a value")
             self._add(type_, path, within)
         elif type_.tag == CONTAINER:
             item, bits = self._struct(type_, name, within)
@@ -149,12 +149,12 @@ class Layout(Container[Part]):
             part = Part(path, piece.item, self.at, piece.bits, piece.order, entry=entry, piece=piece)
             if count != 1:
                 self._repeat(part, count, name)
-            again(part.item, {**part.item, **self._summary(entry, name)})
+            replace_keys(part.item, {**part.item, **self._summary(entry, name)})
             self._put(part)
 
     def _put(self, part: Part) -> None:
         if part.at % 8 and (part.order == LITTLE or "struct" in part.item):
-            raise NotHeld(f"`{part.path[-1]}` begins within a byte")
+            raise NotSupported(f"`{part.path[-1]}` begins within a byte")
         self.add(part)
 
     def _summary(self, entry: Element, name: str) -> dict[str, str]:
@@ -174,14 +174,14 @@ class Layout(Container[Part]):
         return {"summary": f"{text}{'' if text.endswith(('.', '!', '?')) else '.'} {kind}." if text else f"{kind}."}
 
     def _check_not_abstract(self, container: Element, name: str) -> None:
-        """Raise `NotHeld` if a container is abstract, because the entry could then contain any derived container."""
+        """Raise `NotSupported` if a container is abstract, because the entry could then contain any derived container."""
         if self.sheets.says(container, "abstract"):
-            raise NotHeld(f"`{name}` is any container that is based on `{container.get('name', '')}`")
+            raise NotSupported(f"`{name}` is any container that is based on `{container.get('name', '')}`")
 
     def _element_type(self, entry: Element, name: str) -> tuple[Element, int]:
         """Return the element type of an entry and the number of elements.
 
-        Raises `NotHeld` if an array is too large or too deep.
+        Raises `NotSupported` if an array is too large or too deep.
         """
         type_ = self.sheets.find("type", self.sheets.attribute(entry, "type"), entry)
         count, depth = self._count(entry, "ArrayDimensions/Dimension", name), 0
@@ -190,9 +190,9 @@ class Layout(Container[Part]):
             count *= self._count(type_, "DimensionList/Dimension", name)
             type_, depth = self.sheets.find("type", self.sheets.attribute(type_, "dataTypeRef"), type_), depth + 1
             if depth > _DEEPEST:
-                raise NotHeld(f"`{name}` is an array of itself, or of too many others")
+                raise NotSupported(f"`{name}` is an array of itself, or of too many others")
             if count > 8 * MOST_BYTES:
-                raise NotHeld(f"`{name}` is an array of {count:,} elements")
+                raise NotSupported(f"`{name}` is an array of {count:,} elements")
         return type_, count
 
     def _count(self, owner: Element, path: str, name: str) -> int:
@@ -207,13 +207,13 @@ class Layout(Container[Part]):
             else:
                 count *= whole(self.sheets.attribute(element, "size"), f"a dimension of `{name}`", 1, 8 * MOST_BYTES)
             if count > 8 * MOST_BYTES:
-                raise NotHeld(f"`{name}` is an array of {count:,} elements")
+                raise NotSupported(f"`{name}` is an array of {count:,} elements")
         return count
 
     def _indices(self, type_: Element, name: str) -> int:
         """Return the number of elements of an array dimension with the given index type.
 
-        Raises `NotHeld` if it has no bounds.
+        Raises `NotSupported` if it has no bounds.
         """
         chain = self.types.chain(type_)
         values = [value for _, value in self.sheets.labels(chain[-1])]
@@ -221,22 +221,22 @@ class Layout(Container[Part]):
             return max(values) - min(values) + 1
         low, high = self.types.piece(type_, type_, f"the index of `{name}`").range.of_integers()
         if low is None or high is None or high < low:
-            raise NotHeld(f"the definition does not state how many elements `{name}` has")
+            raise NotSupported(f"the definition does not state how many elements `{name}` has")
         return int(high - low) + 1
 
     def _repeat(self, part: Part, count: int, name: str) -> None:
         """Make a scalar an array. An array of bytes above `MOST_ELEMENTS` becomes a field of type `bytes`.
 
-        Raises `NotHeld` for other large arrays, variable-length elements and constants.
+        Raises `NotSupported` for other large arrays, variable-length elements and constants.
         """
         item, bits = part.item, part.bits
         if not bits or "const" in item:
-            raise NotHeld(f"`{name}` is an array of elements of variable length, or of a constant")
+            raise NotSupported(f"`{name}` is an array of elements of variable length, or of a constant")
         if count > MOST_ELEMENTS and bits == 8 and item["type"] == "uint":
             item.clear()
             item["type"] = "bytes"
         elif count > MOST_ELEMENTS:
-            raise NotHeld(f"`{name}` is an array of {count:,} elements")
+            raise NotSupported(f"`{name}` is an array of {count:,} elements")
         else:
             item |= {"bits": bits, "count": count}
         part.bits = bits * count
@@ -244,14 +244,14 @@ class Layout(Container[Part]):
     def _struct(self, container: Element, name: str, within: tuple[Element, ...]) -> tuple[Item, int]:
         """Return the `struct` key for elements of a container type, and the bits of an element.
 
-        Raises `NotHeld` if their size varies or is not whole bytes.
+        Raises `NotSupported` if their size varies or is not whole bytes.
         """
         struct = self.structs.items.get(container)
         if struct is None:
             inner = Layout(self.sheets, self.types, self.structs, within=within)
             inner.read(container)
             if inner.at % 8 or not inner.at or any(not part.bits for part in inner.parts):
-                raise NotHeld(f"`{name}` is an array of containers of different or partial bytes")
+                raise NotSupported(f"`{name}` is an array of containers of different or partial bytes")
             struct_name = container.get("name", "")
             if struct_name in self.structs.names:
                 struct_name = f"{self.sheets.package(container)} {struct_name}"
@@ -264,7 +264,7 @@ class Layout(Container[Part]):
     def _add_list(
         self, entry: Element, type_: Element, count: int, path: tuple[str, ...], within: tuple[Element, ...]
     ) -> None:
-        """Add a list whose number of elements is in another field. Raises `NotHeld` if the list is not supported."""
+        """Add a list whose number of elements is in another field. Raises `NotSupported` if the list is not supported."""
         name = path[-1]
         counter = self.sheets.attribute(entry, "listLengthField")
         length_part = next(
@@ -276,20 +276,20 @@ class Layout(Container[Part]):
             or length_part.piece.item["type"] != "uint"
             or length_part.piece.bits != length_part.bits
         ):
-            raise NotHeld(
+            raise NotSupported(
                 f"`{name}` is there as often as `{line(counter, 60)}` says, which is not a number in front of it"
             )
         if count != 1 or self.at % 8:
-            raise NotHeld(f"`{name}` is a list of arrays, or begins within a byte")
+            raise NotSupported(f"`{name}` is a list of arrays, or begins within a byte")
         if type_.tag == CONTAINER:
             item, bits = self._struct(type_, name, within)
         else:
             piece = self.types.piece(type_, entry, f"`{name}`")
             item, bits = piece.item, piece.bits
             order = {"byte_order": LITTLE} if piece.order == LITTLE and bits > 8 else {}
-            again(item, {"bits": bits, **item, **order})
+            replace_keys(item, {"bits": bits, **item, **order})
         if not bits or bits % 8:
-            raise NotHeld(f"`{name}` is a list of elements without a fixed number of bytes")
+            raise NotSupported(f"`{name}` is a list of elements without a fixed number of bytes")
         _, most = length_part.piece.range.within(
             eds_ranges.Range(Fraction(0), Fraction((1 << length_part.bits) - 1))
         ).of_integers()
@@ -319,7 +319,7 @@ class Layout(Container[Part]):
     def fields(self, start: int) -> list[Item]:
         """Return the ICD fields from the bit ``start`` on.
 
-        Raises `NotHeld` if a variable-length field is not supported.
+        Raises `NotSupported` if a variable-length field is not supported.
         """
         parts = [part for part in self.parts if part.at >= start]
         short_names = shortest([_distinct_path(part.path) for part in parts])

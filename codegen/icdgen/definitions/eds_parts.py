@@ -11,7 +11,7 @@ from icdgen.definitions import containers, eds_ranges
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import Piece, Types
 from icdgen.definitions.eds_values import coded, evaluate
-from icdgen.definitions.model import NotHeld, again
+from icdgen.definitions.model import NotSupported, replace_keys
 from icdgen.definitions.wording import line
 from icdgen.icd.fmt.emit import Spelled
 
@@ -42,25 +42,25 @@ class Line(NamedTuple):
 
 
 def only(piece: Piece, raw: int, name: str) -> None:
-    """Make a raw value the constant of a field. Raises `NotHeld` if the field already has another constant."""
+    """Make a raw value the constant of a field. Raises `NotSupported` if the field already has another constant."""
     item = piece.item
     containers.check_only_value(item, raw, name)
     kind = {"type": "uint"} if item["type"] == "bool" else {}  # the ICD has no constants of type `bool`
     remaining = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
-    again(item, {**remaining, **kind, "const": raw})
+    replace_keys(item, {**remaining, **kind, "const": raw})
 
 
 def fix(piece: Piece, text: str, name: str) -> None:
     """Set the fixed value of a `FixedValueEntry`. A text of up to 64 bits becomes a number with its bytes.
 
-    Raises `NotHeld` if the value does not fit the type. Longer texts, bytes and floats have no constant.
+    Raises `NotSupported` if the value does not fit the type. Longer texts, bytes and floats have no constant.
     """
     if piece.item["type"] == "text" and piece.bits:
         data = text.encode("utf-8", "replace").ljust(piece.bits // 8, b"\0")
         if len(data) > piece.bits // 8:
-            raise NotHeld(f"`{name}` is longer than its type: `{line(text, 60)}`")
+            raise NotSupported(f"`{name}` is longer than its type: `{line(text, 60)}`")
         if piece.bits <= _MOST_FIXED:
-            again(piece.item, {"type": "uint", "const": Spelled(f"0x{data.hex().upper()}")})
+            replace_keys(piece.item, {"type": "uint", "const": Spelled(f"0x{data.hex().upper()}")})
     elif piece.item["type"] not in ("text", "bytes", "float"):
         only(piece, piece.raw(text, f"`{name}`"), name)
 
@@ -68,11 +68,11 @@ def fix(piece: Piece, text: str, name: str) -> None:
 def constrain(part: Part | None, condition: Told, sheets: Sheets, types: Types) -> int | None:
     """Apply a constraint to a part. Return the raw value that it requires, or None if it only narrows the range.
 
-    Raises `NotHeld` for other constraints, and if the part is missing or an array.
+    Raises `NotSupported` for other constraints, and if the part is missing or an array.
     """
     element, name = condition.constraint, line(".".join(condition.path), 100)
     if part is None or part.piece is None or part.bits != part.piece.bits:
-        raise NotHeld(f"it depends on `{name}`, but it has no such field")
+        raise NotSupported(f"it depends on `{name}`, but it has no such field")
     piece, where = part.piece, f"it depends on `{name}`, which"
     if element.tag == "ValueConstraint":
         raw = piece.raw(sheets.attribute(element, "value"), where)
@@ -90,9 +90,9 @@ def constrain(part: Part | None, condition: Told, sheets: Sheets, types: Types) 
                 piece.item.update(eds_ranges.limited(piece.item, piece.bits, piece.range))
             return None
         else:
-            raise NotHeld(f"{where} has one of several values")
+            raise NotSupported(f"{where} has one of several values")
     else:
-        raise NotHeld(f"it is constrained by a `{line(element.tag, 60)}`")
+        raise NotSupported(f"it is constrained by a `{line(element.tag, 60)}`")
     only(piece, raw, name)
     return raw
 
@@ -108,7 +108,7 @@ def _range_of_constraint(constraint: Element, sheets: Sheets, types: Types) -> e
 def measure(part: Part, length: int, sheets: Sheets) -> None:
     """Make a length entry constant, from the ``length`` of its container in bytes.
 
-    Nothing changes if the raw value is not an integer or does not fit. Raises `NotHeld` for a contradicting
+    Nothing changes if the raw value is not an integer or does not fit. Raises `NotSupported` for a contradicting
     constant.
     """
     conversion = line_of(part.entry, sheets)

@@ -54,7 +54,7 @@ ALL = Range()
 def said(sheets: Sheets, element: Element) -> Range:
     """Return the range of a `MinMaxRange` in an element, or `ALL` without one.
 
-    Raises `NotHeld` for an undefined design parameter.
+    Raises `NotSupported` for an undefined design parameter.
     """
     bounds = element.find("MinMaxRange")
     if bounds is None:

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 
 from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.eds_values import evaluate, whole
-from icdgen.definitions.model import Definitions, NotHeld, unreadable
+from icdgen.definitions.model import Definitions, NotSupported, unreadable
 from icdgen.definitions.wording import line
 
 ROOTS = ("PackageFile", "DataSheet")
@@ -93,7 +93,7 @@ class Sheets:
         return self._scopes[element][0]
 
     def attribute(self, element: Element, key: str, default: str = "") -> str:
-        """Return an attribute with its design parameters resolved. Raises `NotHeld` if a parameter is undefined."""
+        """Return an attribute with its design parameters resolved. Raises `NotSupported` if a parameter is undefined."""
         text = element.get(key)
         if text is None:
             return default
@@ -102,7 +102,7 @@ class Sheets:
     def labels(self, type_: Element) -> Iterator[tuple[str, int]]:
         """Yield the labels of an enumeration with their values.
 
-        A label without a value follows the previous one. Raises `NotHeld` if a value is undefined or not an integer.
+        A label without a value follows the previous one. Raises `NotSupported` if a value is undefined or not an integer.
         """
         value = -1
         for element in type_.iterfind("EnumerationList/Enumeration"):
@@ -116,19 +116,19 @@ class Sheets:
 
     def _resolved(self, text: str, package: str, depth: int) -> str:
         if depth > _DEEPEST:
-            raise NotHeld(f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others")
+            raise NotSupported(f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others")
         result, at = "", 0
         for reference in _REFERENCE.finditer(text):
             result += text[at : reference.start()] + self._value(reference[1].strip(), package, depth)
             at = reference.end()
             if len(result) > _LONGEST:
-                raise NotHeld(f"`{line(text, 60)}` becomes longer than {_LONGEST} characters")
+                raise NotSupported(f"`{line(text, 60)}` becomes longer than {_LONGEST} characters")
         return result + text[at:]
 
     def _value(self, name: str, package: str, depth: int) -> str:
         """Return the text that replaces a reference to a design parameter. Arithmetic expressions are evaluated.
 
-        Raises `NotHeld` if the parameter is undefined, circular or too long.
+        Raises `NotSupported` if the parameter is undefined, circular or too long.
         """
         if (resolved := self._values.get((name, package))) is not None:
             return resolved
@@ -136,7 +136,7 @@ class Sheets:
             (candidate for candidate in (name, f"{package}/{name}") if candidate in self._defines), None
         )
         if qualified_name is None:
-            raise NotHeld(f"no file in the folder defines `${{{line(name, 100)}}}`", _TOGETHER)
+            raise NotSupported(f"no file in the folder defines `${{{line(name, 100)}}}`", _TOGETHER)
         text, defining_package, _ = self._defines[qualified_name]
         self._report_duplicate(f"${{{qualified_name}}}", self._defines[qualified_name][2])
         text = self._resolved(text, defining_package, depth + 1)
@@ -153,7 +153,7 @@ class Sheets:
         """Return a design parameter as an integer, or None if it is undefined or not an integer."""
         try:
             value = evaluate(self._value(name, "", 0))
-        except (NotHeld, ValueError):
+        except (NotSupported, ValueError):
             return None
         return int(value) if value.denominator == 1 else None
 
@@ -167,19 +167,19 @@ class Sheets:
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
         """Return the type or interface that a reference names, with aliases resolved.
 
-        Raises `NotHeld` if it is undefined, or if an alias refers to itself.
+        Raises `NotSupported` if it is undefined, or if an alias refers to itself.
         """
         element = self._find(kind, reference, seen_from)
         aliases = {element}
         while element.tag == _ALIAS:
             element = self._find(kind, self.attribute(element, "type"), element)
             if element in aliases:
-                raise NotHeld(f"the type `{line(reference, 100)}` is an alias of itself")
+                raise NotSupported(f"the type `{line(reference, 100)}` is an alias of itself")
             aliases.add(element)
         return element
 
     def _find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """Return the element that a reference names, without resolving aliases. Raises `NotHeld` if it is undefined."""
+        """Return the element that a reference names, without resolving aliases. Raises `NotSupported` if it is undefined."""
         package, component = self._scopes[seen_from]
         # Scopes from inside to outside: component, package, qualified name.
         inner = f"{package}/{component}//{reference}" if component else ""
@@ -190,11 +190,11 @@ class Sheets:
                 return element
         prefix = reference.rpartition("/")[0]
         if prefix and prefix not in self._files:
-            raise NotHeld(
+            raise NotSupported(
                 f"`{line(reference, 100)}` is of the package `{line(prefix, 60)}`, which is neither in the file nor in its folder",
                 _TOGETHER,
             )
-        raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
+        raise NotSupported(f"there is no {kind} `{line(reference, 100)}`")
 
 
 def beside(file: str, size: int) -> Iterator[tuple[str, Element]]:

@@ -11,7 +11,7 @@ from icdgen.definitions.eds_ranges import ALL, Range
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
 from icdgen.definitions.frames import BIG, LITTLE
-from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
@@ -39,17 +39,17 @@ class Piece(containers.Piece):
     range: Range = ALL
 
     def raw(self, text: str, where: str) -> int:
-        """Return the raw value of a literal or label. Raises `NotHeld` if the field cannot have this value."""
+        """Return the raw value of a literal or label. Raises `NotSupported` if the field cannot have this value."""
         if self.item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotHeld(f"{where} has a value and is of the type {self.item['type']}")
+            raise NotSupported(f"{where} has a value and is of the type {self.item['type']}")
         if (label := text if self.code else text.lower()) in self.values:  # labels of flags ignore case
             return self.values[label]
         try:
             raw = coded(whole(text, "a value"), self.code, self.bits) if self.code else None
-        except NotHeld:
+        except NotSupported:
             raw = None
         if raw is None:
-            raise NotHeld(f"{where} is never `{line(text, 60)}`")
+            raise NotSupported(f"{where} is never `{line(text, 60)}`")
         return raw
 
 
@@ -64,20 +64,20 @@ class Types(Reading):
     def chain(self, type_: Element) -> list[Element]:
         """Return a type, followed by its base types if it is a subrange.
 
-        Raises `NotHeld` for circular or too deep references.
+        Raises `NotSupported` for circular or too deep references.
         """
         chain = [type_]
         while chain[-1].tag == SUBRANGE:
             base = self.sheets.find("type", self.sheets.attribute(chain[-1], "baseType"), chain[-1])
             if base in chain or len(chain) >= _DEEPEST:
-                raise NotHeld(f"the type `{type_.get('name', '')}` is based on itself, or on too many others")
+                raise NotSupported(f"the type `{type_.get('name', '')}` is based on itself, or on too many others")
             chain.append(base)
         return chain
 
     def piece(self, type_: Element, entry: Element, where: str) -> Piece:
         """Return the field of a scalar type. The encoding of the entry takes precedence over that of the type.
 
-        ``where`` names the field in messages. Raises `NotHeld` with the reason if the type is not supported.
+        ``where`` names the field in messages. Raises `NotSupported` with the reason if the type is not supported.
         """
         self.step()
         chain = self.chain(type_)
@@ -96,7 +96,7 @@ class Types(Reading):
         elif kind == "Binary":
             piece = self._binary(chain[-1])
         else:
-            raise NotHeld(f"{where} is a `{line(chain[-1].tag, 60)}`")
+            raise NotSupported(f"{where} is a `{line(chain[-1].tag, 60)}`")
         if kind == "Enumerated":
             self._labels(piece, chain[-1], where)
         piece.range = self._range(chain, entry)
@@ -106,7 +106,7 @@ class Types(Reading):
 
     def _integer(self, encoding: Element | None, where: str, has_names: bool) -> Piece:
         if encoding is None or encoding.tag != "IntegerDataEncoding":
-            raise NotHeld(f"{where} has a type without an encoding")
+            raise NotSupported(f"{where} has a type without an encoding")
         code = self._keyword(encoding, "encoding", UNSIGNED, CODES)
         bits = self._size(encoding, where)
         order = self._order(encoding, bits, where)
@@ -119,7 +119,7 @@ class Types(Reading):
 
     def _float(self, encoding: Element | None, where: str) -> Piece:
         if encoding is None or encoding.tag != "FloatDataEncoding":
-            raise NotHeld(f"{where} has a type without an encoding")
+            raise NotSupported(f"{where} has a type without an encoding")
         precision = self.sheets.attribute(encoding, "encodingAndPrecision", "IEEE754_2008_single")
         bits = self._size(encoding, where, _FLOATS.get(precision.lower()))
         order = self._order(encoding, bits, where)
@@ -129,16 +129,16 @@ class Types(Reading):
         return self._wide(bits, order, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
 
     def _wide(self, bits: int, order: str, where: str) -> Piece:
-        """Return a field of bytes, for numbers that exceed 64 bits. Raises `NotHeld` for a partial byte."""
+        """Return a field of bytes, for numbers that exceed 64 bits. Raises `NotSupported` for a partial byte."""
         if bits % 8:
-            raise NotHeld(f"{where} has {bits} bits")
+            raise NotSupported(f"{where} has {bits} bits")
         return Piece({"type": "bytes"}, bits, code="")
 
     def _flag(self, encoding: Element | None, type_: Element) -> Piece:
         bits = 1 if encoding is None else self._size(encoding, f"`{type_.get('name', '')}`")
         is_inverse = encoding is not None and self.sheets.attribute(encoding, "falseValue").lower() == "nonzeroisfalse"
         if bits > _WORD:
-            raise NotHeld(f"the flag `{type_.get('name', '')}` has {bits} bits")
+            raise NotSupported(f"the flag `{type_.get('name', '')}` has {bits} bits")
         names = ("True", "False") if is_inverse else ("False", "True")
         values = {name.lower(): value for value, name in enumerate(names)}
         piece = Piece({"type": "bool"}, bits, code="", values=values)
@@ -155,14 +155,14 @@ class Types(Reading):
         if self.sheets.attribute(type_, "fixedLength", "true").lower() not in ("false", "0"):
             return Piece({"type": "text"}, 8 * length)
         if ends:
-            raise NotHeld(f"`{type_.get('name', '')}` ends at the character `{line(ends, 20)}`")
+            raise NotSupported(f"`{type_.get('name', '')}` ends at the character `{line(ends, 20)}`")
         return Piece({"type": "text", "up_to": length}, 0)
 
     def _binary(self, type_: Element) -> Piece:
         bits = self._size(type_, f"`{type_.get('name', '')}`")
         if self.sheets.attribute(type_, "fixedSize", "true").lower() in ("false", "0"):
             if bits % 8:
-                raise NotHeld(f"`{type_.get('name', '')}` has up to {bits} bits")
+                raise NotSupported(f"`{type_.get('name', '')}` has up to {bits} bits")
             return Piece({"type": "bytes", "up_to": bits // 8}, 0)
         if bits % 8 and bits <= _WORD:
             return Piece({"type": "uint"}, bits)
@@ -175,18 +175,18 @@ class Types(Reading):
     def _order(self, encoding: Element, bits: int, where: str) -> str:
         is_little = self._keyword(encoding, "byteOrder", "bigEndian", ("bigEndian", "littleEndian")) == "littleEndian"
         if is_little and bits % 8:
-            raise NotHeld(f"the least significant byte of {where}, of {bits} bits, is sent first")
+            raise NotSupported(f"the least significant byte of {where}, of {bits} bits, is sent first")
         return LITTLE if is_little else BIG
 
     def _keyword(self, element: Element, key: str, default: str, keywords: tuple[str, ...]) -> str:
         """Return the keyword in ``keywords`` that an attribute matches, ignoring case.
 
-        Raises `NotHeld` if none matches.
+        Raises `NotSupported` if none matches.
         """
         text = self.sheets.attribute(element, key, default)
         keyword = next((candidate for candidate in keywords if candidate.lower() == text.lower()), None)
         if keyword is None:
-            raise NotHeld(f"its `{key}` is `{line(text, 60)}`")
+            raise NotSupported(f"its `{key}` is `{line(text, 60)}`")
         return keyword
 
     def _labels(self, piece: Piece, type_: Element, where: str) -> None:
@@ -195,7 +195,7 @@ class Types(Reading):
             self.step()
             raw = coded(value, piece.code, piece.bits) if piece.item["type"] != "bytes" else None
             if raw is None:
-                raise NotHeld(f"{where} never has the value `{value}` of `{line(label, 60)}`")
+                raise NotSupported(f"{where} never has the value `{value}` of `{line(label, 60)}`")
             choices.setdefault(raw, label)
             piece.values.setdefault(label, raw)
         if not choices:

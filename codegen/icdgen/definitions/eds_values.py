@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from icdgen.definitions.model import NotHeld, raws
+from icdgen.definitions.model import NotSupported, raws
 from icdgen.definitions.wording import line
 
 UNSIGNED, TWOS = "unsigned", "twosComplement"
@@ -103,11 +103,11 @@ def _bounded(value: Fraction) -> Fraction:
 def whole(text: str, what: str, least: int | None = None, most: int | None = None) -> int:
     """Return the integer value of a text.
 
-    Raises `NotHeld` if it is not an integer from ``least`` to ``most``; ``what`` names it.
+    Raises `NotSupported` if it is not an integer from ``least`` to ``most``; ``what`` names it.
     """
     plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _integer(text)
     if plain is None or (least is not None and plain < least) or (most is not None and plain > most):
-        raise NotHeld(f"{what} is `{line(text, 60)}`")
+        raise NotSupported(f"{what} is `{line(text, 60)}`")
     return plain
 
 

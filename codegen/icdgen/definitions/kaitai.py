@@ -15,7 +15,7 @@ from icdgen.definitions.kaitai_layout import Layout
 from icdgen.definitions.kaitai_parts import File, Key, Part, Undecided
 from icdgen.definitions.kaitai_types import Type, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, again
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, replace_keys
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, node_name, shortest, summary
 
@@ -88,7 +88,7 @@ def _messages(root: Type, shared: File) -> list[Layout]:
         except Undecided as asked:
             left += [{**decided, asked.key: option} for option in reversed(asked.options)]
             continue
-        except NotHeld as why:
+        except NotSupported as why:
             shared.to.total += 1
             shared.to.left_out(root.name, why)
             if isinstance(why, TooMuch):
@@ -143,13 +143,13 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})
         elif not part.mask:
-            fields.append(again(item, {**_position(part, part.at, part.bits, order), "name": name, **item}))
+            fields.append(replace_keys(item, {**_position(part, part.at, part.bits, order), "name": name, **item}))
         elif part.mask == (1 << part.bits) - 1:
             is_negative = item["type"] == "int" and part.value >> part.bits - 1
             value = part.value - (1 << part.bits) if is_negative else part.value
             kind = {"type": "uint"} if item["type"] == "bool" else {}  # a field of type `bool` cannot have a constant
             keys = {**_position(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
-            fields.append(again(item, keys))
+            fields.append(replace_keys(item, keys))
         else:
             fields += _split_fields(part, name, order)
     return fields
@@ -172,7 +172,9 @@ def _split_fields(part: Part, name: str, order: str) -> list[Item]:
             field["const"] = part.value >> low & (1 << width) - 1
         fields.append(field)
         low = high + 1
-    overlay = again(part.item, {**_position(part, part.at, part.bits, order), "name": name, **part.item, "view": True})
+    overlay = replace_keys(
+        part.item, {**_position(part, part.at, part.bits, order), "name": name, **part.item, "view": True}
+    )
     return sorted([*fields, overlay], key=lambda field: field["at"])
 
 

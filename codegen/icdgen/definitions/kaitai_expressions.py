@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import NotHeld
+from icdgen.definitions.model import NotSupported
 from icdgen.definitions.wording import line
 from icdgen.icd.formula import FormulaError, coefficients
 
@@ -43,16 +43,16 @@ class Equality(NamedTuple):
 
 
 def masked(text: object) -> Masked:
-    """Parse an operand such as ``header.flags & 0x13``. Raises `NotHeld` for any other expression."""
+    """Parse an operand such as ``header.flags & 0x13``. Raises `NotSupported` for any other expression."""
     match = _MASKED.match(str(text).strip()) if len(str(text)) <= _LONGEST else None
     if match is None:
-        raise NotHeld(f"`{line(str(text), 80)}` is neither a field nor bits of a field")
+        raise NotSupported(f"`{line(str(text), 80)}` is neither a field nor bits of a field")
     # `.to_i` converts an enumeration to its integer.
     return Masked(match["path"].removesuffix(".to_i"), None if match["mask"] is None else integer(match["mask"]))
 
 
 def equalities(text: object) -> list[Equality]:
-    """Parse a conjunction of comparisons such as ``a == 1 and flag``. Raises `NotHeld` for any other expression."""
+    """Parse a conjunction of comparisons such as ``a == 1 and flag``. Raises `NotSupported` for any other expression."""
     condition = str(text).strip()
     result = []
     for part in re.split(r"\band\b", condition) if len(condition) <= _LONGEST else [""]:
@@ -71,22 +71,22 @@ def equalities(text: object) -> list[Equality]:
 
 
 def _operand(text: str, condition: str) -> Masked:
-    """Parse the operand of a comparison. Raises `NotHeld` with the text of the complete condition, ``whole``."""
+    """Parse the operand of a comparison. Raises `NotSupported` with the text of the complete condition, ``whole``."""
     try:
         return masked(text)
-    except NotHeld:
-        raise NotHeld(f"it depends on `{line(condition, 80)}`, which is more than equalities of fields") from None
+    except NotSupported:
+        raise NotSupported(f"it depends on `{line(condition, 80)}`, which is more than equalities of fields") from None
 
 
 def number(text: str, members: Members) -> int:
-    """Return the raw value of a literal or of a member of an enumeration. Raises `NotHeld` for any other text."""
+    """Return the raw value of a literal or of a member of an enumeration. Raises `NotSupported` for any other text."""
     if (literal := {"true": 1, "false": 0}.get(text.lower(), integer(text))) is not None:
         return literal
     if (member := _ENUM.match(text)) is not None:
         for value, name in members(member["enum"]).items():
             if name == member["member"]:
                 return value
-    raise NotHeld(f"it depends on whether a field is `{line(text, 60)}`")
+    raise NotSupported(f"it depends on whether a field is `{line(text, 60)}`")
 
 
 def linear_function(text: object, is_integer: bool) -> tuple[str, str] | None:

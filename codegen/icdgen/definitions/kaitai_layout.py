@@ -12,7 +12,7 @@ from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, l
 from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, Undecided, placed
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Item, NotHeld, raws
+from icdgen.definitions.model import Item, NotSupported, raws
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
@@ -36,7 +36,7 @@ class Layout(Container[Part]):
     def read(self, root: Type) -> None:
         """Add the parts of the root type.
 
-        Raises `NotHeld` if it is not supported, `Undecided` if a branch depends on a value that is not in ``decided``.
+        Raises `NotSupported` if it is not supported, `Undecided` if a branch depends on a value that is not in ``decided``.
         """
         try:
             self.type(root, Scope(root), (), (root,))
@@ -62,22 +62,24 @@ class Layout(Container[Part]):
             is_present = False
             try:
                 if self.is_open:
-                    raise NotHeld("it follows a part of variable size")
+                    raise NotSupported("it follows a part of variable size")
                 if "if" in attribute and not self._is_present(attribute, name, scope):
                     continue
                 is_present = True
                 self._attribute(attribute, name, where, scope, within)
             except TooMuch:
                 raise
-            except NotHeld as why:
+            except NotSupported as why:
                 self._as_bytes(attribute, where, why, is_present)
 
     def _attribute(
         self, attribute: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]
     ) -> None:
-        """Add the parts of an attribute. ``where`` is its path, ``within`` the enclosing types. Raises `NotHeld`."""
+        """Add the parts of an attribute. ``where`` is its path, ``within`` the enclosing types. Raises `NotSupported`."""
         if "process" in attribute:
-            raise NotHeld(f"its bytes are processed by `{line(str(attribute['process']), 60)}` before they are read")
+            raise NotSupported(
+                f"its bytes are processed by `{line(str(attribute['process']), 60)}` before they are read"
+            )
         if sized(attribute) == 0:
             return  # `size: 0`: the attribute has no bytes, whatever its type
         if (always := contents(attribute)) is not None:
@@ -96,13 +98,13 @@ class Layout(Container[Part]):
             scope.names[name] = part
             return
         if "(" in str(name_of_type):
-            raise NotHeld(f"the type `{line(str(name_of_type), 60)}` has parameters")
+            raise NotSupported(f"the type `{line(str(name_of_type), 60)}` has parameters")
         inner = scope.type.find(str(name_of_type))
         if any(inner is other for other in within):
             circle = " -> ".join(other.name for other in (*within, inner))
-            raise NotHeld(f"types contain each other in a circle: {line(circle, 200)}")
+            raise NotSupported(f"types contain each other in a circle: {line(circle, 200)}")
         if len(within) >= _DEEPEST:
-            raise NotHeld(f"more than {_DEEPEST} types contain each other")
+            raise NotSupported(f"more than {_DEEPEST} types contain each other")
         if count is not None:
             self._structs(where, inner, count, attribute, within)
             return
@@ -115,7 +117,7 @@ class Layout(Container[Part]):
     ) -> None:
         """Add the fields of a type that is not repeated. If the attribute states a `size`, the next part begins behind it."""
         if "size" in attribute and sized(attribute) is None:
-            raise NotHeld(f"its size is `{line(str(attribute['size']), 80)}`")
+            raise NotSupported(f"its size is `{line(str(attribute['size']), 80)}`")
         size = sized(attribute)
         if size is None:
             self.type(inner, below, where, (*within, inner))
@@ -123,7 +125,7 @@ class Layout(Container[Part]):
         self._align()
         end = self.at + 8 * size
         if self.ends and end > self.ends[-1]:
-            raise NotHeld(f"its {size} bytes are more than there are around it")
+            raise NotSupported(f"its {size} bytes are more than there are around it")
         self.ends.append(end)
         try:
             self.type(inner, below, where, (*within, inner))
@@ -132,20 +134,20 @@ class Layout(Container[Part]):
         finally:
             self.ends.pop()
         if self.at > end:
-            raise NotHeld(f"it has more than the {size} bytes that are there for it")
+            raise NotSupported(f"it has more than the {size} bytes that are there for it")
         self.at = end
 
     def _count(self, attribute: Map, scope: Scope) -> int | Counter | str | None:
         """Return the number of repetitions: None without `repeat`, a number, a counter, or `rest` for `repeat: eos`.
 
-        Raises `NotHeld` for any other expression.
+        Raises `NotSupported` for any other expression.
         """
         repeat = attribute.get("repeat")
         if repeat is None:
             return None
         if repeat == "eos":
             if self.ends:
-                raise NotHeld("it is repeated to the end of what is around it")
+                raise NotSupported("it is repeated to the end of what is around it")
             return REST
         expression = attribute.get("repeat-expr")
         count = integer(expression) if isinstance(expression, str) else expression
@@ -153,22 +155,22 @@ class Layout(Container[Part]):
             why = f"it is repeated as often as `{line(str(expression or attribute.get('repeat-until')), 80)}` says"
             return self._counter(expression if repeat == "expr" else None, scope, why)
         if not 1 <= count <= MOST_ELEMENTS:
-            raise NotHeld(f"it is repeated {count} times")
+            raise NotSupported(f"it is repeated {count} times")
         return count
 
     def _counter(self, expression: object, scope: Scope, why: str) -> Counter:
-        """Return the preceding integer that an expression refers to. Raises `NotHeld` with ``why`` for other expressions."""
+        """Return the preceding integer that an expression refers to. Raises `NotSupported` with ``why`` for other expressions."""
         linear = counted(expression)
         if linear is None:
-            raise NotHeld(why)
+            raise NotSupported(why)
         of = scope.find(linear[0])
         if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is part for part in self.parts):
-            raise NotHeld(f"{why}, which is not a number in front of it")
+            raise NotSupported(f"{why}, which is not a number in front of it")
         counter = Counter(of, linear[1])
         if self.ends:
-            raise NotHeld(f"{why}, within a part that has a size of its own")
+            raise NotSupported(f"{why}, within a part that has a size of its own")
         if counter.most < 1:
-            raise NotHeld(f"{why}, which is never positive")
+            raise NotSupported(f"{why}, which is never positive")
         return counter
 
     def _align(self) -> None:
@@ -178,24 +180,24 @@ class Layout(Container[Part]):
     def _place(
         self, where: tuple[str, ...], piece: Piece, count: int | Counter | str | None, attribute: Map, scope: Scope
     ) -> Part:
-        """Add a number, a text or bytes behind the last part. Raises `NotHeld`."""
+        """Add a number, a text or bytes behind the last part. Raises `NotSupported`."""
         counter = count if isinstance(count, Counter) else None
         if not piece.bits and "size" in attribute:
             counter = self._counter(attribute["size"], scope, f"its size is `{line(str(attribute['size']), 80)}`")
         if not piece.is_bits:
             self._align()
         elif self.at % 8 and self.parts and self.parts[-1].piece.is_bits and self.parts[-1].piece.order != piece.order:
-            raise NotHeld("its bits are counted from the other end of a byte than the bits in front of it")
+            raise NotSupported("its bits are counted from the other end of a byte than the bits in front of it")
         if not piece.bits and self.ends:
             piece.bits = self.ends[-1] - self.at
             if piece.bits <= 0:
-                raise NotHeld("no byte is left for it")
+                raise NotSupported("no byte is left for it")
         if "enum" in attribute:
             reference = str(attribute["enum"])
             named(piece.item, piece.bits, reference, scope.type, self.file.enums, self.file.heard(reference))
         if count is not None:
             if piece.item["type"] == "bytes" or not piece.bits:
-                raise NotHeld("its elements are not numbers")
+                raise NotSupported("its elements are not numbers")
             piece.item |= {"bits": piece.bits, "count": REST if isinstance(count, Counter) else count}
         piece.item |= summary(str(attribute.get("doc") or "")) | unit(_unit(attribute))
         part = placed(where, piece, self.at, counter)
@@ -204,9 +206,9 @@ class Layout(Container[Part]):
         return part
 
     def _fit(self, part: Part) -> None:
-        """Add a part. Raises `NotHeld` if it does not fit into the enclosing part."""
+        """Add a part. Raises `NotSupported` if it does not fit into the enclosing part."""
         if self.ends and self.at + part.bits > self.ends[-1]:
-            raise NotHeld("it is longer than the part that contains it")
+            raise NotSupported("it is longer than the part that contains it")
         self.add(part)
 
     def _valid(self, part: Part, valid: Any, scope: Scope) -> None:
@@ -223,7 +225,7 @@ class Layout(Container[Part]):
             }
         try:
             value = number(str(equal), scope.type.members)
-        except NotHeld:
+        except NotSupported:
             return  # `valid` has an expression
         part.mask, part.value = all_bits, value & all_bits
 
@@ -242,17 +244,17 @@ class Layout(Container[Part]):
     def _structs(
         self, where: tuple[str, ...], inner: Type, count: int | Counter | str, attribute: Map, within: tuple[Type, ...]
     ) -> None:
-        """Add an array of structs. Raises `NotHeld` if the layout of the type depends on values or varies in size."""
+        """Add an array of structs. Raises `NotSupported` if the layout of the type depends on values or varies in size."""
         self._align()
         layout = Layout(self.file, {}, is_struct=True)
         try:
             layout._within(attribute, inner, Scope(inner), (), (*within, inner) if sized(attribute) is None else within)
         except Undecided as error:
-            raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
+            raise NotSupported(f"what each of them has depends on `{error.key[0][-1]}`") from None
         if not layout.parts and not layout.at:
             return  # a type without bytes, such as an empty `seq`
         if layout.is_open or layout.at % 8:
-            raise NotHeld("they are not of a fixed number of bytes")
+            raise NotSupported("they are not of a fixed number of bytes")
         counter = count if isinstance(count, Counter) else None
         item: Item = {
             "struct": inner.name,
@@ -263,10 +265,10 @@ class Layout(Container[Part]):
             id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout}
         )
         if struct["length"] != layout.at // 8:
-            raise NotHeld("they are not as long as elsewhere")
+            raise NotSupported("they are not as long as elsewhere")
         self._fit(placed(where, Piece(item, layout.at), self.at, counter))
 
-    def _as_bytes(self, attribute: Map, where: tuple[str, ...], why: NotHeld, is_present: bool) -> None:
+    def _as_bytes(self, attribute: Map, where: tuple[str, ...], why: NotSupported, is_present: bool) -> None:
         """Add an attribute that is not supported as bytes, and report it (IMP081).
 
         An attribute without a fixed size takes all remaining bytes; then `Ended` is raised. Raises ``why`` in a struct.
@@ -275,7 +277,7 @@ class Layout(Container[Part]):
             raise why
         try:
             size = sized(attribute) if is_present and "repeat" not in attribute else None
-        except NotHeld:
+        except NotSupported:
             size = None
         is_end = self.is_open or size is None
         if self.is_open:
@@ -308,10 +310,12 @@ class Layout(Container[Part]):
     # Branches: `if` and `switch-on`.
 
     def _is_present(self, attribute: Map, name: str, scope: Scope) -> bool:
-        """Return whether this message contains an attribute with `if`. Raises `NotHeld` if the condition is not supported."""
+        """Return whether this message contains an attribute with `if`. Raises `NotSupported` if the condition is not supported."""
         conditions = equalities(attribute["if"])
         if len(conditions) > 1 and any(condition.is_negated for condition in conditions):
-            raise NotHeld(f"it depends on `{line(str(attribute['if']), 80)}`, which is more than equalities of fields")
+            raise NotSupported(
+                f"it depends on `{line(str(attribute['if']), 80)}`, which is more than equalities of fields"
+            )
         for condition in conditions:
             value = number(condition.value, scope.type.members)
             chosen, is_new = self._choose(condition.of, [value], scope, is_else=True)
@@ -323,10 +327,10 @@ class Layout(Container[Part]):
         return True
 
     def _switched(self, switch: Map, scope: Scope) -> str | None:
-        """Return the type that a `switch-on` selects in this message, None if no case applies. Raises `NotHeld`."""
+        """Return the type that a `switch-on` selects in this message, None if no case applies. Raises `NotSupported`."""
         cases = switch.get("cases")
         if not isinstance(cases, Map):
-            raise NotHeld("a switch has no cases")
+            raise NotSupported("a switch has no cases")
         types = {number(key, scope.type.members): str(of) for key, of in cases.items() if key != "_"}
         of = masked(switch.get("switch-on"))
         value, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
@@ -339,12 +343,12 @@ class Layout(Container[Part]):
         """Return which of ``options`` the bits of a field have in this message, and whether a new decision was needed.
 
         Returns None as the value if the bits differ from all options. ``is_else``: other values have their own branch.
-        Raises `Undecided` if the value is not in ``decided``, `NotHeld` if the field is not an integer.
+        Raises `Undecided` if the value is not in ``decided``, `NotSupported` if the field is not an integer.
         """
         part = scope.find(of.path)
         item = part.item
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotHeld(f"it depends on `{of.path}`, which is not an integer")
+            raise NotSupported(f"it depends on `{of.path}`, which is not an integer")
         all_bits = (1 << part.bits) - 1
         mask = all_bits if of.mask is None else of.mask & all_bits
         raw = {option & mask: option for option in options if option in (option & mask, (option & mask) - all_bits - 1)}
@@ -403,7 +407,7 @@ class Layout(Container[Part]):
             self._attribute(instance, name, (name,), scope, (type_,))
         except TooMuch:
             raise
-        except NotHeld as why:
+        except NotSupported as why:
             self._as_bytes(instance, (name,), why, is_present=True)
         return True
 
@@ -416,7 +420,7 @@ class Layout(Container[Part]):
             return False
         try:
             part = scope.find(linear[0])
-        except NotHeld:
+        except NotSupported:
             return False
         item = part.item
         if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:

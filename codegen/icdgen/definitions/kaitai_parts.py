@@ -9,7 +9,7 @@ from icdgen.definitions import containers
 from icdgen.definitions.containers import Counter
 from icdgen.definitions.frames import Place
 from icdgen.definitions.kaitai_types import Piece, Type
-from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
@@ -84,7 +84,7 @@ class Scope:
     names: dict[str, Part | Scope] = field(default_factory=dict)
 
     def find(self, path: str) -> Part:
-        """Return the part at a path such as ``_parent.header.length``. Raises `NotHeld` if no preceding part has it."""
+        """Return the part at a path such as ``_parent.header.length``. Raises `NotSupported` if no preceding part has it."""
         here: Part | Scope | None = self
         for name in path.split("."):
             if not isinstance(here, Scope):
@@ -97,7 +97,7 @@ class Scope:
             else:
                 here = here.names.get(name)
         if not isinstance(here, Part):
-            raise NotHeld(f"`{line(path, 80)}` is not a number in front of it")
+            raise NotSupported(f"`{line(path, 80)}` is not a number in front of it")
         return here
 
 

@@ -10,7 +10,7 @@ from icdgen.definitions import containers
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Definitions, Item, NotSupported
 from icdgen.definitions.wording import line
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.variable_length import MOST_BYTES
@@ -44,12 +44,12 @@ class Type:
 
     @property
     def seq(self) -> list[Map]:
-        """Attributes in their order; empty without a `seq`. Raises `NotHeld` if `seq` is not a list of mappings."""
+        """Attributes in their order; empty without a `seq`. Raises `NotSupported` if `seq` is not a list of mappings."""
         attributes = self.body.get("seq")
         if attributes is None:
             return []
         if not isinstance(attributes, Seq) or not all(isinstance(attribute, Map) for attribute in attributes):
-            raise NotHeld(f"the `seq` of `{self.name}` is not a list of attributes")
+            raise NotSupported(f"the `seq` of `{self.name}` is not a list of attributes")
         return attributes
 
     @property
@@ -58,7 +58,7 @@ class Type:
         return mapping(self.body, "instances")
 
     def find(self, reference: str) -> Type:
-        """Return the type that a reference names in this type or an enclosing one. Raises `NotHeld` if it is missing."""
+        """Return the type that a reference names in this type or an enclosing one. Raises `NotSupported` if it is missing."""
         first, *inner_names = reference.split("::")
         scope: Type | None = self
         while scope is not None:
@@ -68,10 +68,10 @@ class Type:
             if result is not None:
                 return result
             scope = scope.outer
-        raise NotHeld(f"there is no type `{line(reference, 60)}`")
+        raise NotSupported(f"there is no type `{line(reference, 60)}`")
 
     def members(self, reference: str) -> dict[int, str]:
-        """Return the members of an enumeration by value. Raises `NotHeld` if this and the enclosing types lack it."""
+        """Return the members of an enumeration by value. Raises `NotSupported` if this and the enclosing types lack it."""
         *path, name = reference.split("::")
         scope: Type | None = self.find("::".join(path)) if path else self
         while scope is not None:
@@ -83,7 +83,7 @@ class Type:
                     if (value := integer(key)) is not None
                 }
             scope = scope.outer
-        raise NotHeld(f"there is no enumeration `{line(reference, 60)}`")
+        raise NotSupported(f"there is no enumeration `{line(reference, 60)}`")
 
 
 def mapping(body: Map, key: str) -> Map | dict[str, Any]:
@@ -110,20 +110,20 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
     """Return the field of a built-in type, None for a type that the file declares.
 
     ``within`` has the default byte order and encoding. A size that another field gives is 0 bits.
-    Raises `NotHeld` if the type is not supported.
+    Raises `NotSupported` if the type is not supported.
     """
     if (number := _NUMBER.match(name)) is not None:
         kind, size, suffix = number.groups()
         if kind == "f" and size in "12":
-            raise NotHeld(f"there is no type `{name}`")
+            raise NotSupported(f"there is no type `{name}`")
         order = _ORDERS[suffix] if suffix else within.endian
         if order is None and size != "1":
-            raise NotHeld(f"the byte order of `{name}` is not stated")
+            raise NotSupported(f"the byte order of `{name}` is not stated")
         return Piece({"type": _KINDS[kind]}, 8 * int(size), order or BIG)
     if (bits := _BITS.match(name)) is not None:
         width, order = int(bits[1]), _ORDERS[bits[2]] if bits[2] else within.bit_endian
         if width > 64:
-            raise NotHeld(f"an integer has {width} bits")
+            raise NotSupported(f"an integer has {width} bits")
         # `b1` is a boolean in Kaitai Struct, wider types are integers.
         kind = "bool" if width == 1 and "enum" not in attribute else "uint"
         return Piece({"type": kind}, width, order, is_bits=True)
@@ -138,23 +138,23 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
     if attribute.get("size-eos") is True:
         return Piece({"type": kind}, 0)
     if name == "strz" or "terminator" in attribute:
-        raise NotHeld("its size is not stated: it ends at a terminator")
-    raise NotHeld("its size is not stated")
+        raise NotSupported("its size is not stated: it ends at a terminator")
+    raise NotSupported("its size is not stated")
 
 
 def sized(attribute: Map) -> int | None:
-    """Return the `size` of an attribute in bytes, None if it is not a number. Raises `NotHeld` if it is out of range."""
+    """Return the `size` of an attribute in bytes, None if it is not a number. Raises `NotSupported` if it is out of range."""
     stated = attribute.get("size")
     size = integer(stated.strip()) if isinstance(stated, str) else stated
     if not isinstance(size, int) or isinstance(size, bool):
         return None
     if not 0 <= size <= MOST_BYTES:
-        raise NotHeld(f"its size is {size}")
+        raise NotSupported(f"its size is {size}")
     return size
 
 
 def contents(attribute: Map) -> bytes | None:
-    """Return the constant bytes of an attribute (`contents`), None without the key. Raises `NotHeld` for bad values."""
+    """Return the constant bytes of an attribute (`contents`), None without the key. Raises `NotSupported` for bad values."""
     stated = attribute.get("contents")
     if stated is None:
         return None
@@ -167,17 +167,17 @@ def contents(attribute: Map) -> bytes | None:
         elif isinstance(part, str):
             result += part.encode()
         else:
-            raise NotHeld(f"its contents are `{line(str(part), 60)}`")
+            raise NotSupported(f"its contents are `{line(str(part), 60)}`")
     if not 1 <= len(result) <= MOST_BYTES:
-        raise NotHeld(f"its contents are {len(result)} bytes")
+        raise NotSupported(f"its contents are {len(result)} bytes")
     return result
 
 
 def named(item: Item, bits: int, reference: str, within: Type, enums: Enumerations, to: Definitions) -> None:
-    """Add the enumeration that ``reference`` names to an integer of ``bits``. Raises `NotHeld`."""
+    """Add the enumeration that ``reference`` names to an integer of ``bits``. Raises `NotSupported`."""
     choices = within.members(reference)
     if item["type"] not in ("uint", "int"):
-        raise NotHeld(f"it has names for values, and is of the type {item['type']}")
+        raise NotSupported(f"it has names for values, and is of the type {item['type']}")
     enums.hold(item, bits, choices, reference.rsplit("::", 1)[-1], within.name, f"`{reference}`", to)
 
 

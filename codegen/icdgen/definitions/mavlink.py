@@ -14,7 +14,7 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.enumerations import BEYOND, is_enumeration, members, special
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, raws, unreadable
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, raws, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
 from icdgen.icd.fmt.emit import Spelled
 
@@ -88,9 +88,9 @@ class MavLink2:
                 to.total += 1
                 try:
                     if id is None or id >> self.id_bits:
-                        raise NotHeld(f"its id is `{element.get('id', '')}`")
+                        raise NotSupported(f"its id is `{element.get('id', '')}`")
                     seeds[name], item = self._message(element, name, id, enums, version, to)
-                except NotHeld as why:
+                except NotSupported as why:
                     to.left_out(name, why)
                     settle(element)
                     continue
@@ -109,7 +109,7 @@ class MavLink2:
     def _message(
         self, element: Element, name: str, id: int, enums: dict[str, Item], version: int, to: Definitions
     ) -> tuple[int, Item]:
-        """Return the CRC_EXTRA of a message, and the message of the ICD. Raises `NotHeld`."""
+        """Return the CRC_EXTRA of a message, and the message of the ICD. Raises `NotSupported`."""
         base: list[_Field] = []
         more: list[_Field] = []
         is_more = False
@@ -204,13 +204,13 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
 
 
 def _field(element: Element) -> _Field:
-    """Return the field of an XML element. Raises `NotHeld` if MAVLink has no such type."""
+    """Return the field of an XML element. Raises `NotSupported` if MAVLink has no such type."""
     match = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
     # As in pymavlink, `array` means `int8_t`, and the suffix `_t` is optional.
     type_ = "uint8_t" if match and match[1] == _VERSION_FIELD else match[1] if match else ""
     type_ = "int8_t" if type_ == "array" else type_ if type_ in _BITS else f"{type_}_t"
     if match is None or type_ not in _BITS:
-        raise NotHeld(f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`")
+        raise NotSupported(f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`")
     return _Field(element.get("name", ""), type_, int(match[2] or 0), element)
 
 

@@ -22,7 +22,7 @@ SAME_NAME = "IMP092"
 Item = dict[str, Any]  # message, field, enumeration, member or struct with the keys of the ICD
 
 
-class NotHeld(Exception):
+class NotSupported(Exception):
     """Message that an ICD cannot represent. The text gives the reason, and ``help`` the remedy if any."""
 
     def __init__(self, text: str, help: str = "") -> None:
@@ -130,7 +130,7 @@ class Definitions:
         ``file`` is the file that contains it, if several files are read together.
         """
         spot = Spot(line=line, file=file if file != self.file else "")
-        help = why.help if isinstance(why, NotHeld) else ""
+        help = why.help if isinstance(why, NotSupported) else ""
         self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not imported: {why}", spot, help, "error"))
 
     def without_field(self, message: str, field: str, why: object, line: int | None = None) -> None:
@@ -209,7 +209,7 @@ def raws(bits: int, is_signed: bool) -> tuple[int, int]:
     return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
-def again(item: Item, keys: Item) -> Item:
+def replace_keys(item: Item, keys: Item) -> Item:
     """Replace the keys of a mapping and return it.
 
     Its identity matters: `Enumerations.declared` sets `enum` in it later.

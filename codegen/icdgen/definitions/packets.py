@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Sequence
 from typing import NamedTuple, Protocol
 
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported
 
 UNTOLD = "IMP079"
 TELECOMMAND, TELEMETRY = "telecommand", "telemetry"
@@ -45,7 +45,7 @@ class Sent(Protocol):
     told: dict[Hashable, int]  # constants by part: candidates for the discriminator
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """Return the ICD message from the bit ``start`` on. Raises `NotHeld` if it is not supported."""
+        """Return the ICD message from the bit ``start`` on. Raises `NotSupported` if it is not supported."""
 
 
 def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
@@ -89,17 +89,17 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
     for container in containers:
         try:
             if container.header is None:
-                raise NotHeld("it does not begin with the header of a space packet, although others do")
+                raise NotSupported("it does not begin with the header of a space packet, although others do")
             if container.header.apid is None:
-                raise NotHeld("its application process is not stated")
+                raise NotSupported("its application process is not stated")
             if container.header.version not in (None, version) or container.header.kind not in (None, container.kind):
-                raise NotHeld(f"its header is not that of a space packet with {container.kind}")
+                raise NotSupported(f"its header is not that of a space packet with {container.kind}")
             message = container.message(container.header.apid, HEADER_BITS, to)
             if not message["length"] and not message.get("fields"):
-                raise NotHeld("it has no data, and a space packet has at least one byte behind its header")
+                raise NotSupported("it has no data, and a space packet has at least one byte behind its header")
             network.messages.append(message)
             headers.append((container.kind, container.header))
-        except NotHeld as why:
+        except NotSupported as why:
             to.left_out(container.name, why)
     network.protocol = {
         "stream": {
@@ -149,7 +149,7 @@ def _add_without_header(containers: Sequence[Sent], network: Network, to: Defini
                 numbered.append(container.name)
             try:
                 network.messages.append(container.message(id, start, to))
-            except NotHeld as why:
+            except NotSupported as why:
                 to.left_out(container.name, why)
         if len(numbered) > 1:
             shown = ", ".join(f"`{name}`" for name in numbered[:3]) + (" ..." if len(numbered) > 3 else "")

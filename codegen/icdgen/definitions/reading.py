@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from icdgen.definitions.enumerations import Enumerations
-from icdgen.definitions.model import RAW_ONLY, Definitions, NotHeld
+from icdgen.definitions.model import RAW_ONLY, Definitions, NotSupported
 
 _SHOWN = 3  # messages that a finding lists
 
 
-class TooMuch(NotHeld):
+class TooMuch(NotSupported):
     """Definition that exceeds the steps that a reader allows."""
 
 

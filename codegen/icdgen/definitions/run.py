@@ -24,7 +24,7 @@ class Read:
     identifiers: list[str] = field(default_factory=list)  # names with their generated identifiers, as text
 
     @property
-    def held(self) -> int:
+    def imported(self) -> int:
         """Number of messages in all ICDs."""
         return sum(len(tree.get("messages", ())) for tree in self.trees.values())
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from icdgen.definitions.accounting import Account, AccountedMap, accounted
 from icdgen.definitions.enumerations import Enumerations
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, unreadable
 from icdgen.definitions.wording import formula, line, node_name, printed, summary, unit
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
@@ -80,7 +80,7 @@ class SunSpec:
             model = _Model(tree, enums, to, left, {struct["name"] for struct in network.structs})
             try:
                 network.messages.append(model.message())
-            except NotHeld as why:
+            except NotSupported as why:
                 to.left_out(model.name, why)
                 tree.settle()
             else:
@@ -128,11 +128,11 @@ class _Model:
         self.scaled: list[str] = []
 
     def message(self) -> Item:
-        """Return the message. Reports points with the scale factor in another register. Raises `NotHeld`."""
+        """Return the message. Reports points with the scale factor in another register. Raises `NotSupported`."""
         fields: list[Item] = []
         end = self.block(self.group, fields, 0, "", 0)
         if not fields:
-            raise NotHeld("it has no points")
+            raise NotSupported("it has no points")
         item: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _summary(self.group)
         if self.scaled:
             shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
@@ -143,16 +143,16 @@ class _Model:
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
         """Append the points of a group and of its nested groups to ``fields``, and return the bit behind them.
 
-        A group with any number of repetitions does not count. Raises `NotHeld`.
+        A group with any number of repetitions does not count. Raises `NotSupported`.
         """
         if depth > _MOST_DEPTH:
-            raise NotHeld(f"groups are nested more than {_MOST_DEPTH} deep")
+            raise NotSupported(f"groups are nested more than {_MOST_DEPTH} deep")
         for point in _list(group, "points"):
             fields.append(self.point(point, before, at, is_head=not depth and at < _HEAD))
             at += fields[-1]["bits"]
         for inner in _list(group, "groups"):
             if fields and "up_to" in fields[-1]:
-                raise NotHeld(f"`{_text(inner, 'name')}` follows a group with any number of repetitions")
+                raise NotSupported(f"`{_text(inner, 'name')}` follows a group with any number of repetitions")
             if inner.get("count", 1) == 1 and type(inner.get("count", 1)) is int:
                 at = self.block(inner, fields, at, f"{before}{_text(inner, 'name')} ", depth + 1)
             else:
@@ -162,16 +162,16 @@ class _Model:
         return at
 
     def repeated(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> Item:
-        """Declare a repeated group as a struct, and return the array of structs. Raises `NotHeld`."""
+        """Declare a repeated group as a struct, and return the array of structs. Raises `NotSupported`."""
         count, name = group["count"], _text(group, "name")
         is_open = type(count) is not int or count <= 0
         if is_open and depth:
             text = f"`{name}`, which has any number of repetitions, is inside another group"
-            raise NotHeld(text, _fixed_number_help(name, count))
+            raise NotSupported(text, _fixed_number_help(name, count))
         parts: list[Item] = []
         length = self.block(group, parts, 0, "", depth + 1) // 8
         if not length:
-            raise NotHeld(f"`{name}` has no points")
+            raise NotSupported(f"`{name}` has no points")
         called = f"{before}{name}"
         called = f"{self.name} {called}" if called in self.taken else called
         self.taken.add(called)
@@ -181,22 +181,22 @@ class _Model:
         if not is_open:
             return {**item, "count": count}
         if count != 0 and not any(part["name"] == count for part in fields):
-            raise NotHeld(f"`{name}` is counted by `{line(str(count), 60)}`, which is not in front of it")
+            raise NotSupported(f"`{name}` is counted by `{line(str(count), 60)}`, which is not in front of it")
         count = count or REST
         return {**item, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
 
     def point(self, point: dict[str, Any], before: str, at: int, is_head: bool) -> Item:
-        """Return the field of a point. ``is_head``: id or length of the model. Raises `NotHeld` if it is not supported."""
+        """Return the field of a point. ``is_head``: id or length of the model. Raises `NotSupported` if it is not supported."""
         self.left[0] -= 1
         if self.left[0] < 0:
-            raise NotHeld(f"the file has more than {_MOST_POINTS:,} points")
+            raise NotSupported(f"the file has more than {_MOST_POINTS:,} points")
         name, type_name = f"{before}{_text(point, 'name')}", _text(point, "type")
         kind = _KINDS.get(type_name)
         size = point.get("size")
         registers = kind.registers or size if kind else 0
         if kind is None or type(registers) is not int or not 0 < registers <= _MOST_REGISTERS:
             sized = f" and size {size}" if kind else ""
-            raise NotHeld(f"`{line(name, 80)}` is of the type `{line(type_name, 40)}`{sized}")
+            raise NotSupported(f"`{line(name, 80)}` is of the type `{line(type_name, 40)}`{sized}")
         item: Item = {"at": at, "bits": _REGISTER * registers, "name": name, "type": kind.type}
         none = _special(kind, type_name) if not is_head else {}
         symbols = _symbols(point, is_bits=type_name.startswith("bitfield"))

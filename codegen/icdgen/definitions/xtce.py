@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import packets, safe_xml, xtce_files
 from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.frames import BIG, ORDERS
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld, Source
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, Source
 from icdgen.definitions.wording import line, node_name
 from icdgen.definitions.xtce_layout import Layout, Part, RequiredValue
 from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
@@ -114,7 +114,7 @@ class _Candidate:
         self.front: tuple[Hashable, int] | None = (first.reference, first.bits) if first and is_id else None
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """Return the message of the ICD, with the fields from bit ``start`` on. Raises `NotHeld`.
+        """Return the message of the ICD, with the fields from bit ``start`` on. Raises `NotSupported`.
 
         Reports parts between the primary header and ``start``, which have no place in an ICD.
         """
@@ -146,7 +146,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
             layout.read(element)
             more = {**_group(names, element), **described(element)}
             yield _Candidate(_TELEMETRY, element, layout, more, id(element) in bases)
-        except NotHeld as why:
+        except NotSupported as why:
             to.left_out(element.get("name", ""), why, *names.place(element))
             settle(element)
     for element in names.all("command"):
@@ -159,7 +159,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
             layout = Layout(names, types, _arguments(chain))
             container = names.container_of(element)
             if container is None:
-                raise NotHeld("it has no container, which says how it is sent")
+                raise NotSupported("it has no container, which says how it is sent")
             layout.read(container)
             assigned: dict[str, str] = {}
             for base in chain:
@@ -169,7 +169,7 @@ def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Candidate]:
                 layout.required_values.append(RequiredValue(layout.argument(name), value, is_raw=False))
             more = {**_group(names, element), **_hazard(chain), **described(element)}
             yield _Candidate(_TELECOMMAND, element, layout, more)
-        except NotHeld as why:
+        except NotSupported as why:
             to.left_out(element.get("name", ""), why, *names.place(element))
             settle(element)
 
@@ -214,7 +214,7 @@ def _used(names: Names, path: str) -> set[int]:
         for reference in container.iterfind(path):
             try:
                 used.add(id(names.container(reference.get("containerRef", ""), container)))
-            except NotHeld:
+            except NotSupported:
                 continue  # reported where it is read
     return used
 

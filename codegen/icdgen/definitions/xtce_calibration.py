@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 from xml.etree.ElementTree import Element
 
-from icdgen.definitions.model import NotHeld, raws
+from icdgen.definitions.model import NotSupported, raws
 from icdgen.definitions.wording import line, printed
 from icdgen.icd import curve
 from icdgen.icd.formula import FormulaError
@@ -99,10 +99,10 @@ def _number(text: str) -> int | float | str:
 
 
 def number(text: str, what: str) -> int:
-    """Return an integer of at most 40 digits. Raises `NotHeld` with ``what`` as the subject for any other text."""
+    """Return an integer of at most 40 digits. Raises `NotSupported` with ``what`` as the subject for any other text."""
     match = _INTEGER.match(text)
     if match is None:
-        raise NotHeld(f"{what} is `{line(text, 60)}`")
+        raise NotSupported(f"{what} is `{line(text, 60)}`")
     return int(match[1])
 
 

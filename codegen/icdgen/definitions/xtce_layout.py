@@ -17,7 +17,7 @@ from icdgen.definitions.containers import (
     variable_field,
 )
 from icdgen.definitions.frames import LITTLE, ORDERS, Place, laid_out
-from icdgen.definitions.model import Definitions, Item, NotHeld, again
+from icdgen.definitions.model import Definitions, Item, NotSupported, replace_keys
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
@@ -80,13 +80,13 @@ class Layout(Container[Part]):
         """Add the inherited entries of a container, then its own ones.
 
         ``within`` are the enclosing containers. Positions of an included container are relative to its own start.
-        Raises `NotHeld` if an entry is not supported and the frame cannot end there.
+        Raises `NotSupported` if an entry is not supported and the frame cannot end there.
         """
         if any(container is element for element in within):
             circle = " -> ".join(element.get("name", "") for element in (*within, container))
-            raise NotHeld(f"containers contain or inherit each other in a circle: {line(circle, 200)}")
+            raise NotSupported(f"containers contain or inherit each other in a circle: {line(circle, 200)}")
         if len(within) >= _DEEPEST:
-            raise NotHeld(f"more than {_DEEPEST} containers inherit or contain each other")
+            raise NotSupported(f"more than {_DEEPEST} containers inherit or contain each other")
         self.types.step()
         start = self.at if is_included else 0
         within = (*within, container)
@@ -110,42 +110,42 @@ class Layout(Container[Part]):
                     self._conditional(entry, conditions, before)
             except TooMuch:
                 raise
-            except NotHeld as why:
+            except NotSupported as why:
                 if self.behind:
                     raise
                 item: Item = {}
                 self.lose(Part((_named(entry),), item, at, 0, piece=Piece(item, 0)), why, before)
             if len(self.parts) > MOST_FIELDS:
-                raise NotHeld(f"it has more than {MOST_FIELDS} fields")
+                raise NotSupported(f"it has more than {MOST_FIELDS} fields")
 
     def _conditional(self, entry: Element, conditions: list[tuple[Part, object]], before: int) -> None:
-        """Make the parts behind the first ``before`` optional. Raises `NotHeld` if their conditions are nested."""
+        """Make the parts behind the first ``before`` optional. Raises `NotSupported` if their conditions are nested."""
         self.jumps, self.behind = True, _named(entry)
         for part in self.parts[before:]:
             if "when" in part.item:
-                raise NotHeld(f"`{_named(entry)}` is present only on nested conditions")
+                raise NotSupported(f"`{_named(entry)}` is present only on nested conditions")
             part.conditions = conditions
             part.item["when"] = {of.path[-1]: values for of, values in conditions}
 
     def _move(self, entry: Element, start: int) -> None:
-        """Move to the position of an entry in a container that begins at bit ``start``. Raises `NotHeld`."""
+        """Move to the position of an entry in a container that begins at bit ``start``. Raises `NotSupported`."""
         location = entry.find("LocationInContainerInBits")
         origin = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
         if self.behind and origin == "previousEntry":
-            raise NotHeld(f"`{_named(entry)}` follows `{self.behind}`, which is present only on a condition")
+            raise NotSupported(f"`{_named(entry)}` follows `{self.behind}`, which is present only on a condition")
         self.behind = ""
         if location is None:
             return
         bits = fixed(location)
         if bits is None or origin not in ("previousEntry", "containerStart"):
-            raise NotHeld(f"where `{_named(entry)}` is located is not a number of bits from the previous entry")
+            raise NotSupported(f"where `{_named(entry)}` is located is not a number of bits from the previous entry")
         self.at = (self.at if origin == "previousEntry" else start) + bits
         self.jumps = True
         if self.at < 0:
-            raise NotHeld(f"`{_named(entry)}` is located in front of its container")
+            raise NotSupported(f"`{_named(entry)}` is located in front of its container")
 
     def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
-        """Add the parts of an entry of a container. Raises `NotHeld` if the entry is not supported."""
+        """Add the parts of an entry of a container. Raises `NotSupported` if the entry is not supported."""
         count = _repeats(entry)
         if entry.tag == "ContainerRefEntry":
             inner = self.names.container(entry.get("containerRef", ""), container)
@@ -156,7 +156,7 @@ class Layout(Container[Part]):
             self._fixed(entry)
             return
         if entry.tag not in _REFERENCES:
-            raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
+            raise NotSupported(f"it has a `{line(entry.tag, 60)}`")
         reference = self._parameter(_reference(entry), container, "argument" in entry.tag.lower())
         of, where = reference.of, f"`{reference.name}`"
         type_ = self.names.type_of(of.get("parameterTypeRef", "") or of.get("argumentTypeRef", ""), of)
@@ -174,82 +174,82 @@ class Layout(Container[Part]):
         self._place(reference, name, repeated(piece, count, where), keys)
 
     def _place(self, reference: Reference, name: str, piece: Piece, keys: Item) -> None:
-        """Add a field at the current position, or the members of an aggregate in their order. Raises `NotHeld`."""
+        """Add a field at the current position, or the members of an aggregate in their order. Raises `NotSupported`."""
         of, path = reference
         if len(path) > _DEEPEST:
-            raise NotHeld(f"`{name}` has members nested without end")
+            raise NotSupported(f"`{name}` has members nested without end")
         for member, type_ in piece.members:
             of_member = self.types.piece(type_, f"`{name} {member}`")
             self._place(Reference(of, (*path, member)), f"{name} {member}", of_member, described(type_))
             if len(self.parts) > MOST_FIELDS:
-                raise NotHeld(f"it has more than {MOST_FIELDS} fields")
+                raise NotSupported(f"it has more than {MOST_FIELDS} fields")
         if piece.members:
             return
         if self.is_open:
-            raise NotHeld(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose size is not fixed")
+            raise NotSupported(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose size is not fixed")
         if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
-                raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
+                raise NotSupported(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
             self.jumps = (
                 True  # little-endian within a byte: bits are counted from the least significant one, as in Yamcs
             )
-        item = again(piece.item, {**piece.item, **keys})
+        item = replace_keys(piece.item, {**piece.item, **keys})
         part = Part((name,), item, self.at, piece.bits, piece.order, item.get("bits", 8), piece=piece)
         part.reference, part.is_reserved = reference, "reserved" in ancillary_data(of)
         self.add(part)
 
     def _fixed(self, entry: Element) -> None:
-        """Add a fixed value: the least significant `sizeInBits` bits of a hexadecimal number. Raises `NotHeld`."""
+        """Add a fixed value: the least significant `sizeInBits` bits of a hexadecimal number. Raises `NotSupported`."""
         bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get("binaryValue", "")
         if not 1 <= bits <= 8 * MOST_BYTES:
-            raise NotHeld(f"a fixed value has {bits} bits")
+            raise NotSupported(f"a fixed value has {bits} bits")
         try:
             value = int(text, 16) & (1 << bits) - 1
         except ValueError:
-            raise NotHeld(f"a fixed value is `{line(text, 60)}`") from None
+            raise NotSupported(f"a fixed value is `{line(text, 60)}`") from None
         name = entry.get("name", "")
         if bits > 64 and value:
-            raise NotHeld(f"a fixed value has {bits} bits")
+            raise NotSupported(f"a fixed value has {bits} bits")
         item: Item = {"type": "uint", "const": value}
         part = Part((name or f"Fixed {self.at}",), item, self.at, bits, piece=Piece(item, bits))
         part.is_reserved = not (name and bits <= 64) and not value
         self.add(part)
 
     def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Reference:
-        """Return the parameter or argument that an element refers to. Raises `NotHeld` if it does not exist."""
+        """Return the parameter or argument that an element refers to. Raises `NotSupported` if it does not exist."""
         return self.argument(name) if is_argument else Reference(*self.names.parameter(name, seen_from))
 
     def argument(self, name: str) -> Reference:
-        """Return an argument of the command, or a member of it. Raises `NotHeld` if it does not exist."""
+        """Return an argument of the command, or a member of it. Raises `NotSupported` if it does not exist."""
         first, *path = [name] if name in self.arguments else name.split("/")
         if first not in self.arguments:
-            raise NotHeld(f"there is no argument `{line(name, 100)}`")
+            raise NotSupported(f"there is no argument `{line(name, 100)}`")
         return Reference(self.arguments[first], tuple(path))
 
     def _required_values(self, criteria: Element, seen_from: Element) -> Iterator[RequiredValue]:
-        """Yield the equalities of a conjunction. Raises `NotHeld` for any other condition."""
+        """Yield the equalities of a conjunction. Raises `NotSupported` for any other condition."""
         for alternatives in self._all_of(criteria, seen_from, "it depends on"):
             if len(alternatives) > 1:
-                raise NotHeld("it depends on more than equalities that must all be true")
+                raise NotSupported("it depends on more than equalities that must all be true")
             yield alternatives[0]
 
     def _conditions(self, condition: Element, seen_from: Element, named: str, before: int) -> list[tuple[Part, object]]:
-        """Return the parts in front of an entry on which it depends, with the values that they must have. Raises `NotHeld`."""
+        """Return the parts in front of an entry on which it depends, with the values that they must have. Raises `NotSupported`."""
         conditions: list[tuple[Part, object]] = []
         for alternatives in self._all_of(condition, seen_from, f"`{named}` is present only if there is"):
             part, *other_parts = [self._part(equality, before) for equality in alternatives]
             if any(other is not part for other in other_parts) or any(of is part for of, _ in conditions):
-                raise NotHeld(f"`{named}` is present on a condition of several fields")
+                raise NotSupported(f"`{named}` is present on a condition of several fields")
             raws = [self._raw(part, equality) for equality in alternatives]
             conditions.append((part, raws if len(raws) > 1 else raws[0]))
         if not conditions:
-            raise NotHeld(f"`{named}` is present only on a condition that is empty")
+            raise NotSupported(f"`{named}` is present only on a condition that is empty")
         return conditions
 
     def _all_of(self, criteria: Iterable[Element], seen_from: Element, prefix: str) -> Iterator[list[RequiredValue]]:
         """Yield the terms of a conjunction, each a list of alternative equalities.
 
-        Raises `NotHeld` for any other condition, with a message that begins with ``prefix``.
+        Raises `NotSupported` for any other condition, with a message that begins with ``prefix``.
         """
         for criterion in criteria:
             if criterion.tag == "Comparison":
@@ -267,31 +267,31 @@ class Layout(Container[Part]):
             elif criterion.tag == "ORedConditions":
                 each = [list(self._all_of([inner], seen_from, prefix)) for inner in criterion]
                 if any(len(alternative) != 1 for alternative in each):
-                    raise NotHeld(f"{prefix} one of several things that must hold together")
+                    raise NotSupported(f"{prefix} one of several things that must hold together")
                 yield [equality for (alternative,) in each for equality in alternative]
             elif criterion.tag == "Condition":
                 if len([inner for inner in criterion if inner.tag.endswith("InstanceRef")]) != 1:
-                    raise NotHeld(f"{prefix} a comparison of two parameters")
+                    raise NotSupported(f"{prefix} a comparison of two parameters")
                 operator, value = criterion.findtext("ComparisonOperator", ""), criterion.findtext("Value", "")
                 yield [self._compared(criterion, operator, value, seen_from, prefix)]
             else:
-                raise NotHeld(f"{prefix} a `{line(criterion.tag, 60)}`")
+                raise NotSupported(f"{prefix} a `{line(criterion.tag, 60)}`")
 
     def _compared(
         self, comparison: Element, operator: str, value: str, seen_from: Element, prefix: str
     ) -> RequiredValue:
-        """Return an equality of a parameter or argument and a value. Raises `NotHeld` for other operators."""
+        """Return an equality of a parameter or argument and a value. Raises `NotSupported` for other operators."""
         of = next((inner for inner in comparison if inner.tag.endswith("InstanceRef")), comparison)
         is_argument = "argumentRef" in of.attrib
         name = of.get("argumentRef" if is_argument else "parameterRef", "")
         if operator.strip() != "==":
             compared = f"`{line(name, 60)} {line(operator, 5)} {line(value, 60)}`"
-            raise NotHeld(f"{prefix} {compared}, which is not an equality")
+            raise NotSupported(f"{prefix} {compared}, which is not an equality")
         reference = self._parameter(name, seen_from, is_argument)
         return RequiredValue(reference, value, of.get("useCalibratedValue") == "false")
 
     def fix_value(self, required: RequiredValue) -> int:
-        """Make the value of a parameter or argument constant, and return its raw value. Raises `NotHeld`."""
+        """Make the value of a parameter or argument constant, and return its raw value. Raises `NotSupported`."""
         part = self._part(required)
         raw = self._raw(part, required)
         check_only_value(part.item, raw, required.reference.name)
@@ -299,7 +299,7 @@ class Layout(Container[Part]):
         return raw
 
     def _part(self, required: RequiredValue, end: int | None = None) -> Part:
-        """Return the last of the first ``end`` parts that an equality refers to. Raises `NotHeld` if it does not exist."""
+        """Return the last of the first ``end`` parts that an equality refers to. Raises `NotSupported` if it does not exist."""
         part = next(
             (candidate for candidate in reversed(self.parts[:end]) if candidate.reference == required.reference), None
         )
@@ -308,34 +308,34 @@ class Layout(Container[Part]):
         return part
 
     def _raw(self, part: Part, required: RequiredValue) -> int:
-        """Return the raw value of an equality. Raises `NotHeld` if the part is calibrated, not an integer, or too narrow."""
+        """Return the raw value of an equality. Raises `NotSupported` if the part is calibrated, not an integer, or too narrow."""
         item, text, name = part.item, required.value.strip(), required.reference.name
         if part.piece.is_raw:
-            raise NotHeld(f"it depends on `{name}`, of which only the raw bits are imported")
+            raise NotSupported(f"it depends on `{name}`, of which only the raw bits are imported")
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotHeld(f"it depends on `{name}`, which is of the type {item['type']}")
+            raise NotSupported(f"it depends on `{name}`, which is of the type {item['type']}")
         if item.keys() & {"formula", "points"} and not required.is_raw:
-            raise NotHeld(f"it depends on the calibrated value of `{name}`")
+            raise NotSupported(f"it depends on the calibrated value of `{name}`")
         if text in part.piece.values and not required.is_raw:
             return part.piece.values[text]
         try:
             raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
         except ValueError:
-            raise NotHeld(f"it depends on `{name}`, which is never `{line(text, 60)}`") from None
+            raise NotSupported(f"it depends on `{name}`, which is never `{line(text, 60)}`") from None
         if raw.bit_length() > part.bits or (raw < 0 and item["type"] in ("uint", "bool")):
-            raise NotHeld(f"it depends on `{name}`, which is never {raw}")
+            raise NotSupported(f"it depends on `{name}`, which is never {raw}")
         return raw
 
     def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
-        """Return the message with its length and the fields from bit ``start`` on. Raises `NotHeld`."""
+        """Return the message with its length and the fields from bit ``start`` on. Raises `NotSupported`."""
         always = max((part.end for part in self.parts if part.bits and "when" not in part.item), default=start)
         always = max(always, self.size)
         late = next((part for part in self.parts if "when" in part.item and part.end > always), None)
         if late is not None:
-            raise NotHeld(f"frames end before `{late.path[-1]}` where it is not there")
+            raise NotSupported(f"frames end before `{late.path[-1]}` where it is not there")
         end = always - start
         if max((part.end for part in self.parts), default=0) - start > 8 * MOST_BYTES or end > 8 * MOST_BYTES:
-            raise NotHeld(f"its frames have more than {MOST_BYTES:,} bytes")
+            raise NotSupported(f"its frames have more than {MOST_BYTES:,} bytes")
         parts = [part for part in self.parts if part.at >= start and not part.is_reserved]
         names = _numbered(parts)
         for part in parts:
@@ -346,10 +346,10 @@ class Layout(Container[Part]):
         fields: list[Item] = []
         if self.jumps:
             if len(parts) > MOST_PLACED:
-                raise NotHeld(f"more than {MOST_PLACED} fields say where they stand")
+                raise NotSupported(f"more than {MOST_PLACED} fields say where they stand")
             placed = [
                 (
-                    again(part.item, {"name": names[id(part)], **part.item}),
+                    replace_keys(part.item, {"name": names[id(part)], **part.item}),
                     Place(part.at - start, part.bits, part.order),
                 )
                 for part in closed
@@ -363,7 +363,7 @@ class Layout(Container[Part]):
         for part in parts:
             if not part.bits:
                 if end % 8:
-                    raise NotHeld(f"`{names[id(part)]}`, whose size is not fixed, begins within a byte")
+                    raise NotSupported(f"`{names[id(part)]}`, whose size is not fixed, begins within a byte")
                 message.pop("reserved", 0)  # the unnamed bytes in front of the field are part of the length
                 at = 8 * message["length"]
                 _count(part, names[id(part)], at, parts, message["name"], to)
@@ -426,13 +426,13 @@ def _named(entry: Element) -> str:
 
 
 def _repeats(entry: Element) -> int:
-    """Return the number of repetitions of an entry. Raises `NotHeld` if it is not fixed, or there are gaps between."""
+    """Return the number of repetitions of an entry. Raises `NotSupported` if it is not fixed, or there are gaps between."""
     repeat = entry.find("RepeatEntry")
     if repeat is None:
         return 1
     count = fixed(repeat.find("Count"))
     if count is None or repeat.find("Offset") is not None:
-        raise NotHeld(f"how often `{_named(entry)}` is repeated, or the gap between, is not a number")
+        raise NotSupported(f"how often `{_named(entry)}` is repeated, or the gap between, is not a number")
     if not 0 <= count <= MOST_ELEMENTS:
-        raise NotHeld(f"`{_named(entry)}` is repeated {count} times")
+        raise NotSupported(f"`{_named(entry)}` is repeated {count} times")
     return count

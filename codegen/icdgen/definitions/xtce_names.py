@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import safe_xml
-from icdgen.definitions.model import Definitions, NotHeld, unreadable
+from icdgen.definitions.model import Definitions, NotSupported, unreadable
 from icdgen.definitions.wording import line
 
 # Name space of aliases, and prefix of ancillary data, that `icdgen --lang xtce` writes.
@@ -87,22 +87,22 @@ class Names:
         return self._systems[id(element)]
 
     def commands(self, element: Element) -> list[Element]:
-        """Return a command and its base commands, the derived one first. Raises `NotHeld` for circular inheritance."""
+        """Return a command and its base commands, the derived one first. Raises `NotSupported` for circular inheritance."""
         chain = [element]
         while (base := chain[-1].find("BaseMetaCommand")) is not None:
             parent = self.find("command", base.get("metaCommandRef", ""), chain[-1])
             if any(parent is command for command in chain):
-                raise NotHeld("commands are based on each other in a circle")
+                raise NotSupported("commands are based on each other in a circle")
             chain.append(parent)
         return chain
 
     def container_of(self, command: Element) -> Element | None:
-        """Return the container of a command or of its nearest base command, None without a container. Raises `NotHeld`."""
+        """Return the container of a command or of its nearest base command, None without a container. Raises `NotSupported`."""
         containers = (element.find("CommandContainer") for element in self.commands(command))
         return next((container for container in containers if container is not None), None)
 
     def base_of(self, container: Element) -> Element | None:
-        """Return the base of a container, None if it inherits no container. Raises `NotHeld`.
+        """Return the base of a container, None if it inherits no container. Raises `NotSupported`.
 
         A command container without `BaseContainer` inherits the container of the base command. The standard leaves
         this open. Yamcs implements it, and its own databases rely on it.
@@ -116,40 +116,42 @@ class Names:
         return self.container_of(self.find("command", base_command.get("metaCommandRef", ""), command))
 
     def container(self, reference: str, seen_from: Element) -> Element:
-        """Return the container that a reference names. Raises `NotHeld` if it does not exist.
+        """Return the container that a reference names. Raises `NotSupported` if it does not exist.
 
         References from command containers prefer command containers.
         """
         if seen_from.tag == "CommandContainer":
             try:
                 return self.find("command container", reference, seen_from)
-            except NotHeld:
+            except NotSupported:
                 pass  # containers of telemetry may be parts of commands
         return self.find("container", reference, seen_from)
 
     def type_of(self, reference: str, seen_from: Element) -> Element:
-        """Return the type that a parameter, an argument or another type refers to. Raises `NotHeld` if it does not exist."""
+        """Return the type that a parameter, an argument or another type refers to. Raises `NotSupported` if it does not exist."""
         return self.find("argument type" if "Argument" in seen_from.tag else "parameter type", reference, seen_from)
 
     def parameter(self, reference: str, seen_from: Element) -> tuple[Element, tuple[str, ...]]:
-        """Return the parameter that a reference names, and the path to a member of an aggregate. Raises `NotHeld`."""
+        """Return the parameter that a reference names, and the path to a member of an aggregate. Raises `NotSupported`."""
         words = reference.split("/")
         for length in range(len(words), 0, -1):
             try:
                 return self.find("parameter", "/".join(words[:length]), seen_from), tuple(words[length:])
-            except NotHeld:
+            except NotSupported:
                 continue
-        raise NotHeld(f"there is no parameter `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
+        raise NotSupported(f"there is no parameter `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
 
     def find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """Return the element that a reference names in the system or an enclosing one. Raises `NotHeld` if it does not exist."""
+        """Return the element that a reference names in the system or an enclosing one. Raises `NotSupported` if there is none."""
         path = self.system(seen_from)
         while True:
             target = self._found.get((kind, posixpath.normpath(posixpath.join(path, reference))))
             if target is not None:
                 return target
             if not path or reference.startswith("/"):
-                raise NotHeld(f"there is no {kind} `{line(reference, 100)}`", _TOGETHER if "/" in reference else "")
+                raise NotSupported(
+                    f"there is no {kind} `{line(reference, 100)}`", _TOGETHER if "/" in reference else ""
+                )
             path = path.rpartition("/")[0]
 
 

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import containers
 from icdgen.definitions.accounting import settle
 from icdgen.definitions.frames import BIG, LITTLE
-from icdgen.definitions.model import Item, NotHeld
+from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import Reading
 from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, fixed, formula, number, simplified_table
@@ -50,7 +50,7 @@ class Types(Reading):
     names: Names
 
     def piece(self, element: Element, where: str) -> Piece:
-        """Return the field of a type. ``where`` names the parameter in messages. Raises `NotHeld` if it is not supported."""
+        """Return the field of a type. ``where`` names the parameter in messages. Raises `NotSupported` if it is not supported."""
         self.step()
         chain = self._chain(element)
         kind = re.sub("(Parameter|Argument)Type$", "", element.tag)
@@ -65,7 +65,7 @@ class Types(Reading):
         encoding = next((child for child in _below(chain) if child.tag in _ENCODINGS), None)
         try:
             piece = self._encoded(chain, kind, encoding)
-        except NotHeld as why:
+        except NotSupported as why:
             return self._raw(chain, encoding, where, why)
         if kind == "Enumerated":
             self._labels(piece, chain, element, where)
@@ -78,68 +78,68 @@ class Types(Reading):
         return piece
 
     def member(self, element: Element, name: str, where: str) -> Element:
-        """Return the type of a member of an aggregate. Raises `NotHeld` if it does not exist."""
+        """Return the type of a member of an aggregate. Raises `NotSupported` if it does not exist."""
         for member, type_ in self.piece(element, where).members:
             if member == name:
                 return type_
-        raise NotHeld(f"{where}: `{element.get('name', '')}` has no member `{line(name, 60)}`")
+        raise NotSupported(f"{where}: `{element.get('name', '')}` has no member `{line(name, 60)}`")
 
     def array(self, element: Element, dimensions: Element | None, where: str) -> Piece:
-        """Return an array of one dimension with a fixed or counted number of elements. Raises `NotHeld` for other arrays."""
+        """Return an array of one dimension with a fixed or counted number of elements. Raises `NotSupported` for other arrays."""
         of = self.names.type_of(element.get("arrayTypeRef", ""), element)
         listed = [] if dimensions is None else dimensions.findall("Dimension")
         if len(listed) != 1:
-            raise NotHeld(f"{where} is an array of {len(listed) or 'no'} dimensions")
+            raise NotSupported(f"{where} is an array of {len(listed) or 'no'} dimensions")
         first, last = fixed(listed[0].find("StartingIndex"), 0), fixed(listed[0].find("EndingIndex"))
         if first == 0 and last is None and (dynamic := listed[0].find("EndingIndex/DynamicValue")) is not None:
             return _counted(self._element(of, where), dynamic, where)
         if first is None or last is None:
-            raise NotHeld(f"{where} is an array of as many elements as another parameter says")
+            raise NotSupported(f"{where} is an array of as many elements as another parameter says")
         return _array(self._element(of, where), last - first + 1, where)
 
     def _element(self, of: Element, where: str) -> Piece:
-        """Return the element of an array. Raises `NotHeld` for an array of arrays."""
+        """Return the element of an array. Raises `NotSupported` for an array of arrays."""
         if of.tag.startswith("Array"):
-            raise NotHeld(f"{where} is an array of arrays")
+            raise NotSupported(f"{where} is an array of arrays")
         return self.piece(of, where)
 
     def _chain(self, element: Element) -> list[Element]:
-        """Return a type and its base types, the derived one first. Raises `NotHeld` for circular or too deep inheritance."""
+        """Return a type and its base types, the derived one first. Raises `NotSupported` for circular or too deep inheritance."""
         chain = [element]
         while (base := chain[-1].get("baseType")) is not None:
             base_type = self.names.type_of(base, chain[-1])
             if any(base_type is type_ for type_ in chain):
-                raise NotHeld(f"the type `{element.get('name', '')}` is based on itself")
+                raise NotSupported(f"the type `{element.get('name', '')}` is based on itself")
             if len(chain) >= _DEEPEST:
-                raise NotHeld(f"the type `{element.get('name', '')}` is based on more than {_DEEPEST} others")
+                raise NotSupported(f"the type `{element.get('name', '')}` is based on more than {_DEEPEST} others")
             chain.append(base_type)
         return chain
 
     def _encoded(self, chain: list[Element], kind: str, encoding: Element | None) -> Piece:
-        """Return the field of an encoding, or of an integer or float type without one. Raises `NotHeld`."""
+        """Return the field of an encoding, or of an integer or float type without one. Raises `NotSupported`."""
         if encoding is None:
             if kind not in ("Integer", "Float"):
-                raise NotHeld(f"the type `{chain[0].get('name', '')}` has no encoding")
+                raise NotSupported(f"the type `{chain[0].get('name', '')}` has no encoding")
             bits = number(_attribute(chain, "sizeInBits", "32"), "a size")
             is_signed = _attribute(chain, "signed", "true") == "true"
             return _numbers("float" if kind == "Float" else "int" if is_signed else "uint", bits, BIG)
         if encoding.get("bitOrder", "mostSignificantBitFirst") != "mostSignificantBitFirst":
-            raise NotHeld("its least significant bit is sent first")
+            raise NotSupported("its least significant bit is sent first")
         if encoding.tag == "IntegerDataEncoding":
             encoding_name = encoding.get("encoding", "unsigned")
             # XTCE 1.1 spells the value `twosCompliment`, 1.2 `twosComplement`.
             type_ = {"unsigned": "uint", "twosComplement": "int", "twosCompliment": "int"}.get(encoding_name)
             if type_ is None:
-                raise NotHeld(f"an integer is encoded as `{line(encoding_name, 60)}`")
+                raise NotSupported(f"an integer is encoded as `{line(encoding_name, 60)}`")
             return _numbers(type_, number(encoding.get("sizeInBits", "8"), "a size"), _order(encoding))
         if encoding.tag == "FloatDataEncoding":
             encoding_name = encoding.get("encoding", "IEEE754_1985")
             if not encoding_name.startswith("IEEE754"):
-                raise NotHeld(f"a float is encoded as `{line(encoding_name, 60)}`")
+                raise NotSupported(f"a float is encoded as `{line(encoding_name, 60)}`")
             return _numbers("float", number(encoding.get("sizeInBits", "32"), "a size"), _order(encoding))
         return _bytes(encoding, "text" if encoding.tag == "StringDataEncoding" else "bytes")
 
-    def _raw(self, chain: list[Element], encoding: Element | None, where: str, why: NotHeld) -> Piece:
+    def _raw(self, chain: list[Element], encoding: Element | None, where: str, why: NotSupported) -> Piece:
         """Return the raw bits of a type that is not supported, and note it. Raises ``why`` if its size is not fixed."""
         if encoding is None:
             raise why
@@ -155,9 +155,9 @@ class Types(Reading):
         return Piece({"type": "uint" if bits <= _WORD else "bytes"}, bits, is_raw=True)
 
     def _labels(self, piece: Piece, chain: list[Element], element: Element, where: str) -> None:
-        """Add the enumeration of a type with labels. Raises `NotHeld` if it is not an integer, or a label covers too much."""
+        """Add the enumeration of a type with labels. Raises `NotSupported` if it is not an integer, or a label covers too much."""
         if piece.item["type"] not in ("uint", "int"):
-            raise NotHeld(f"{where} has labels, and is encoded as {piece.item['type']}")
+            raise NotSupported(f"{where} has labels, and is encoded as {piece.item['type']}")
         choices: dict[int, str] = {}
         for enumeration in (
             enumeration for type_ in chain for enumeration in type_.iterfind("EnumerationList/Enumeration")
@@ -165,7 +165,7 @@ class Types(Reading):
             first = number(enumeration.get("value", ""), "the value of a label")
             last = number(enumeration.get("maxValue") or str(first), "the value of a label")
             if not 0 <= last - first < _MOST_NAMED:
-                raise NotHeld(f"{where} has a label for the values {first} to {last}")
+                raise NotSupported(f"{where} has a label for the values {first} to {last}")
             self.step(last - first + 1)
             for value in range(first, last + 1):
                 choices.setdefault(value, enumeration.get("label", ""))
@@ -179,9 +179,9 @@ class Types(Reading):
         return self.names.system(element).rsplit("/", 1)[-1]
 
     def _flag(self, piece: Piece, chain: list[Element], element: Element) -> None:
-        """Make a field a flag, or an enumeration of two members if it has several bits. Raises `NotHeld`."""
+        """Make a field a flag, or an enumeration of two members if it has several bits. Raises `NotSupported`."""
         if piece.item["type"] not in ("uint", "int"):
-            raise NotHeld(f"a flag is encoded as {piece.item['type']}")
+            raise NotSupported(f"a flag is encoded as {piece.item['type']}")
         label_of_0 = _attribute(chain, "zeroStringValue", "False")
         label_of_1 = _attribute(chain, "oneStringValue", "True")
         piece.values = {label_of_0: 0, label_of_1: 1, "false": 0, "true": 1}
@@ -224,27 +224,27 @@ class Types(Reading):
 
 
 def repeated(piece: Piece, count: int, where: str) -> Piece:
-    """Return an array of a field, or the field itself if ``count`` is 1. Raises `NotHeld`."""
+    """Return an array of a field, or the field itself if ``count`` is 1. Raises `NotSupported`."""
     return piece if count == 1 else _array(piece, count, where)
 
 
 def _array(piece: Piece, count: int, where: str) -> Piece:
-    """Return an array of ``count`` elements of a fixed size. Raises `NotHeld`."""
+    """Return an array of ``count`` elements of a fixed size. Raises `NotSupported`."""
     if piece.members or "count" in piece.item or not piece.bits:
-        raise NotHeld(f"{where} is an array of elements of variable size")
+        raise NotSupported(f"{where} is an array of elements of variable size")
     if not 1 <= count <= MOST_ELEMENTS:
-        raise NotHeld(f"{where} is an array of {count} elements")
+        raise NotSupported(f"{where} is an array of {count} elements")
     piece.item |= {"bits": piece.bits, "count": count}
     return Piece(piece.item, piece.bits * count, piece.order, values=piece.values)
 
 
 def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
-    """Return an array with a last index that a parameter or argument gives. Raises `NotHeld` if it is not supported."""
+    """Return an array with a last index that a parameter or argument gives. Raises `NotSupported` if it is not supported."""
     name, slope, intercept = _adjusted(dynamic)
     if piece.members or "count" in piece.item or not piece.bits or piece.bits % 8:
-        raise NotHeld(f"{where} is an array of elements without a fixed size in bytes")
+        raise NotSupported(f"{where} is an array of elements without a fixed size in bytes")
     if not name or slope != 1 or intercept is None:
-        raise NotHeld(f"{where} is an array of a number of elements that no parameter counts")
+        raise NotSupported(f"{where} is an array of a number of elements that no parameter counts")
     most = min(MOST_ELEMENTS, MOST_BYTES * 8 // piece.bits)
     piece.item |= {"bits": piece.bits, "count": "rest", "up_to": most}
     return Piece(piece.item, 0, piece.order, size=name, plus=intercept + 1)
@@ -296,16 +296,16 @@ def _below(chain: list[Element]) -> Iterator[Element]:
 
 
 def _numbers(type_: str, bits: int, order: str) -> Piece:
-    """Return an integer of 1 to 64 bits, or a float of 32 or 64 bits. Raises `NotHeld` for other widths."""
+    """Return an integer of 1 to 64 bits, or a float of 32 or 64 bits. Raises `NotSupported` for other widths."""
     if type_ == "float" and bits not in (32, 64):
-        raise NotHeld(f"a float has {bits} bits")
+        raise NotSupported(f"a float has {bits} bits")
     if not 1 <= bits <= 64:
-        raise NotHeld(f"an integer has {bits} bits")
+        raise NotSupported(f"an integer has {bits} bits")
     return Piece({"type": type_}, bits, order)
 
 
 def _order(encoding: Element) -> str:
-    """Return the byte order of an encoding: an attribute in XTCE 1.2, a list of bytes in 1.1. Raises `NotHeld`."""
+    """Return the byte order of an encoding: an attribute in XTCE 1.2, a list of bytes in 1.1. Raises `NotSupported`."""
     order = encoding.get("byteOrder", "mostSignificantByteFirst")
     bytes_ = [
         number(element.get("byteSignificance", ""), "a byte") for element in encoding.iterfind("ByteOrderList/Byte")
@@ -313,20 +313,20 @@ def _order(encoding: Element) -> str:
     if order == "leastSignificantByteFirst" or (len(bytes_) > 1 and bytes_ == sorted(bytes_)):
         return LITTLE
     if order != "mostSignificantByteFirst" or bytes_ != sorted(bytes_, reverse=True):
-        raise NotHeld(f"its bytes are sent in the order {bytes_ or line(order, 60)}")
+        raise NotSupported(f"its bytes are sent in the order {bytes_ or line(order, 60)}")
     return BIG
 
 
 def _bytes(encoding: Element, type_: str) -> Piece:
-    """Return text or bytes of a fixed or variable length. Raises `NotHeld` for length prefixes and terminators."""
+    """Return text or bytes of a fixed or variable length. Raises `NotSupported` for length prefixes and terminators."""
     size = encoding.find("SizeInBits")
     if size is None:
         variable = encoding.find("Variable")
         return _open(type_, encoding if variable is None else variable)
     if size.find("LeadingSize") is not None:
-        raise NotHeld("it has a length prefix")
+        raise NotSupported("it has a length prefix")
     if (end := size.find("TerminationChar")) is not None and (end.text or "00").strip("0"):
-        raise NotHeld(f"it ends at the byte `{line(end.text, 20)}`")
+        raise NotSupported(f"it ends at the byte `{line(end.text, 20)}`")
     bits = fixed(size.find("Fixed")) if size.find("Fixed") is not None else fixed(size)
     if bits is None:
         return _open(type_, size)
@@ -335,16 +335,16 @@ def _bytes(encoding: Element, type_: str) -> Piece:
     if bits % 8 and type_ == "bytes":
         return _numbers("uint", bits, BIG)
     if bits < 8 or bits % 8:
-        raise NotHeld(f"text or bytes have {bits} bits")
+        raise NotSupported(f"text or bytes have {bits} bits")
     return Piece({"type": type_}, bits)
 
 
 def _open(type_: str, of: Element) -> Piece:
-    """Return text or bytes of a length that another parameter gives. Raises `NotHeld` if there is no parameter."""
+    """Return text or bytes of a length that another parameter gives. Raises `NotSupported` if there is no parameter."""
     dynamic = of.find("DynamicValue")
     name, slope, intercept = ("", 0, None) if dynamic is None else _adjusted(dynamic)
     if not name:
-        raise NotHeld("its size is neither a number nor that of a parameter")
+        raise NotSupported("its size is neither a number nor that of a parameter")
     plus = intercept // 8 if slope == 8 and intercept is not None and intercept % 8 == 0 else None
     return Piece({"type": type_, "size": "rest", "up_to": MOST_BYTES}, 0, size=name, plus=plus)
 
