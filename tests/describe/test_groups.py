@@ -12,7 +12,7 @@ from icdgen.describe.groups import (
     Flags,
     FrameBytes,
     Group,
-    Rounds,
+    LoopElements,
     Row,
     Thresholds,
     bytes_of_flags,
@@ -42,8 +42,8 @@ def scalars_of(group: Group) -> list[FieldDescription]:
     match group:
         case Flags() | Row():
             return list(group.fields)
-        case Rounds(array, _, rounds):
-            return list(array.elements[: rounds.elements])
+        case LoopElements(array, _, loop):
+            return list(array.elements[: loop.elements])
     return list(group.elements)
 
 
@@ -90,7 +90,7 @@ def test_a_loop_reads_all_elements_of_an_array_or_none(tmp_path):
         length=17,
     )
     halves, odd, words = map(loop_of, one.members)
-    assert halves is not None and (halves.in_round, halves.repetitions, halves.begin, halves.step) == (2, 4, 0, 1)
+    assert halves is not None and (halves.per_iteration, halves.iterations, halves.begin, halves.step) == (2, 4, 0, 1)
     assert odd is None and words is None  # an element is left over; words are copied
 
 

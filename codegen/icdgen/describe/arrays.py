@@ -1,7 +1,7 @@
 """Arrays that code reads and writes in a loop, or by a function for an element.
 
-These are arrays of structs, and arrays of numbers that are not whole words. Elements that do not end at a byte, such as flags
-or numbers of 12 bits, are taken in rounds: as many at once as are whole bytes. Every round has the same code.
+These are arrays of structs, and arrays of numbers that are not whole words. An iteration handles one element. Of elements that
+do not end at a byte, such as flags or numbers of 12 bits, it handles as many as are whole bytes.
 """
 
 from __future__ import annotations
@@ -63,52 +63,52 @@ def named_arrays(
             yield field, name
 
 
-class ElementRounds(NamedTuple):
-    """Rounds over an array, each of as many elements as are whole bytes. Elements behind the last round are not included."""
+class ArrayLoop(NamedTuple):
+    """Loop over an array. An iteration handles as many elements as are whole bytes. Elements behind the last one are left over."""
 
-    in_round: int  # elements of a round
-    repetitions: int  # rounds
-    begin: int  # first byte of the first round
-    step: int  # bytes of a round
+    per_iteration: int  # elements of an iteration
+    iterations: int
+    begin: int  # first byte of the first iteration
+    step: int  # bytes of an iteration
 
     @property
     def elements(self) -> int:
-        """Number of elements in all rounds."""
-        return self.repetitions * self.in_round
+        """Number of elements of all iterations."""
+        return self.iterations * self.per_iteration
 
     @property
     def length(self) -> int:
-        """Number of bytes of all rounds."""
-        return self.repetitions * self.step
+        """Number of bytes of all iterations."""
+        return self.iterations * self.step
 
     def members(self, first: FieldDescription, name: Callable[[int], str]) -> tuple[FieldDescription, ...]:
-        """Return the elements of a round, with bits counted from its first byte. ``name`` gives their names in code."""
+        """Return the elements of an iteration, with bits counted from its first byte. ``name`` gives their names in code."""
         elements = []
-        for index in range(self.in_round):
+        for index in range(self.per_iteration):
             element = first.moved(replace(first.model, at=index * first.model.bits, count=0))
             element.member = name(index)
             elements.append(element)
         return tuple(elements)
 
 
-def rounds_of(first: FieldDescription, count: int) -> ElementRounds | None:
-    """Return the rounds over an array of ``count`` elements, which starts with ``first``.
+def loop_from(first: FieldDescription, count: int) -> ArrayLoop | None:
+    """Return the loop over an array of ``count`` elements, which starts with ``first``.
 
     None if there are few elements, if the array does not start at a byte, or if its words are copied.
     """
     at, bits = first.model.at, first.model.bits
     if at % 8 or first.is_copied or first.model.conditions:
         return None
-    in_round = 8 // gcd(8, bits)  # the fewest elements that end at a byte
-    rounds = ElementRounds(in_round, count // in_round, at // 8, in_round * bits // 8)
-    return rounds if rounds.repetitions > 1 and rounds.elements >= MANY_ENOUGH else None
+    per_iteration = 8 // gcd(8, bits)  # the fewest elements that end at a byte
+    loop = ArrayLoop(per_iteration, count // per_iteration, at // 8, per_iteration * bits // 8)
+    return loop if loop.iterations > 1 and loop.elements >= MANY_ENOUGH else None
 
 
-def loop_of(field: FieldDescription) -> ElementRounds | None:
+def loop_of(field: FieldDescription) -> ArrayLoop | None:
     """Return the loop over all elements of an array; None if they are copied, or read and written one by one."""
     if field.element_struct is not None:
-        return ElementRounds(1, field.count, field.model.at // 8, field.element_struct.model.length)
+        return ArrayLoop(1, field.count, field.model.at // 8, field.element_struct.model.length)
     if not field.count or field.struct is not None:
         return None
-    rounds = rounds_of(field, field.count)
-    return rounds if rounds is not None and rounds.elements == field.count else None
+    loop = loop_from(field, field.count)
+    return loop if loop is not None and loop.elements == field.count else None

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from icdgen.describe.arrays import ElementRounds, loop_of, rounds_of
+from icdgen.describe.arrays import ArrayLoop, loop_from, loop_of
 from icdgen.describe.description import Composite, FieldDescription, Into
 
 Fields = tuple[FieldDescription, ...]
@@ -47,15 +47,15 @@ class Row(NamedTuple):
         return len(self.fields) * self.fields[0].model.bits // 8
 
 
-class Rounds(NamedTuple):
-    """Elements of an array that a loop reads and writes in rounds. ``first`` is the first element."""
+class LoopElements(NamedTuple):
+    """Elements of an array that a loop reads and writes. ``first`` is the first element."""
 
     array: FieldDescription
     first: FieldDescription
-    rounds: ElementRounds
+    loop: ArrayLoop
 
 
-Group = Flags | Row | Rounds | FieldDescription
+Group = Flags | Row | LoopElements | FieldDescription
 
 
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
@@ -77,10 +77,10 @@ def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
             result.append(array)
             index += array.count
             continue
-        rounds = _rounds(fields[index])
-        if rounds is not None:
-            result.append(rounds)
-            index += rounds.rounds.elements
+        in_loop = _loop_elements(fields[index])
+        if in_loop is not None:
+            result.append(in_loop)
+            index += in_loop.loop.elements
             continue
         group = _flags(fields, positions, index, thresholds.flags) or _row(fields, index, thresholds.row)
         result.append(group or fields[index])
@@ -88,10 +88,10 @@ def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
     return result
 
 
-def _rounds(first: FieldDescription) -> Rounds | None:
+def _loop_elements(first: FieldDescription) -> LoopElements | None:
     array = first.array if first.index == 0 else None
-    rounds = rounds_of(first, array.count) if array is not None else None
-    return None if array is None or rounds is None else Rounds(array, first, rounds)
+    loop = loop_from(first, array.count) if array is not None else None
+    return None if array is None or loop is None else LoopElements(array, first, loop)
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:

@@ -12,9 +12,9 @@ from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.arrays import ElementRounds, StructArray
+from icdgen.describe.arrays import ArrayLoop, StructArray
 from icdgen.describe.description import Composite, VariablePartDescription
-from icdgen.describe.groups import Flags, Group, Rounds, Row, Thresholds
+from icdgen.describe.groups import Flags, Group, LoopElements, Row, Thresholds
 from icdgen.describe.lengths import ElementBytes
 
 THRESHOLDS = Thresholds(flags=(8, 4), row=8)
@@ -40,10 +40,10 @@ class Structs(NamedTuple):
 Groups = list[Group | Structs]
 
 
-def members_of_round(group: Rounds) -> tuple[FieldDescription, ...]:
-    """Return the elements of a round, the first of which is ``element`` in the array."""
+def elements_of_iteration(group: LoopElements) -> tuple[FieldDescription, ...]:
+    """Return the elements of an iteration, the first of which is ``element`` in the array."""
     name = group.array.member
-    return group.rounds.members(group.first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
+    return group.loop.members(group.first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
 
 
 def macro_of(group: Flags | Row) -> str:
@@ -137,10 +137,10 @@ def there(part: VariablePartDescription) -> str:
     return count + (f" + {part.model.fewest}u" if part.model.fewest else "")
 
 
-def place(bytes: ElementBytes, in_round: int = 1) -> str:
-    """Return the first byte of ``element``, or of the round that starts with it."""
+def place(bytes: ElementBytes, per_iteration: int = 1) -> str:
+    """Return the first byte of ``element``, or of the iteration that starts with it."""
     begin, step = bytes
-    number = "element" if in_round == 1 else f"(element / {in_round}u)"
+    number = "element" if per_iteration == 1 else f"(element / {per_iteration}u)"
     offset = number if step == 1 else f"{number} * {step}u"
     return f"{begin}u + {f'({offset})' if step > 1 else offset}" if begin else offset
 
@@ -161,19 +161,18 @@ def miscount(part: VariablePartDescription, counter: str = "") -> str:
     return either(tests) if tests else ""
 
 
-def in_rounds(rounds: ElementRounds, const: str, lines: Iterable[str]) -> str:
-    """Return the loop around the lines of a round. ``part`` points to the bytes of the round, ``const`` if they are read."""
-    pointer = (
-        f"{const}uint8_t *const part = &buffer[{place(ElementBytes(rounds.begin, rounds.step), rounds.in_round)}];"
-    )
+def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> str:
+    """Return the loop around the lines of an iteration. ``part`` points to its bytes, ``const`` if they are read."""
+    begin = place(ElementBytes(array_loop.begin, array_loop.step), array_loop.per_iteration)
+    pointer = f"{const}uint8_t *const part = &buffer[{begin}];"
     body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))
-    return f"{loop('element', f'{rounds.elements}u', rounds.in_round)}\n{body}{STEP}}}"
+    return f"{loop('element', f'{array_loop.elements}u', array_loop.per_iteration)}\n{body}{STEP}}}"
 
 
-def _group(group: Flags | Row | Rounds | Structs, message: Composite[Any]) -> str:
-    if isinstance(group, Rounds):
-        lines = (number(element, f"message->{element.member}", "part") for element in members_of_round(group))
-        return in_rounds(group.rounds, "const ", lines)
+def _group(group: Flags | Row | LoopElements | Structs, message: Composite[Any]) -> str:
+    if isinstance(group, LoopElements):
+        lines = (number(element, f"message->{element.member}", "part") for element in elements_of_iteration(group))
+        return loop_over_bytes(group.loop, "const ", lines)
     if isinstance(group, Structs):
         return of_array(group.array, group.reading)
     members = [field.member for field in group.fields]

@@ -9,17 +9,17 @@ from icdgen.backends.c.decoding import (
     Groups,
     Structs,
     elements,
+    elements_of_iteration,
     in_bytes,
-    in_rounds,
+    loop_over_bytes,
     macro_of,
-    members_of_round,
     of_array,
 )
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, VariablePartDescription
-from icdgen.describe.groups import Flags, FrameBytes, Rounds, Row
+from icdgen.describe.groups import Flags, FrameBytes, LoopElements, Row
 
 
 def size(message: MessageDescription) -> list[str]:
@@ -83,11 +83,11 @@ class _Frame:
             for piece in field.pieces:
                 self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _add_group(self, group: Flags | Row | Rounds | Structs) -> None:
-        if isinstance(group, Rounds):
-            rounds = group.rounds
-            lines = _Frame(self.message, list(members_of_round(group)), rounds.step, "part").in_order()
-            self.bytes.add_whole(rounds.begin, rounds.length, in_rounds(rounds, "", lines))
+    def _add_group(self, group: Flags | Row | LoopElements | Structs) -> None:
+        if isinstance(group, LoopElements):
+            loop = group.loop
+            lines = _Frame(self.message, list(elements_of_iteration(group)), loop.step, "part").in_order()
+            self.bytes.add_whole(loop.begin, loop.length, loop_over_bytes(loop, "", lines))
             return
         if isinstance(group, Structs):
             self.bytes.add_whole(group.array.begin, group.length, of_array(group.array, group.writing))

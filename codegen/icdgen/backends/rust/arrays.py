@@ -1,4 +1,4 @@
-"""Arrays that a function per element, or per round of elements, reads and writes; and the names of these functions."""
+"""Arrays that a function per element, or per group of elements, reads and writes; and the names of these functions."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ def named(composite: Composite[Any]) -> Iterator[tuple[FieldDescription, str]]:
 def helper_of(field: FieldDescription) -> str:
     """Return the helper of the support module that calls the function for all elements; empty without such a function."""
     loop = loop_of(field)
-    return "" if loop is None else "rounds" if loop.in_round > 1 else "each"
+    return "" if loop is None else "rounds" if loop.per_iteration > 1 else "each"
 
 
 def reader(name: str) -> str:
-    """Return the name of the function that reads an element or a round of an array."""
+    """Return the name of the function that reads an element or an iteration of an array."""
     return f"read_{name}"
 
 
 def writer(name: str) -> str:
-    """Return the name of the function that writes an element or a round of an array."""
+    """Return the name of the function that writes an element or an iteration of an array."""
     return f"write_{name}"

@@ -9,7 +9,7 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust import arrays, bits
 from icdgen.backends.rust.names import one_type, own_name, struct_path
 from icdgen.describe import FieldDescription, StructDescription
-from icdgen.describe.arrays import ElementRounds, loop_of
+from icdgen.describe.arrays import ArrayLoop, loop_of
 from icdgen.describe.description import Composite, Into
 from icdgen.describe.groups import bytes_of_flags
 
@@ -18,7 +18,7 @@ DEPTH = 2
 
 
 def functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
-    """List the functions of a message, for an element of each array, or for a round of elements."""
+    """List the functions of a message, for an element of each array, or for a group of elements."""
     for field, name in arrays.named(composite):
         shared = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
         loop = loop_of(field)
@@ -36,18 +36,18 @@ def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
     return {"step": step, "type": type, "tables": sorted(tables), "value": value, "writings": writings}
 
 
-def _of_numbers(field: FieldDescription, rounds: ElementRounds) -> dict[str, object]:
-    type, pad, many = one_type(field), STEP * DEPTH, rounds.in_round > 1
-    members = rounds.members(field, lambda element: f"part[{element}]" if many else "part")
+def _of_numbers(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
+    type, pad, many = one_type(field), STEP * DEPTH, loop.per_iteration > 1
+    members = loop.members(field, lambda element: f"part[{element}]" if many else "part")
     if many:
-        type = f"[{type}; {rounds.in_round}]"
+        type = f"[{type}; {loop.per_iteration}]"
         rows = "".join(f"{pad}{STEP}{bits.reading(element, set(), DEPTH + 1)},\n" for element in members)
         value = f"{pad}[\n{rows}{pad}]"
     else:
         value = bits.reading(members[0], set(), DEPTH - 1)  # a block is the body of the function
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
     writings = [line for element in members for line in bits.writing(element, "")]
-    return {"step": rounds.step, "type": type, "tables": (), "value": value, "writings": writings}
+    return {"step": loop.step, "type": type, "tables": (), "value": value, "writings": writings}
 
 
 def literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:
