@@ -7,7 +7,8 @@ position of a scalar into runs of bits within bytes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Literal, TypeAlias
+from operator import attrgetter
+from typing import Any, Literal, TypeAlias
 
 from icdgen.frozen import dataclass
 from icdgen.icd.curve import Curve
@@ -73,100 +74,33 @@ Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
 """Role of a scalar in a frame. A `count` is a number of elements without bits: it follows from the length of the frame."""
 
 
+def forwarded(path: str) -> Any:
+    """Return a property with the value of an attribute of an attribute: ``scalar.unit``."""
+    return property(attrgetter(path))
+
+
 class OfScalar:
-    """Base of classes that have a scalar. Passes on the attributes of the scalar that give a raw value its meaning."""
+    """Base of classes that have a scalar, with the attributes of the scalar that give a raw value its meaning."""
 
     scalar: Scalar
-
-    @property
-    def type(self) -> str:
-        """See `Scalar.type`."""
-        return self.scalar.type
-
-    @property
-    def enum(self) -> Enum | None:
-        """See `Scalar.enum`."""
-        return self.scalar.enum
-
-    @property
-    def unit(self) -> Unit | None:
-        """See `Scalar.unit`."""
-        return self.scalar.unit
-
-    @property
-    def unit_symbol(self) -> str:
-        """See `Scalar.unit_symbol`."""
-        return self.scalar.unit_symbol
-
-    @property
-    def formula(self) -> str:
-        """See `Scalar.formula`."""
-        return self.scalar.formula
-
-    @property
-    def scale(self) -> Scale | None:
-        """See `Scalar.scale`."""
-        return self.scalar.scale
-
-    @property
-    def curve(self) -> Curve | None:
-        """See `Scalar.curve`."""
-        return self.scalar.curve
-
-    @property
-    def const(self) -> int | None:
-        """See `Scalar.const`."""
-        return self.scalar.const
-
-    @property
-    def special(self) -> tuple[Special, ...]:
-        """See `Scalar.special`."""
-        return self.scalar.special
-
-    @property
-    def limits(self) -> Limits | None:
-        """See `Scalar.limits`."""
-        return self.scalar.limits
-
-    @property
-    def display(self) -> Display | None:
-        """See `Scalar.display`."""
-        return self.scalar.display
-
-    @property
-    def is_bytes(self) -> bool:
-        """See `Scalar.is_bytes`."""
-        return self.scalar.is_bytes
-
-    @property
-    def is_signed(self) -> bool:
-        """See `Scalar.is_signed`."""
-        return self.scalar.is_signed
-
-    @property
-    def has_formula(self) -> bool:
-        """See `Scalar.has_formula`."""
-        return self.scalar.has_formula
-
-    @property
-    def is_invertible(self) -> bool:
-        """See `Scalar.is_invertible`."""
-        return self.scalar.is_invertible
-
-    @property
-    def raw_min(self) -> int:
-        """See `Scalar.raw_min`."""
-        return self.scalar.raw_min
-
-    @property
-    def raw_max(self) -> int:
-        """See `Scalar.raw_max`."""
-        return self.scalar.raw_max
-
-    @property
-    def settable_raws(self) -> tuple[int, int]:
-        """See `Scalar.settable_raws`."""
-        return self.scalar.settable_raws
+    type: str = forwarded("scalar.type")
+    enum: Enum | None = forwarded("scalar.enum")
+    unit: Unit | None = forwarded("scalar.unit")
+    unit_symbol: str = forwarded("scalar.unit_symbol")
+    formula: str = forwarded("scalar.formula")
+    scale: Scale | None = forwarded("scalar.scale")
+    curve: Curve | None = forwarded("scalar.curve")
+    const: int | None = forwarded("scalar.const")
+    special: tuple[Special, ...] = forwarded("scalar.special")
+    limits: Limits | None = forwarded("scalar.limits")
+    display: Display | None = forwarded("scalar.display")
+    is_bytes: bool = forwarded("scalar.is_bytes")
+    is_signed: bool = forwarded("scalar.is_signed")
+    has_formula: bool = forwarded("scalar.has_formula")
+    is_invertible: bool = forwarded("scalar.is_invertible")
+    raw_min: int = forwarded("scalar.raw_min")
+    raw_max: int = forwarded("scalar.raw_max")
+    settable_raws: tuple[int, int] = forwarded("scalar.settable_raws")
 
 
 @dataclass(frozen=True, eq=False)
