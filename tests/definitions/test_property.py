@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from icdgen.definitions import frames, wording
 from icdgen.definitions.enumerations import Enumerations, members
-from icdgen.definitions.model import Definitions, raws
+from icdgen.definitions.model import Definitions
 from icdgen.icd.formula import parse
+from icdgen.icd.layout import integer_range
 
 PLACES = st.builds(frames.Place, st.integers(0, 480), st.integers(1, 32), st.sampled_from([frames.LITTLE, frames.BIG]))
 
@@ -43,7 +44,7 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
     field, enums, notes = {"type": kind, **unit, **formula, **limits}, Enumerations(), Definitions("")
     enums.hold(field, bits, choices, "Gear", "Status", "message `Status`, `Gear`", notes)
     declared = {one["name"]: one["members"] for one in enums.declared()}
-    first, last = raws(bits, is_signed)
+    first, last = integer_range(bits, is_signed)
     possible = {value for value in choices if first <= value <= last}
     if field["type"] == "enum":
         named = [value for one in declared["Gear"] for value in range(one["value"], one.get("to", one["value"]) + 1)]

@@ -11,9 +11,10 @@ from typing import Any
 from icdgen.definitions import can_accounting, dbc, frames, safe_xml
 from icdgen.definitions.accounting import Account, AccountedObject
 from icdgen.definitions.enumerations import Enumerations
-from icdgen.definitions.model import Definitions, Item, Network, NotSupported, raws, unreadable
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, unreadable
 from icdgen.definitions.wording import formula, limits, line, node_name, printed, summary, unit
 from icdgen.icd.fmt.emit import Spelled
+from icdgen.icd.layout import integer_range
 from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
 
 BEYOND_FRAME = "IMP072"
@@ -283,7 +284,7 @@ def _range(signal: Any) -> tuple[int, int]:
     """Return the smallest and largest raw value; for floats, approximate bounds."""
     if signal.is_float:
         return -(2**127), 2**127
-    return raws(signal.length, signal.is_signed)
+    return integer_range(signal.length, signal.is_signed)
 
 
 def _condition(signal: Any, signals: list[Any]) -> Item:
@@ -298,7 +299,7 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
         raise NotSupported(f"it depends on `{name}`, which is optional itself")
     if multiplexer.is_float or (multiplexer.scale, multiplexer.offset) != (1, 0):
         raise NotSupported(f"it depends on `{name}`, which is scaled or not an integer")
-    first, last = raws(multiplexer.length, multiplexer.is_signed)
+    first, last = integer_range(multiplexer.length, multiplexer.is_signed)
     values = sorted(set(signal.multiplexer_ids))
     within = [value for value in values if first <= value <= last]
     if not within:

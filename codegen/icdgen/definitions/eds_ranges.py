@@ -8,8 +8,9 @@ from xml.etree.ElementTree import Element
 
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_values import evaluate
-from icdgen.definitions.model import Item, raws
+from icdgen.definitions.model import Item
 from icdgen.definitions.wording import limits
+from icdgen.icd.layout import integer_range
 
 _TYPES = {  # rangeType: for low and high end whether it is included; None without an end
     "inclusivemininclusivemax": (True, True), "inclusiveminexclusivemax": (True, False),
@@ -76,7 +77,7 @@ def _end(text: str) -> Fraction | None:
 def limited(item: Item, bits: int, of: Range) -> Item:
     """Return the limit keys of a field. Limits beyond the values of its type and bits are left out."""
     if item["type"] in ("uint", "int"):
-        first, last = raws(bits, item["type"] == "int")
+        first, last = integer_range(bits, item["type"] == "int")
         return dict(limits(*of.of_integers(), Fraction(first), Fraction(last)))
     result: Item = {}
     if item["type"] == "float" and (of.low is None or of.high is None or of.low <= of.high):

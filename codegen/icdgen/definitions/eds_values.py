@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from icdgen.definitions.model import NotSupported, raws
+from icdgen.definitions.model import NotSupported
 from icdgen.definitions.wording import line
+from icdgen.icd.layout import integer_range
 
 UNSIGNED, TWOS = "unsigned", "twosComplement"
 CODES = (UNSIGNED, TWOS, "onesComplement", "signMagnitude", "BCD", "packedBCD")
@@ -125,7 +126,7 @@ def coded(value: int, code: str, bits: int) -> int | None:
     The raw value is signed for two's complement. For other encodings it consists of the transmitted bits.
     """
     if code in (TWOS, UNSIGNED):
-        low, high = raws(bits, code == TWOS)
+        low, high = integer_range(bits, code == TWOS)
         return value if low <= value <= high else None
     if code in ("BCD", "packedBCD"):
         width = 8 if code == "BCD" else 4

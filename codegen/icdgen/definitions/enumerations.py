@@ -7,8 +7,9 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from icdgen.definitions.model import Definitions, Item, raws
+from icdgen.definitions.model import Definitions, Item
 from icdgen.definitions.wording import line
+from icdgen.icd.layout import integer_range
 
 SAME_NAME = "IMP073"
 BEYOND = "IMP074"
@@ -70,7 +71,7 @@ def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
 
 def _value_range(item: Item, bits: int) -> tuple[int, int]:
     """Return the first and last value of a number without a formula, within its limits."""
-    first, last = raws(bits, item["type"] == "int")
+    first, last = integer_range(bits, item["type"] == "int")
     low, high = item.get("min", first), item.get("max", last)
     if "above" in item:
         low = max(low, math.floor(item["above"]) + 1)
@@ -141,7 +142,7 @@ class Enumerations:
         """
         if to["type"] not in ("uint", "int"):
             return
-        named = members(choices, *raws(bits, to["type"] == "int"), where, notes)
+        named = members(choices, *integer_range(bits, to["type"] == "int"), where, notes)
         if is_enumeration(to, bits, named):
             for key in _OF_NUMBERS:
                 to.pop(key, None)

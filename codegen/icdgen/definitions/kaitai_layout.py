@@ -12,9 +12,10 @@ from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, l
 from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, Undecided, placed
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Item, NotSupported, raws
+from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line, summary, unit
+from icdgen.icd.layout import integer_range
 from icdgen.icd.located import Map
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS, REST
 
@@ -219,7 +220,7 @@ class Layout(Container[Part]):
         equal = valid.get("eq") if isinstance(valid, Map) else valid
         all_bits = (1 << part.bits) - 1
         if isinstance(valid, Map) and item["type"] in ("uint", "int"):
-            low, high = raws(part.bits, item["type"] == "int")
+            low, high = integer_range(part.bits, item["type"] == "int")
             item |= {
                 key: valid[key] for key in ("min", "max") if type(valid.get(key)) is int and low <= valid[key] <= high
             }

@@ -14,9 +14,10 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.enumerations import BEYOND, is_enumeration, members, special
-from icdgen.definitions.model import Definitions, Item, Network, NotSupported, raws, unreadable
+from icdgen.definitions.model import Definitions, Item, Network, NotSupported, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
 from icdgen.icd.fmt.emit import Spelled
+from icdgen.icd.layout import integer_range
 
 TWICE = "IMP077"
 MOST_FILES = 100
@@ -271,7 +272,7 @@ def _formula(factor: str, multiplier: str) -> str:
 
 def _name_values(item: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
     """Add an enumeration to an integer field, or its members as special values if the field cannot have all of them."""
-    low, high = raws(bits, item["type"] == "int")
+    low, high = integer_range(bits, item["type"] == "int")
     named = [
         member for member in enum["members"] if low <= member["value"] and member.get("to", member["value"]) <= high
     ]
@@ -298,7 +299,7 @@ def _invalid(text: str, kind: str, bits: int) -> Item:
     value = (1 << int(most[2]) - (not most[1])) - 1 if most else _number(text)
     if value is None:
         return {}
-    low, high = raws(bits, kind == "int")
+    low, high = integer_range(bits, kind == "int")
     return {"value": value, "meaning": "not known"} if kind == "float" or low <= value <= high else {}
 
 

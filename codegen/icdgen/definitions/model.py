@@ -204,11 +204,6 @@ def unreadable(file: str, message: str, help: str = "", line: int = 1) -> Findin
     return Findings([Finding(UNREADABLE, message, Place(file, line), help)])
 
 
-def raws(bits: int, is_signed: bool) -> tuple[int, int]:
-    """Return the smallest and largest raw value of an integer."""
-    return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
-
-
 def replace_keys(item: Item, keys: Item) -> Item:
     """Replace the keys of a mapping and return it.
 

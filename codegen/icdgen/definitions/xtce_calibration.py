@@ -8,10 +8,11 @@ from fractions import Fraction
 from typing import Any
 from xml.etree.ElementTree import Element
 
-from icdgen.definitions.model import NotSupported, raws
+from icdgen.definitions.model import NotSupported
 from icdgen.definitions.wording import line, printed
 from icdgen.icd import curve
 from icdgen.icd.formula import FormulaError
+from icdgen.icd.layout import integer_range
 
 NUMBER = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)\s*\Z")
 _INTEGER = re.compile(r"\s*([-+]?[0-9]{1,40})\s*\Z")
@@ -81,7 +82,7 @@ def simplified_table(table: dict[str, Any], bits: int, is_signed: bool) -> dict[
 
     Horizontal segments at the ends become `outside: clamp`. A table that covers all values needs no `outside`.
     """
-    low, high = raws(bits, is_signed)
+    low, high = integer_range(bits, is_signed)
     points = list(table["points"])
     (first, *_), (last, *_) = points[0], points[-1]
     if not (Fraction(first) <= low and high <= Fraction(last)):

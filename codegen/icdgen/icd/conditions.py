@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from icdgen.icd.enumeration import Enum
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import Condition, LayoutNode
+from icdgen.icd.layout import Condition, LayoutNode, integer_range
 from icdgen.icd.located import Map, unread
 from icdgen.icd.roles import CONDITION, INTEGERS, reasons_against
 from icdgen.icd.suggestions import suggestion
@@ -108,18 +108,13 @@ def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | No
             return next((member.value for member in members if member.name == value and member.to is None), None)
         if type(value) is not int:
             return None
-        low, high = _raw_range(bits, enum is not None and enum.signed)
+        low, high = integer_range(bits, enum is not None and enum.signed)
         return value if low <= value <= high else None
     # In YAML a flag is true, false, 0 or 1, and in Python True is an int.
     if kind == "bool":
         return int(value) if value in (0, 1) and isinstance(value, int) else None
-    low, high = _raw_range(bits, kind == "int")
+    low, high = integer_range(bits, kind == "int")
     return value if type(value) is int and low <= value <= high else None
-
-
-def _raw_range(bits: int, is_signed: bool) -> tuple[int, int]:
-    """Return the smallest and the largest raw value."""
-    return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
 def _is_range(field: Map, value: object, enums: Mapping[str, Enum]) -> bool:
@@ -136,7 +131,7 @@ def _possible_values(field: Map, enums: Mapping[str, Enum]) -> str:
         enum = enums.get(field.get("enum", ""))
         names = ", ".join(f"`{member.name}`" for member in enum.members[:5]) if enum else "nothing"
         return f"has a value of `{field.get('enum')}`: {names}{' ...' if enum and len(enum.members) > 5 else ''}"
-    low, high = _raw_range(field["bits"], field["type"] == "int")
+    low, high = integer_range(field["bits"], field["type"] == "int")
     return f"is {low:,} to {high:,}"
 
 

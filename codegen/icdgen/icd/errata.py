@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Set
 
 from icdgen.diagnostics import Finding, Fix, Place
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.located import Map, Seq, unread, yaml_text
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
@@ -221,8 +221,8 @@ def _change(target: Map, changes: Map) -> None:
 def _stale(entry: Map, target: Map, printed: Map) -> Finding:
     """Return the finding for an entry whose `printed` differs from the ICD."""
     key, value = next((key, value) for key, value in printed.items() if not _same(target.get(key), value))
-    stale = f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {_show(value)}`"
-    now = f"the ICD now has `{key}: {_show(target.get(key))}` ({target.at(key)})"
+    stale = f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {yaml_text(value)}`"
+    now = f"the ICD now has `{key}: {yaml_text(target.get(key))}` ({target.at(key)})"
     return Finding(STALE, f"{stale}, {now}", printed.at(key), _AGAIN)
 
 
@@ -248,10 +248,3 @@ def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
     candidates = (name for name in names if isinstance(name, str))
     help, fix = suggestion(str(where.get(key, "")), candidates, "names are the manual's, to the letter")
     return Finding(NOWHERE, f"there is no {target}", where.place, help, fix=Fix(where.at(key), fix) if fix else None)
-
-
-def _show(value: object) -> str:
-    """Return a value as YAML; ``(absent)`` for a missing key."""
-    if value is None:
-        return "(absent)"
-    return str(value).lower() if isinstance(value, bool) else str(value)

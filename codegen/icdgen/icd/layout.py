@@ -112,6 +112,11 @@ class LayoutNode:
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
+def integer_range(bits: int, is_signed: bool) -> tuple[int, int]:
+    """Return the smallest and largest value of an integer of this width."""
+    return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scalar(LayoutNode):
     """A number, flag, enumeration value, byte string or text of `bits` bits."""

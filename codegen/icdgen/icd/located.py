@@ -84,6 +84,13 @@ def unread() -> Map:
     return _UNREAD
 
 
+def yaml_text(value: object) -> str:
+    """Return a scalar as in YAML; ``(absent)`` for None."""
+    if value is None:
+        return "(absent)"
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
 def plain(value: Any) -> Any:
     """Return a copy of a tree as plain dicts and lists, without places."""
     if isinstance(value, dict):

@@ -11,8 +11,8 @@ from icdgen.describe.numbers import length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.lines import lines as icd_lines
+from icdgen.icd.located import yaml_text
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node, Struct
-from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.wording import count
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
@@ -65,7 +65,7 @@ def _nodes(icd: Icd, width: int | None) -> str:
                 str(sum(message.kind == kind for message in node.messages))
                 for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)
             ),
-            str(sum(map(_field_count, node.messages))),
+            str(sum(message.field_count for message in node.messages)),
             str(sum(not erratum.is_note for erratum in node.errata)),
             str(sum(erratum.is_note for erratum in node.errata)),
             ", ".join(node.includes),
@@ -98,7 +98,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
                 message.kind,
                 message.name,
                 str(layout.longest) if len(layout.lengths) == 1 else f"{layout.shortest} to {layout.longest}",
-                str(_field_count(message)),
+                str(message.field_count),
                 _number(message.table),
                 message.group,
                 message.node if message.node != node.name else "",
@@ -131,11 +131,6 @@ def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) 
         else:
             raise
         return "\n".join(texts)
-
-
-def _field_count(message: Message) -> int:
-    """Return the number of fields, each array element separately."""
-    return sum(not field.is_count for field in scalars_in(message.layout))
 
 
 def _struct(struct: Struct, node: Node, width: int | None) -> str:
@@ -197,7 +192,7 @@ def _erratum(erratum: Erratum, width: int | None) -> str:
     lines = [f"{erratum.label} {erratum.id}{erratum.sureness}: {erratum.title}", erratum.why, erratum.evidence]
     if erratum.changes:
         printed = dict(erratum.printed)
-        changes = [f"{key} {_value(printed.get(key))} -> {_value(value)}" for key, value in erratum.held]
+        changes = [f"{key} {yaml_text(printed.get(key))} -> {yaml_text(value)}" for key, value in erratum.held]
         lines.append(f"Printed and held: {', '.join(changes)}")
     if erratum.tables:
         lines.append(f"Tables: {', '.join(map(str, erratum.tables))}")
@@ -216,10 +211,3 @@ def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
 
 def _number(value: int | None) -> str:
     return "" if value is None else str(value)
-
-
-def _value(value: object) -> str:
-    """Return a value as YAML; ``(absent)`` for None."""
-    if value is None:
-        return "(absent)"
-    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from icdgen.icd import source
-from icdgen.icd.located import Map, Seq
+from icdgen.icd.located import Seq, plain
 
 ORDER = (
     "rule", "like", "tables", "what", "message", "columns", "lines", "melt", "each", "map", "set", "skip", "stop", "keep", "join",
@@ -66,7 +66,7 @@ def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
         return "".join(lines) + f"rules:\n{block}"
     if not rules or tree.key_at("rules").line == rules.item_at(0).line:  # in one line, as `[]` or `[{...}]`
         first = tree.key_at("rules").line - 1
-        others = [text_of_rule(_plain(entry)) for entry in rules]
+        others = [text_of_rule(plain(entry)) for entry in rules]
         others[index if index is not None else len(others) : (index + 1) if index is not None else len(others)] = [
             block
         ]
@@ -93,12 +93,6 @@ def _last_line(lines: list[str], start: int, end: int) -> int:
     return end
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, Map):
-        return {key: _plain(entry) for key, entry in value.items()}
-    return [_plain(entry) for entry in value] if isinstance(value, Seq) else value
-
-
 def with_node(text: str, node: dict[str, Any]) -> str:
     """Return the text with another `node:` section. Raises `Findings` if the text is no YAML."""
     tree = source.parse(text.encode("utf-8"), "profile")
@@ -117,11 +111,11 @@ def rules_of(text: str) -> list[dict[str, Any]]:
     """Return the rules of a profile as plain mappings. Raises `Findings` if the text is no YAML."""
     tree = source.parse(text.encode("utf-8"), "profile")
     rules = tree.get("rules")
-    return [_plain(rule) for rule in rules] if isinstance(rules, Seq) else []
+    return [plain(rule) for rule in rules] if isinstance(rules, Seq) else []
 
 
 def parse_rule(text: str) -> dict[str, Any]:
     """Parse a rule in YAML, with or without the dash of a list. Raises `Findings`."""
     stripped = re.sub(r"\A(\s*)-(?= )", r"\1 ", text)
     tree = source.parse(stripped.encode("utf-8"), "rule")
-    return {key: _plain(value) for key, value in tree.items()}
+    return {key: plain(value) for key, value in tree.items()}
