@@ -54,7 +54,7 @@ class EnumDescription(Named[Enum]):
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
         """Members in the order of the manual. A range has two, its ends, each with a name of its own."""
-        return tuple(MemberDescription(end, self) for member in self.model.members for end in member.ends)
+        return tuple(MemberDescription(end, self, member) for member in self.model.members for end in member.ends)
 
     @cached_property
     def ranges(self) -> tuple[Member, ...]:
@@ -85,11 +85,16 @@ class EnumDescription(Named[Enum]):
 
 
 class MemberDescription(Named[Member]):
-    """Value of an enumeration that has a name."""
+    """Value of an enumeration that has a name: a member, or the first or last value of a range (``declared``)."""
 
-    def __init__(self, member: Member, enum: EnumDescription) -> None:
+    def __init__(self, member: Member, enum: EnumDescription, declared: Member) -> None:
         super().__init__(member, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
-        self._enum = enum
+        self._enum, self._declared = enum, declared
+
+    @property
+    def part(self) -> Member:
+        """Member that the ICD declares."""
+        return self._declared
 
     @cached_property
     def comment(self) -> Comment:

@@ -6,9 +6,11 @@ from typing import Generic, TypeVar
 
 from icdgen import naming
 from icdgen.icd.identifiers import Identifier
+from icdgen.icd.layout import LayoutNode
 from icdgen.icd.model import Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 
+Part = Message | Struct | LayoutNode | Enum | Member
 Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 
 
@@ -24,6 +26,13 @@ class Named(Generic[Model]):
         self.words = naming.words(model.identifier or model.name, vocabulary)
         self.name = naming.snake(self.words)
 
+    @property
+    def part(self) -> Part:
+        """Object of the model that the names of the part identify."""
+        assert not isinstance(self.model, NodePlace)
+        return self.model
+
     def identifier(self, scope: str, name: str, role: str = "") -> Identifier:
         """Return a name that generated code declares for the part."""
-        return Identifier(scope, name, self.owner, self.model.source, role)
+        part = self.part
+        return Identifier(scope, name, self.owner, part.source, role, part)

@@ -98,6 +98,12 @@ class MessageDescription(Composite[Message]):
         return tuple(Id(name, value, comment) for name, value, comment in ids if value is not None)
 
     @property
+    def directions(self) -> tuple[str, ...]:
+        """Directions in which it is sent: ``telecommand``, ``telemetry``, or both for a configuration."""
+        ids = {"telecommand": self.model.telecommand_id, "telemetry": self.model.telemetry_id}
+        return tuple(direction for direction, id in ids.items() if id is not None)
+
+    @property
     def telecommand_id_name(self) -> str:
         """Name of the id under which it is sent: ``id`` or ``set_id``."""
         return "id" if self.model.id is not None else "set_id"
@@ -172,7 +178,7 @@ class NodeDescription:
 
     def identifier(self, scope: str, name: str, role: str = "") -> Identifier:
         """Return a name that generated code declares for the node."""
-        return Identifier(scope, name, f"node `{self.name}`", self.model.source, role)
+        return Identifier(scope, name, f"node `{self.name}`", self.model.source, role, self.model)
 
     @cached_property
     def messages(self) -> tuple[MessageDescription, ...]:
@@ -235,7 +241,7 @@ class NodeDescription:
 
     def shares_ids(self, direction: str) -> bool:
         """Return whether messages of the direction share an id."""
-        return any(under_id.is_shared for under_id in self._ids[direction])
+        return direction in self._directions_with_shared_ids
 
     def shares_id(self, direction: str, message: MessageDescription) -> bool:
         """Return whether a message shares its id with another one of the direction."""
@@ -254,6 +260,10 @@ class NodeDescription:
             "telecommand": tuple(self._under("set_id", id, variants) for id, variants in telecommands.items()),
             "telemetry": tuple(self._under("get_id", id, variants) for id, variants in telemetry.items()),
         }
+
+    @cached_property
+    def _directions_with_shared_ids(self) -> frozenset[str]:
+        return frozenset(direction for direction, ids in self._ids.items() if any(under.is_shared for under in ids))
 
     def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> MessagesOfId:
         candidates = []
@@ -304,6 +314,18 @@ class Description:
     def node(self, node: str | Node) -> NodeDescription:
         """Return the description of a node, by its name or by the node itself. Raises `KeyError`."""
         return self._nodes[node if isinstance(node, str) else node.name]
+
+    def users_of(self, node: Node) -> tuple[NodeDescription, ...]:
+        """Return the nodes that can use what a node declares: those that include it, and the node itself."""
+        return self._users.get(node.name, ())
+
+    @cached_property
+    def _users(self) -> dict[str, tuple[NodeDescription, ...]]:
+        users: dict[str, tuple[NodeDescription, ...]] = {}
+        for user in self.nodes:
+            for name in dict.fromkeys((*(node.name for node in self.icd.included(user.model)), user.name)):
+                users[name] = (*users.get(name, ()), user)
+        return users
 
     def message(self, message: Message) -> MessageDescription:
         """Return the description of a message, whichever node uses it."""

@@ -12,7 +12,7 @@ from icdgen.describe.integer_scale import IntegerScale, integer_scale
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import Orders
+from icdgen.icd.layout import LayoutNode, Orders
 from icdgen.icd.places import NodePlace
 from icdgen.once import cached_property
 
@@ -50,6 +50,11 @@ class ScalarDescription(Named[NodePlace]):
         # Names carry the unit, so that code with a wrong unit is visible where it is written.
         unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
         self.physical_name = f"{self.declared_name}_{unit}"
+
+    @property
+    def part(self) -> LayoutNode:
+        """Line of the ICD that declares it; of an element, the line of its array."""
+        return self.model.node
 
     @property
     def arithmetic(self) -> Arithmetic | None:

@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, FieldDescription
 from icdgen.describe.enums import EnumDescription, MemberDescription
-from icdgen.describe.nodes import Description, Direction, MessageDescription, NodeDescription
+from icdgen.describe.nodes import Description, MessageDescription, NodeDescription
 from icdgen.icd.identifiers import Identifier
 
 Symbols = Iterable[Identifier]
@@ -42,7 +42,11 @@ class NamingPolicy:
         """Names of a node: its file, its types for all messages of a direction, and what these types contain."""
         return ()
 
-    def message_of_direction(self, node: NodeDescription, direction: Direction, message: MessageDescription) -> Symbols:
+    def in_node(self, node: NodeDescription, part: Part) -> Symbols:
+        """Names of a message, struct or enumeration that are declared again for each node that declares or includes it."""
+        return ()
+
+    def message_of_direction(self, node: NodeDescription, direction: str, message: MessageDescription) -> Symbols:
         """Names of a message in a type for all messages of a direction. Included nodes can declare the message.
 
         The rules report only the first equal names of two messages. Names in such types come last.
@@ -73,6 +77,12 @@ class NamingPolicy:
         """Names of a constant of a field."""
         return ()
 
+    def symbols_of_field(self, composite: Composite[Any], field: FieldDescription) -> Iterator[Identifier]:
+        """List the names of a field and of its constants."""
+        yield from self.field(composite, field)
+        for constant in field.constants:
+            yield from self.constant(composite, field, constant)
+
     def symbol(self, part: NodeDescription | Part, role: str) -> str:
         """Return the name of a part in a role. Raises `KeyError` if the table has no such name."""
         texts = self._texts.get(part)
@@ -91,6 +101,8 @@ def symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifi
     yield from policy.fixed(description)
     for node in description.nodes:
         yield from policy.node(node)
+        for part in node.usable:
+            yield from policy.in_node(node, part)
         for enum in node.enums:
             yield from policy.enumeration(enum)
             for member in enum.members:
@@ -100,9 +112,22 @@ def symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifi
         for composite in node.composites:
             yield from policy.composite(composite)
             for field in composite.declared_members:
-                yield from policy.field(composite, field)
-                for constant in field.constants:
-                    yield from policy.constant(composite, field, constant)
+                yield from policy.symbols_of_field(composite, field)
         for direction in node.directions:
             for message, _ in direction.messages:
-                yield from policy.message_of_direction(node, direction, message)
+                yield from policy.message_of_direction(node, direction.kind, message)
+
+
+def symbols_of_part(description: Description, part: Part, policy: NamingPolicy) -> Iterator[Identifier]:
+    """List the identifiers of a message, struct or enumeration, without those of its fields or members."""
+    users = description.users_of(part.node)
+    for node in users:
+        yield from policy.in_node(node, part)
+    if isinstance(part, EnumDescription):
+        yield from policy.enumeration(part)
+        return
+    yield from policy.composite(part)
+    if isinstance(part, MessageDescription):
+        for node in users:
+            for direction in part.directions:
+                yield from policy.message_of_direction(node, direction, part)

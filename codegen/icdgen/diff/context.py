@@ -25,8 +25,8 @@ class Context:
 
     @cached_property
     def generated(self) -> Generated:
-        """Names and types in generated code of all changed objects."""
-        return Generated(self.match, self.changed)
+        """Names and types in generated code."""
+        return Generated(self.match)
 
     @cached_property
     def changed(self) -> list[DeclaredPair]:

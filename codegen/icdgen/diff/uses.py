@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from icdgen.diff.change import Change
 from icdgen.diff.compare import Comparison
-from icdgen.diff.generated import Name
+from icdgen.diff.generated import Generated, Name
 from icdgen.diff.pairs import EnumPair, MessagePair, Pair
 from icdgen.errors import UserError
 
@@ -82,22 +82,21 @@ def _changed_names(comparison: Comparison, changes: Iterable[Change]) -> dict[st
 
     Changes of the text layer affect no sources.
     """
-    old = comparison.context.generated.everything
     result: dict[str, _ChangesByName] = {language: {} for language in _LEXERS}
     for change in changes:
         if not change.breaks:
             continue
-        for name in _names(change, old):
+        for name in _names(change, comparison.context.generated):
             result[name.language].setdefault(name.text, {}).setdefault(name.stem, []).append(change)
     return result
 
 
-def _names(change: Change, old: dict[int, tuple[Name, ...]]) -> Iterator[Name]:
+def _names(change: Change, generated: Generated) -> Iterator[Name]:
     pair: Pair = change.pair
-    yield from old.get(id(pair), ())
+    yield from generated.old(pair)
     if isinstance(pair, EnumPair | MessagePair) and change.code in ("DIF101", "DIF301", "DIF303", "DIF306", "DIF310"):
         for part in pair.parts:
-            yield from (name for name in old.get(id(part), ()) if not name.stem)
+            yield from (name for name in generated.old(part) if not name.stem)
 
 
 def _sources(top: Path) -> Iterator[Path]:

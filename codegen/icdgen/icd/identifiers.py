@@ -21,6 +21,7 @@ class Identifier:
     owner: str  # the line of the ICD in words: "field `Foo` of `Bar`"
     source: Map | None  # the mapping of that line
     role: str = ""  # distinguishes names of the same line: see `icdgen.describe.symbols`
+    part: object = None  # object of the model that it names; None for a name of the generated code itself
 
 
 class Language(Protocol):

@@ -121,7 +121,7 @@ def excess(field: FieldDescription, member: str) -> str:
     else:
         beyond = ((1 << storage.bits) - 1) ^ place.raw_max
         excess_bits = f"message->{member} & {mask(beyond, storage.bits)}"
-    return f"{has(field)}(message) ? ({excess_bits}) : 0u" if place.conditions else excess_bits
+    return f"{has(field.message, field.name)}(message) ? ({excess_bits}) : 0u" if place.conditions else excess_bits
 
 
 def excess_type(message: MessageDescription) -> str:

@@ -15,7 +15,7 @@ def conditional(message: MessageDescription) -> list[dict[str, object]]:
     """Return the values for the template per optional field: the value if it is absent, and the code if it is present."""
     return [
         {
-            "name": has(field),
+            "name": has(message, field.name),
             "about": presence_comment(field.model, message.model),
             "test": either(list(map(_test, field.needs)), " && "),
             "absent": f"message->{field.name} = {_absent(field)};",

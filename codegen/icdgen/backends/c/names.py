@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
+from icdgen.describe import EnumDescription, MessageDescription, NodeDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 
@@ -62,9 +62,9 @@ def walking(message: MessageDescription, name: str) -> str:
     return f"{stem(message)}_{name}_at"
 
 
-def has(field: FieldDescription) -> str:
-    """``demo_wheel_has_rate``: the function that tells whether a field is there."""
-    return f"{stem(field.message)}_has_{field.name}"
+def has(composite: Composite[Any], name: str) -> str:
+    """``demo_wheel_has_rate``: the function that returns whether a frame has a field."""
+    return f"{stem(composite)}_has_{name}"
 
 
 def constant(message: Composite[Any], name: str) -> str:
@@ -85,6 +85,13 @@ def getter(composite: Composite[Any], name: str) -> str:
 def setter(composite: Composite[Any], name: str) -> str:
     """``demo_status_set_rate_deg_per_s``: the function that sets a physical value."""
     return f"{stem(composite)}_set_{name}"
+
+
+def client_verbs(node: NodeDescription, direction: str) -> tuple[str, ...]:
+    """Actions of a client of the node with a message; each is a function. Only a client of a stream can ask and put."""
+    if direction == "telemetry":
+        return "request", "receive"
+    return ("send",) if node.has_client else ("send", "ask", "put")
 
 
 def client_function(node: str, verb: str, message: MessageDescription) -> str:

@@ -14,7 +14,7 @@ from icdgen.describe.constants import Constant
 from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
-from icdgen.describe.symbols import NamingPolicy, Symbols
+from icdgen.describe.symbols import NamingPolicy, Part, Symbols
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -50,16 +50,22 @@ class CNames(NamingPolicy):
             rare = ("which", "which_t") if node.shares_ids(kind) else ()
             for end in ("t", "name", "length", "size", "decode", "encode", *rare):
                 yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, source, f"{kind}_{end}")
-        for direction in node.directions:
-            stem = f"{node.name}_{direction.kind}"
-            for message, _ in direction.messages:
-                if node.shares_ids(direction.kind):
-                    yield message.identifier(FILE, names.enumerator_of(stem, message))
-                yield message.identifier(f"members of {stem}_t", message.name)
         if node.enums:
             owner = "the enumerations"
             yield Identifier(FILES, f"{node.name}/enums.h", owner, None)
             yield Identifier(FILE, f"{node.name.upper()}_ENUMS_H", owner, None, "ENUMS_H")
+
+    def in_node(self, node: NodeDescription, part: Part) -> Symbols:
+        if not isinstance(part, MessageDescription):
+            return
+        for direction in part.directions:
+            stem = f"{node.name}_{direction}"
+            if node.shares_ids(direction):
+                yield part.identifier(FILE, names.enumerator_of(stem, part))
+            yield part.identifier(f"members of {stem}_t", part.name)
+            if node.is_linked:
+                for verb in names.client_verbs(node, direction):
+                    yield part.identifier(FILE, names.client_function(node.name, verb, part))
 
     def link(self, node: NodeDescription) -> Symbols:
         owner, source = f"the link of node `{node.name}`", node.model.source
@@ -68,11 +74,6 @@ class CNames(NamingPolicy):
         kinds = [f"client_{bus}" for bus in _BUSES] if node.has_client else ["client_init", "sender_t", "sender_init"]
         for end in ("link", "client_t", *kinds):
             yield Identifier(FILE, f"{node.name}_{end}", owner, source, end)
-        commands = ("send",) if node.has_client else ("send", "ask", "put")
-        for verbs, messages in ((commands, node.telecommands), (("request", "receive"), node.telemetry)):
-            for message in messages:
-                for verb in verbs:
-                    yield message.identifier(FILE, names.client_function(node.name, verb, message))
         for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
             yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source, end)
 
@@ -111,7 +112,7 @@ class CNames(NamingPolicy):
         else:
             yield field.identifier(f"members of {names.stem(composite)}_t", field.name)
         if field.model.conditions:
-            yield field.identifier(FILE, names.has(field))
+            yield field.identifier(FILE, names.has(composite, field.name))
         for accessor in accessors_of(field, "text", "double", "integer"):
             yield field.identifier(FILE, names.getter(composite, accessor.name))
             if accessor.is_settable:

@@ -31,9 +31,10 @@ class PythonNames(NamingPolicy):
             yield Identifier(scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None)
         for name in DEVICES:
             yield Identifier(self._files(node.name), name, "a device of Windows", None)
+
+    def in_node(self, node: NodeDescription, part: Part) -> Symbols:
         # The module of a node also has the classes of included nodes.
-        for part in node.usable:
-            yield part.identifier(f"module {self._package}.{node.name}", names.class_name(part))
+        yield part.identifier(f"module {self._package}.{node.name}", names.class_name(part))
 
     def enumeration(self, enum: EnumDescription) -> Symbols:
         yield enum.identifier(self._files(enum.node.name), names.module_name(enum))

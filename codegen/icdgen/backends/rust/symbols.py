@@ -12,7 +12,6 @@ from icdgen.describe import Description, EnumDescription, FieldDescription, Mess
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
-from icdgen.describe.nodes import Direction
 from icdgen.describe.symbols import NamingPolicy, Symbols
 from icdgen.naming import DEVICES
 
@@ -43,8 +42,8 @@ class RustNames(NamingPolicy):
         yield from _used(f"types of {node.name}", names.USED_TYPES)
         yield from _used(f"enumerations of {node.name}", _USED_BY_ENUMS)
 
-    def message_of_direction(self, node: NodeDescription, direction: Direction, message: MessageDescription) -> Symbols:
-        scope = f"variants of {node.name}::{direction.kind.capitalize()}"
+    def message_of_direction(self, node: NodeDescription, direction: str, message: MessageDescription) -> Symbols:
+        scope = f"variants of {node.name}::{direction.capitalize()}"
         yield message.identifier(scope, names.type_name(message))
 
     def enumeration(self, enum: EnumDescription) -> Symbols:

@@ -80,7 +80,7 @@ def node_renamed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 def names_gone(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
-    removed_names: Renamed = [(name, None) for name in ctx.generated.old.get(id(pair), ())]
+    removed_names: Renamed = [(name, None) for name in ctx.generated.old(pair)]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
     yield CheckResult(text, ("name", "identifier"), pair.old.name, "", lines(removed_names))
 
@@ -143,7 +143,7 @@ def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[C
 def names_come(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
-    added_names: Renamed = [(None, name) for name in ctx.generated.new.get(id(pair), ())]
+    added_names: Renamed = [(None, name) for name in ctx.generated.new(pair)]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield CheckResult(text, ("name", "identifier"), "", pair.new.name, lines(added_names))
 

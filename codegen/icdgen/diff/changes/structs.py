@@ -6,22 +6,18 @@ Changes of their bytes are reported for the messages that contain them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
 from icdgen.backends.c.types import declaration
-from icdgen.describe import describe
 from icdgen.diff.changes.names import lines
 from icdgen.diff.context import Context
-from icdgen.diff.generated import LANGUAGES, Name, SourceMarks
+from icdgen.diff.generated import Name, NamesOfIcd, symbols_in
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.wording import bits
-from icdgen.icd.layout import Layout
-from icdgen.icd.layout_copies import with_attributes, with_node, with_struct_layout
 from icdgen.icd.lines import Line
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Message, Node
 from icdgen.icd.places import places_in
 from icdgen.icd.rules.wording import count, quote
 
@@ -79,7 +75,7 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
     if not pair.old.structs and not pair.new.structs:
         return
     old, new = ({struct.name: struct for struct in node.structs} for node in (pair.old, pair.new))
-    was, now = _declared(ctx.match.old, pair.old), _declared(ctx.match.new, pair.new)
+    was, now = _declared(ctx.generated.before, pair.old), _declared(ctx.generated.after, pair.new)
     for name in dict.fromkeys((*new, *old)):
         before, after = was.get(name, _NOTHING), now.get(name, _NOTHING)
         renamed = list(_renamed(before.names, after.names))
@@ -120,32 +116,19 @@ def _renamed(before: dict[int, list[Name]], after: dict[int, list[Name]]) -> Ite
             yield from ((None, name) for name in added)
 
 
-def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
+def _declared(names: NamesOfIcd, node: Node) -> dict[str, _Declared]:
     """Return the declarations of the structs of a node by name."""
-    marks = SourceMarks[tuple[str, int]]()  # name of the struct, and bit of the member
-    layouts: list[tuple[Layout, Layout]] = (
-        []
-    )  # original and copy with marks: ICDs from `icdgen show` lack unique sources
-    structs = []
-    for struct in node.structs:  # structs are sorted: nested structs come first
-        layout = struct.layout
-        for line in layout.fixed:
-            marked = with_attributes(line, source=marks.of((struct.name, line.at)))
-            layout = with_node(layout, line, marked)
-        for other, changed in layouts:
-            layout = with_struct_layout(layout, other, changed)
-        layouts.append((struct.layout, layout))
-        structs.append(replace(struct, layout=layout, source=marks.of((struct.name, -1))))
-    node_without_messages = replace(node, structs=tuple(structs), messages=())
-    synthetic_icd = Icd((*(replace(included, messages=()) for included in icd.included(node)), node_without_messages))
-    declared = {struct.name: _Declared({}, {}) for struct in node_without_messages.structs}
-    for language in LANGUAGES:
-        for (name, at), identifier in marks.names(synthetic_icd, language):
-            if identifier.text.isidentifier() and not identifier.text.endswith("_H"):
-                declared[name].names.setdefault(at, []).append(Name(language, identifier.text))
-    for struct in synthetic_icd.nodes[-1].structs:
-        described = describe(synthetic_icd).struct(struct).members
-        declared[struct.name].members.update((member.name, declaration(member)) for member in described)
+    declared: dict[str, _Declared] = {}
+    for struct in map(names.description.struct, node.structs):
+        fields = struct.model.layout.fixed
+        symbols = [(-1, names.symbols(struct)), *((field.at, symbols_in(struct, struct, field)) for field in fields)]
+        rows: dict[int, dict[Name, None]] = {}
+        for at, symbols_of_part in symbols:
+            for language, identifier in symbols_of_part:
+                if identifier.text.isidentifier() and not identifier.text.endswith("_H"):
+                    rows.setdefault(at, {})[Name(language, identifier.text)] = None
+        members = {member.name: declaration(member) for member in struct.members}
+        declared[struct.model.name] = _Declared({at: list(row) for at, row in rows.items()}, members)
     return declared
 
 

@@ -27,7 +27,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
 def document(report: Report) -> dict[str, object]:
     """Return the report as a tree for `json.dumps`."""
     reasons = {id(change): entry.reason for change, entry in report.accepted}
-    names = report.comparison.context.generated.everything if report.comparison.changes else {}
+    generated = report.comparison.context.generated
     result: dict[str, object] = {
         "format": FORMAT,
         "old": report.old.label,
@@ -35,7 +35,7 @@ def document(report: Report) -> dict[str, object]:
         "version": report.step._asdict(),
         "counts": report.counts(),
         "compatibility": [_direction(direction) for direction in report.directions],
-        "changes": [_change(c, reasons.get(id(c)), names.get(id(c.pair), ())) for c in report.comparison.changes],
+        "changes": [_change(c, reasons.get(id(c)), generated.old(c.pair)) for c in report.comparison.changes],
         "stale": [_stale(entry) for entry in report.stale],
     }
     if report.uses is not None:
