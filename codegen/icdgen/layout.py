@@ -1,66 +1,18 @@
 """Positions of the bits of fields within the bytes of a frame. All backends use them.
 
-A field consists of pieces, each a run of bits of one byte. 'Bits' in ``docs/reference/icd-format.md`` describes the numbering.
+A field consists of pieces, each a run of bits of one byte: see `icdgen.icd.pieces`.
 """
 
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import Message, Node, Struct
+from icdgen.icd.pieces import Piece, pieces_at
 from icdgen.icd.places import NodePlace
 from icdgen.icd.variants import Variant
-
-
-class Piece(NamedTuple):
-    """A run of bits of a value within one byte."""
-
-    byte: int
-    shift: int  # lowest bit of the run in the byte; 0 is the least significant
-    bits: int
-    at: int  # lowest bit of the run in the value
-
-    @property
-    def mask(self) -> int:
-        """Mask of the run within its byte."""
-        return self.low_mask << self.shift
-
-    @property
-    def low_mask(self) -> int:
-        """Mask of the run once it is shifted down to bit 0."""
-        return (1 << self.bits) - 1
-
-    @property
-    def is_byte(self) -> bool:
-        """Whether the run is all of its byte."""
-        return self.bits == 8
-
-    @property
-    def reaches_top(self) -> bool:
-        """Whether the run has the most significant bit of its byte, so that shifting it down leaves no other bits."""
-        return self.shift + self.bits == 8
-
-
-@lru_cache(maxsize=65536)
-def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piece, ...]:
-    """Return the pieces of a value, in the order of their bytes."""
-    runs = []
-    start, end = at, at + bits
-    while start < end:
-        byte, first = divmod(start, 8)
-        count = min(8 - first, end - start)
-        shift = first if bit_order == "lsb0" else 8 - first - count
-        runs.append((byte, shift, count))
-        start += count
-    # In big-endian order, the last run has the least significant bits.
-    pieces, below = [], 0
-    for byte, shift, count in runs if byte_order == "little" else reversed(runs):
-        pieces.append(Piece(byte, shift, count, below))
-        below += count
-    return tuple(pieces if byte_order == "little" else reversed(pieces))
 
 
 def pieces(field: FrameField | NodePlace, node: Node) -> tuple[Piece, ...]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen import layout as bits
+from icdgen.icd import pieces as bits
 from icdgen.icd.frames import flatten
 from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef, size_of, walk
 from icdgen.icd.model import Icd, Message, Node

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from icdgen import layout
 from icdgen.describe import steps
 from icdgen.describe.arithmetic import Arithmetic, arithmetic_of
 from icdgen.describe.bounds import Bound, bounds
@@ -13,6 +12,7 @@ from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.icd.curve import Curve
 from icdgen.icd.layout import LayoutNode, Orders
+from icdgen.icd.pieces import Piece, pieces_at
 from icdgen.icd.places import NodePlace
 from icdgen.once import cached_property
 
@@ -121,11 +121,11 @@ class ScalarDescription(Named[NodePlace]):
         return self.model.is_bytes or self.is_plain_word
 
     @property
-    def pieces(self) -> tuple[layout.Piece, ...]:
+    def pieces(self) -> tuple[Piece, ...]:
         """Runs of bits in bytes of the frame that make up a number; empty for derived values."""
         if self.model.derived:
             return ()
-        return layout.pieces_at(self.model.at, self.model.bits, self.orders.byte, self.orders.bit)
+        return pieces_at(self.model.at, self.model.bits, self.orders.byte, self.orders.bit)
 
     @property
     def is_text(self) -> bool:

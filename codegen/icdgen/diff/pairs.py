@@ -16,7 +16,7 @@ from icdgen.icd.annex import Loggable
 from icdgen.icd.layout import LayoutNode
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Erratum, Icd, Member, Message, Node, Struct
-from icdgen.layout import Piece, pieces_at
+from icdgen.icd.pieces import Piece, pieces_at
 
 # Names of ICD keys in the output of ``icdgen show``, which is a possible input of the diff.
 _SHOWN = {

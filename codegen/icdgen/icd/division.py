@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map
+from icdgen.icd.pieces import bits_of
 from icdgen.icd.roles import SPLIT, reasons_against
 from icdgen.icd.trees import mappings
 
@@ -74,16 +75,6 @@ def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> boo
 def _bits_of_part(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
     """Return the bits of a part in the frame, the least significant first."""
     return bits_of(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
-
-
-def bits_of(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
-    """Return the bits of a value in the frame, the least significant first."""
-    runs: dict[int, list[int]] = {}
-    for bit in range(at, at + count):
-        runs.setdefault(bit // 8, []).append(bit)
-    # In big-endian order, the last byte has the least significant bits.
-    ordered = list(runs.values()) if byte_order == "little" else list(runs.values())[::-1]
-    return [bit for run in ordered for bit in (run if bit_order == "lsb0" else run[::-1])]
 
 
 def described(field: Map, part: Map) -> str:

@@ -1,6 +1,6 @@
 """Scalars of one frame with their bits, for the codec, logs and the simulator.
 
-`frame_fields` computes them from a layout and the sizes of its variable parts. Read next: `icdgen.layout`, which converts the
+`frame_fields` computes them from a layout and the sizes of its variable parts. Read next: `icdgen.icd.pieces`, which converts the
 position of a scalar into runs of bits within bytes.
 """
 

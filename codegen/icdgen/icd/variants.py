@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from icdgen.icd.division import bits_of
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
+from icdgen.icd.pieces import bits_of
 
 DeclaredMessage = tuple[Message, Node]  # a message and the node that declares it
 # Bit of the frame for each bit of a value; bit w (0: least significant) of byte b is 8

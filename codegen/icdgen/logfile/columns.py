@@ -11,7 +11,7 @@ from icdgen.describe.steps import Steps, steps
 from icdgen.icd.curve import Curve
 from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.layout import Piece
+from icdgen.icd.pieces import Piece
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import LogBit
 

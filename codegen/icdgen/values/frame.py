@@ -14,6 +14,7 @@ from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
 from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import AnyScalar
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream
@@ -211,7 +212,7 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     """Return a remark for each run of reserved bits that is not 0."""
     reasons = []
     for gap in layout.gaps(message, node):
-        pieces = layout.pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
+        pieces = pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
         if any(data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)):
             reasons.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
     return reasons

@@ -35,7 +35,7 @@ from icdgen.icd.layout import (
 from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.located import Map, plain
 from icdgen.icd.model import Enum, Member, Message, Node
-from icdgen.layout import Piece, pieces_at
+from icdgen.icd.pieces import Piece, pieces_at
 
 OTHER_TYPES = {
     "uint": ("int", "float", "bytes", "bool"),

@@ -8,7 +8,7 @@ from icdgen.backends.c.names import has
 from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.types import cast, mask
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.layout import Piece
+from icdgen.icd.pieces import Piece
 
 BITS = "{bits}"
 """Placeholder of the bits of the field in expressions."""

@@ -8,7 +8,7 @@ from icdgen.backends.rust.names import field_name, integer_type, own_name, struc
 from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.storage import holding
-from icdgen.layout import Piece
+from icdgen.icd.pieces import Piece
 
 _ARRAY_WIDTH = 60
 """Width up to which rustfmt leaves an array on one line."""

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from icdgen import layout
 from icdgen.icd.model import Node
+from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import NodePlace
 
 
@@ -38,7 +38,7 @@ def run_of(field: NodePlace, node: Node) -> Run | None:
     if field.is_bytes:
         return Run(field.at, field.bits)
     orders = field.orders_in_effect(node.orders)
-    pieces = sorted(layout.pieces_at(field.at, field.bits, orders.byte, orders.bit), key=lambda piece: piece.at)
+    pieces = sorted(pieces_at(field.at, field.bits, orders.byte, orders.bit), key=lambda piece: piece.at)
     # Most significant bit first, from the first byte on.
     falling = _joined([(8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits) for piece in reversed(pieces)])
     if falling is not None:
