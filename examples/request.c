@@ -12,7 +12,7 @@ int main(int argc, char **argv)
     cubeacp_request_estimated_attitude_angles(&acp, port_now());
     const icd_event_t end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, repeats */
     if (cubeacp_receive_estimated_attitude_angles(&angles, &end) != ICD_OK) {
-        fprintf(stderr, "no response to %u requests\n", (unsigned)end.attempts);
+        fprintf(stderr, "no telemetry, attempts: %u\n", (unsigned)end.attempts);
         return 1;
     }
     printf("roll %.2f deg\n", cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(&angles));

@@ -69,7 +69,7 @@ def test_the_example_asks_until_it_is_answered(program, silent):
 
 def test_the_example_gives_up_when_nobody_answers(program):
     done = run(program, Node(99))
-    assert (done.returncode, done.stdout, done.stderr) == (1, "", "no response to 4 requests\n")
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "no telemetry, attempts: 4\n")
 
 
 def test_the_guide_shows_the_example():

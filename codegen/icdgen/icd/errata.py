@@ -10,7 +10,9 @@ from icdgen.icd.located import Map, Seq, unread, yaml_text
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
-_AGAIN = "look at the manual again, then update or remove the entry"
+_AGAIN = (
+    "compare with the manual: update the ICD if it does not have the printed value, or else update or remove the entry"
+)
 _MOST_LISTED = 6  # lines of places in a help
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
 

@@ -20,7 +20,10 @@ from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")
 Aliased: TypeAlias = Message | LayoutNode | Enum | Member | Struct
-PRINTED_TWICE = "rename one; if the manual prints both under this name, rename one in the errata file, or remove a copy"
+PRINTED_TWICE = (
+    "rename one, or remove it if it is a copy of the other; if the manual gives two messages or fields this name, rename "
+    "one in the errata file"
+)
 
 
 def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T, T]]:

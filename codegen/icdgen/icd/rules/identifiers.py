@@ -14,6 +14,9 @@ from icdgen.icd.rules.declarations import DUPLICATE_NAMES, declared
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, listing, quote
 
+# C++ can include the headers, so its reserved words cannot be names in C either.
+_WITH_CXX = {"c": "C/C++"}
+
 
 def _place(ctx: Context, identifier: Identifier) -> Place:
     """Return the place of the name that an identifier is made from."""
@@ -31,7 +34,7 @@ def _help(identifier: Identifier) -> str:
     if identifier.source is not None and "node" in identifier.source:
         return "give the node another name"
     another = "another" if identifier.source and "identifier" in identifier.source else "an"
-    return f"give it {another} `identifier:`, words to build the name from"
+    return f"give it {another} `identifier:`, other words from which its names in all languages are built"
 
 
 class _Clashes:
@@ -62,7 +65,8 @@ def names_are_not_reserved(ctx: Context) -> Iterator[Fault]:
             clashes.add(names.language, identifier)
     for identifier, _, texts in clashes:
         words = " and ".join(
-            f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in {listing(languages)}"
+            f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in "
+            f"{listing(_WITH_CXX.get(language, language) for language in languages)}"
             for text, languages in texts.items()
         )
         message = f"{identifier.owner} becomes {words}"
@@ -94,7 +98,12 @@ def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
         line = f" ({line_of(_place(ctx, earlier), place)})" if earlier.source is not None else ""
         words = listing(f"{quote(text)} in {listing(languages)}" for text, languages in texts.items())
         message = f"{later.owner} and {earlier.owner}{line} both become {words}"
-        yield Fault(later.source, place, message, "give one of them an `identifier:`, words to build the name from")
+        yield Fault(
+            later.source,
+            place,
+            message,
+            "give one of them an `identifier:`, other words from which its names in all languages are built",
+        )
 
 
 def _is_name(text: str) -> bool:

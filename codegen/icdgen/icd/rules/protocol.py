@@ -11,7 +11,7 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.rules.wording import count, line_of, quote
 from icdgen.icd.trees import at_path, mappings
 
 # Input of the check value of a CRC, in the Rocksoft model and the catalogues that
@@ -134,7 +134,10 @@ def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fau
             message = f"{name} overlaps {other} in {size[:-1]} {row[at]}"
             yield Fault.at(row, at, message, f"correct `{at}` or `{size}`")
         if isinstance(room, int) and end > room:
-            message = f"{name} ends at {end}, but `{named}` is {room}"
+            message = (
+                f"{name} ends behind {size[:-1]} {end - 1}, but the whole has {count(room, size[:-1])} "
+                f"(`{named}: {room}`, {line_of(section.at(named), row.place)})"
+            )
             sizes = f"`{size}` or `{named}`" if named != size else f"or a `{size}`"
             yield Fault.at(row, size, message, f"correct `{at}`, {sizes}")
         # A long row can end after the rows that follow it.
