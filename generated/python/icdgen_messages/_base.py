@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-# The module: its names in annotations are loaded when they are evaluated.
+# The module, not its names: these are imported when an annotation is evaluated.
 from . import _types
 from ._fields import (
     Form,
@@ -46,7 +46,10 @@ if TYPE_CHECKING:
     N_contra = TypeVar("N_contra", contravariant=True, default=Any)
 
     class Spoken(Generic[N_contra]):
-        """What type checkers are told of which node speaks a message."""
+        """Base class that relates a message to its node, for type checkers only.
+
+        It has no members at run time.
+        """
 
         @classmethod
         def _made(cls) -> Self: ...
@@ -75,16 +78,17 @@ else:
     field_specifiers=(field, part, scaled, curve, curve_only, whole, text),
 )
 class MessageType(type):
-    """Makes the class of a message or a struct: a dataclass with slots, of fields that `field` declares.
+    """Metaclass of messages and structs: a dataclass with slots, whose fields `field` declares.
 
-    `Message.from_bytes` and `Message.to_bytes` are compiled from these when they are
-    first used, and what `dataclasses` wants is made when it is asked for.
+    `Message.from_bytes` and `Message.to_bytes` are compiled from the fields at their
+    first use. The attributes that `dataclasses` needs are created at their first use,
+    too.
     """
 
     def __new__(
         mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _types.Any]
     ) -> _types.Any:
-        """The class. Values of fields stand in slots, so their declarations go."""
+        """Create the class. Slots hold the values of the fields and replace the declarations."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
             notes = namespace.get("__annotations__", {})
@@ -102,14 +106,14 @@ class MessageType(type):
 
     @property
     def __signature__(cls) -> Signature:
-        """The keywords that it is made with, for `inspect.signature`."""
+        """Keyword arguments of the constructor, for `inspect.signature`."""
         from ._dataclass import signature
 
         return signature(cls, Struct.__init__)
 
 
 class _DataclassFields:
-    """``__dataclass_fields__``, which the functions of `dataclasses` look at."""
+    """``__dataclass_fields__``, which the functions of `dataclasses` read."""
 
     def __get__(self, message: object, owner: _types.Any) -> dict[str, _types.Any]:
         from ._dataclass import dataclass_fields
@@ -118,7 +122,7 @@ class _DataclassFields:
 
 
 class _DataclassParams:
-    """``__dataclass_params__``, as `dataclasses.dataclass` leaves it."""
+    """``__dataclass_params__``, with the value that `dataclasses.dataclass` would set."""
 
     def __get__(self, message: object, owner: object) -> _types.Any:
         from ._dataclass import PARAMS
@@ -127,11 +131,11 @@ class _DataclassParams:
 
 
 class Struct(StructFacts, metaclass=MessageType):
-    """Fields that stand together: a message, or what stands in messages once or several times.
+    """Base class of messages and of the structs in them.
 
-    Its attributes hold raw values, just as they are on the wire. It is made with
-    keywords, of raw or of physical values. Values are not checked when they are
-    assigned, but by `Message.to_bytes`.
+    The attributes hold raw values, as transmitted. The constructor takes keyword
+    arguments of raw or of physical values. Values are checked by `Message.to_bytes`,
+    not when they are assigned.
     """
 
     __slots__ = ()
@@ -141,7 +145,7 @@ class Struct(StructFacts, metaclass=MessageType):
         __dataclass_fields__ = _DataclassFields()
 
         def __init__(self, /, **values):
-            """Of raw values, or physical ones, which go before. Raises `RangeError`."""
+            """Take raw or physical values. The physical value has precedence. Raise `RangeError`."""
             given = frozenset(values) if self.CONDITIONAL else ()
             for info in self.FIELDS:
                 fresh = info.default if info.struct is None else info.fresh
@@ -161,9 +165,10 @@ class Struct(StructFacts, metaclass=MessageType):
         def from_physical(
             cls: Callable[P, _types.S], *args: P.args, **values: P.kwargs
         ) -> _types.S:
-            """From physical values, raw ones where there is no scale or text; those of views are not looked at.
+            """Create an object from physical values, or raw values if a field has no other.
 
-            Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
+            Values of overlay fields and derived values are ignored. Raise `RangeError`, and
+            `TypeError` for the raw value of a field that has a physical value or a text.
             """
             ...
 
@@ -171,24 +176,26 @@ class Struct(StructFacts, metaclass=MessageType):
 
         @classmethod
         def from_physical(cls, /, **values):
-            """From physical values, raw ones where there is no scale or text; those of views are not looked at.
+            """Create an object from physical values, or raw values if a field has no other.
 
-            Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
+            Values of overlay fields and derived values are ignored. Raise `RangeError`, and
+            `TypeError` for the raw value of a field that has a physical value or a text.
             """
             for info in cls.FIELDS:
                 if info.physical and info.leads_back and info.attribute in values:
                     raise TypeError(
                         f"from_physical takes {info.physical}, not {info.attribute}"
                     )
-            for info in cls.VIEWS:  # they follow from the fields
+            for info in cls.VIEWS:  # computed from the fields
                 values.pop(info.attribute, None)
                 values.pop(info.physical, None)
             return cls(**values)
 
     def as_dict(self, physical: bool = False) -> dict[str, _types.Any]:
-        """All values by attribute: raw, or physical where there is such a value; then those of views.
+        """Return all values by attribute, overlay fields and derived values last.
 
-        What is a struct is a dictionary itself.
+        With ``physical``, fields that have a physical value or a text are given by
+        that, other fields by their raw value. A struct becomes a dictionary.
         """
         infos = (*self.FIELDS, *self.VIEWS)
         if physical:
@@ -207,17 +214,18 @@ class Struct(StructFacts, metaclass=MessageType):
         return values
 
     def _own(self) -> dict[str, _types.Any]:
-        """What it is made of: views follow from that."""
+        """Return the values of the fields by attribute, without overlay fields and derived values."""
         return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
 
     @classmethod
     def from_dict(
         cls: type[_types.S], values: _types.Mapping[str, _types.Any]
     ) -> _types.S:
-        """The reverse of `as_dict`, of raw or physical values; what is not there is as in a new message.
+        """Create an object from raw or physical values: the reverse of `as_dict`.
 
-        Bytes may be hexadecimal digits. Raises `RangeError` for a value that does not
-        fit, and `IcdError` for a name that is none.
+        Missing fields have their default. Bytes may be given as hexadecimal digits.
+        Raise `RangeError` for a value out of range, and `IcdError` for a name that is
+        not a field.
         """
         from ._dicts import filled
 
@@ -226,18 +234,22 @@ class Struct(StructFacts, metaclass=MessageType):
         return checked
 
     def _checked(self) -> _types.Any:
-        """Return an equal object that holds values of the types that decoding gives. Raises `RangeError`."""
+        """Return an equal object with values of the types that decoding returns. Raise `RangeError`."""
         return self
 
     def to_json(self, physical: bool = False) -> str:
-        """`as_dict` as JSON; bytes are hexadecimal digits."""
+        """Return `as_dict` as JSON. Bytes become hexadecimal digits."""
         from ._dicts import to_json
 
         return to_json(self.as_dict(physical))
 
     @classmethod
     def from_json(cls: type[_types.S], data: str) -> _types.S:
-        """The reverse of `to_json`. Raises like `from_dict`, and `IcdError` for what is no JSON."""
+        """Create an object from JSON: the reverse of `to_json`.
+
+        Raise the exceptions of `from_dict`, and `IcdError` if ``data`` is not valid
+        JSON.
+        """
         from ._dicts import values_of_json
 
         struct: _types.Any = cls
@@ -260,13 +272,13 @@ class Struct(StructFacts, metaclass=MessageType):
 
 
 class Message(Spoken[N_contra], MessageFacts, Struct):
-    """A message that travels: a frame of ``LENGTH`` bytes, under an id."""
+    """A message: a frame of ``LENGTH`` bytes with an id."""
 
     __slots__ = ()
 
     @classmethod
     def from_bytes(cls: type[_types.M], data: _types.Buffer) -> _types.M:
-        """The message in a frame of a length that it has. Raises `LengthError`."""
+        """Decode a frame. Raise `LengthError` if the message cannot have its length."""
         from ._compiled import compiled
 
         made: _types.M = compiled(cls, "from_bytes")(cls, data)
@@ -274,9 +286,10 @@ class Message(Spoken[N_contra], MessageFacts, Struct):
 
     @classmethod
     def from_part(cls: type[_types.M], message: Message, index: int = 0) -> _types.M:
-        """The message as another one repeats it, of several times the one with this index.
+        """Return the part of a composite message that has this class.
 
-        Raises `IcdError` if it does not.
+        ``index`` selects one of several. Raise `IcdError` if ``message`` has no such
+        part.
         """
         from ._parts import part
 
@@ -286,13 +299,13 @@ class Message(Spoken[N_contra], MessageFacts, Struct):
         return type(self).from_bytes(self.to_bytes())
 
     def iter_parts(self) -> _types.Iterator[Message]:
-        """The messages that it repeats, one after the other, each of its own class."""
+        """Iterate over the parts of a composite message. Each has its own class."""
         from ._parts import parts
 
         return parts(self)
 
     def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
+        """Encode the message. Reserved bits are 0. Raise `RangeError` if a value is out of range."""
         from ._compiled import compiled
 
         frame: bytes = compiled(type(self), "to_bytes")(self)
@@ -302,13 +315,15 @@ class Message(Spoken[N_contra], MessageFacts, Struct):
     def decode_many(
         cls, frames: _types.Frames, physical: bool = False
     ) -> dict[str, _types.Any]:
-        """Frames that follow each other, as one numpy array a field.
+        """Decode consecutive frames into one numpy array per field.
 
-        The names are those of `as_dict`. What stands on whole bytes is a view of the
-        frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Frames that differ in length, or end early, are given one by one, as a
-        list; what ends them is an array of arrays, or of bytes. What is not always there is
-        a masked array. Needs numpy.
+        The keys are those of `as_dict`. Byte-aligned fields are views of the frames, or
+        of a copy if the frames are mutable. Raise `LengthError` if the data is not a
+        multiple of the length of a frame.
+
+        Frames of different lengths are given as a list. A variable-length field at the
+        end of the frame becomes an array of arrays, or of bytes. An optional field
+        becomes a masked array. Needs numpy.
         """
         from . import _columns
 
@@ -316,11 +331,11 @@ class Message(Spoken[N_contra], MessageFacts, Struct):
 
     @classmethod
     def decode_table(cls, frames: _types.Frames, physical: bool = True) -> _types.Any:
-        """Frames that follow each other, as a `pyarrow.Table`.
+        """Decode consecutive frames into a `pyarrow.Table`.
 
-        Units, the manual's names and those of enumerations are metadata of its fields:
-        ``unit``, ``name`` and ``values``. Raises
-        `LengthError` if they are not whole frames. Needs numpy and pyarrow.
+        The metadata of its fields are ``unit``, ``name`` (the manual's name) and
+        ``values`` (the names of an enumeration). Raise `LengthError` if the data is not
+        a multiple of the length of a frame. Needs numpy and pyarrow.
         """
         from . import _columns
 
@@ -328,7 +343,7 @@ class Message(Spoken[N_contra], MessageFacts, Struct):
 
 
 def view(message: Message, attribute: str, kind: type[_types.T]) -> _types.T:
-    """The value of a view, of the frame that the message makes. Raises `RangeError`."""
+    """Return the value of an overlay field, from the encoded message. Raise `RangeError`."""
     from ._codec import value_of_bits
 
     (info,) = (one for one in message.VIEWS if one.attribute == attribute)
@@ -337,7 +352,7 @@ def view(message: Message, attribute: str, kind: type[_types.T]) -> _types.T:
 
 
 def derived(message: Message, attribute: str) -> float:
-    """What is derived from fields. Raises `RangeError`."""
+    """Return a derived value, computed from the fields. Raise `RangeError`."""
     from ._derived import derived as result_of
 
     views = (one for one in message.VIEWS if one.attribute == attribute)
@@ -346,7 +361,7 @@ def derived(message: Message, attribute: str) -> float:
 
 
 def on_curve(message: Message, attribute: str) -> float:
-    """The physical value of a view that has a curve. Raises `RangeError`."""
+    """Return the physical value of an overlay field with a calibration. Raise `RangeError`."""
     from ._curves import on_curve as value_on
 
     (curve,) = (one.curve for one in message.VIEWS if one.attribute == attribute)

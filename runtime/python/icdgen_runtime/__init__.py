@@ -1,1 +1,1 @@
-"""What generated messages run on. Its modules are copied into every generated package, beside its nodes."""
+"""Runtime of the generated messages. The generator copies these modules into each generated package."""

@@ -1,4 +1,4 @@
-"""What generated messages decode and encode with."""
+"""Helpers of the compiled decoders and encoders, and the search for a value out of range."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ REFUSED = (
     TypeError,
     ValueError,
 )
-"""Exceptions of the encoders for a value that does not fit."""
+"""Exceptions of the encoders for a value out of range."""
 
 
 def is_there(info: FieldInfo, message: _types.Any) -> bool:
-    """Whether the message has the field, by the values of those on which it depends."""
+    """Return whether the message has an optional field, by the fields in its condition."""
     return all(getattr(message, name) in values for name, values in info.when)
 
 
 def has_elements(info: FieldInfo, values: _types.Any) -> bool:
-    """Whether there are as many values as an array takes."""
+    """Return whether the number of values is valid for an array."""
     if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
         return False
     least = info.fewest if info.is_open else info.elements
@@ -33,7 +33,7 @@ def has_elements(info: FieldInfo, values: _types.Any) -> bool:
 
 
 def elements_of(info: FieldInfo) -> str:
-    """``6 values``: how many an array takes."""
+    """Return the valid number of elements of an array, such as ``6 values``."""
     return f"{_at_least(info)}{info.elements} values"
 
 
@@ -44,7 +44,7 @@ def _at_least(info: FieldInfo) -> str:
 
 
 def signed(value: int, bits: int) -> int:
-    """The number that ``bits`` bits of two's complement stand for.
+    """Return the number that ``bits`` bits of two's complement represent.
 
     >>> signed(0b1111, 4)
     -1
@@ -55,9 +55,10 @@ def signed(value: int, bits: int) -> int:
 def bit_table(
     parts: tuple[tuple[int, FieldInfo], ...],
 ) -> tuple[_types.Any, ...]:
-    """The values of the fields of a byte, each from its bit ``shift`` up, for each of its 256 values.
+    """Return the values of the fields within a byte for each of its 256 values.
 
-    One field gives a table of values, several a table of tuples.
+    Each field begins at bit ``shift``. One field gives a table of values, several
+    fields give a table of tuples.
     """
     columns = []
     for shift, info in parts:
@@ -75,10 +76,7 @@ def _value(info: FieldInfo, bits: int) -> _types.Any:
 
 
 class Inverse(dict[object, int]):
-    """The byte that the values of a `bit_table` stand for, reserved bits 0.
-
-    It is filled when it is first used.
-    """
+    """Byte by the values of a `bit_table`, with reserved bits 0. Filled at the first use."""
 
     def __init__(self, table: tuple[_types.Any, ...]) -> None:
         super().__init__()
@@ -94,7 +92,7 @@ class Inverse(dict[object, int]):
 
 
 class Members(dict[int, "_types.OpenEnum"]):
-    """The members of an enumeration by value."""
+    """Members of an enumeration by value. Unknown values are added by the enumeration."""
 
     def __init__(self, enum: type[_types.OpenEnum]) -> None:
         super().__init__((member.value, member) for member in enum)
@@ -105,27 +103,27 @@ class Members(dict[int, "_types.OpenEnum"]):
 
 
 def unsigned_bits(value: int, bits: int) -> int:
-    """``value``, if it fits."""
+    """Return ``value``. Raise `OverflowError` if it needs more than ``bits`` bits."""
     if value.__index__() >> bits:
         raise OverflowError
     return value
 
 
 def signed_bits(value: int, bits: int) -> int:
-    """``value`` in two's complement, if it fits."""
+    """Return ``value`` in two's complement. Raise `OverflowError` if it needs more bits."""
     if (value.__index__() + (1 << (bits - 1))) >> bits:
         raise OverflowError
     return value & ((1 << bits) - 1)
 
 
 def counted(values: _types.Any, count: int) -> None:
-    """Raises `ValueError` unless there are so many values."""
+    """Raise `ValueError` unless there are exactly ``count`` values."""
     if len(values) != count:
         raise ValueError
 
 
 def sized(value: _types.Buffer, size: int) -> bytes:
-    """``value``, if it has that many bytes."""
+    """Return ``value`` as bytes. Raise `OverflowError` unless it has ``size`` bytes."""
     data = memoryview(value).tobytes()
     if len(data) != size:
         raise OverflowError
@@ -133,7 +131,7 @@ def sized(value: _types.Buffer, size: int) -> bytes:
 
 
 def text(value: _types.Buffer) -> str:
-    """What stands before the first NUL; U+FFFD for each byte that is not ASCII.
+    """Return the characters before the first NUL. A byte that is not ASCII becomes U+FFFD.
 
     >>> text(bytes([0x31, 0x2E, 0x32, 0, 0]))
     '1.2'
@@ -143,7 +141,7 @@ def text(value: _types.Buffer) -> str:
 
 
 def text_bytes(value: str, field: str, size: int) -> bytes:
-    """The bytes of a text, filled with NUL. Raises `RangeError`."""
+    """Return a text as bytes, padded with NUL. Raise `RangeError`."""
     if (
         not isinstance(value, str)
         or not value.isascii()
@@ -157,12 +155,12 @@ def text_bytes(value: str, field: str, size: int) -> bytes:
 
 
 def texts_of(info: FieldInfo, value: _types.Any) -> _types.Any:
-    """The text of a field of characters, of an array those of its elements."""
+    """Return the text of a field of characters, or the texts of an array."""
     return tuple(map(text, value)) if info.elements else text(value)
 
 
 def bytes_of_texts(info: FieldInfo, said: _types.Any) -> _types.Any:
-    """What such a field has for a text, or an array for texts. Raises `RangeError`."""
+    """Return the raw value of a text, or of the texts of an array. Raise `RangeError`."""
     size = info.bits // 8
     if not info.elements:
         raw = text_bytes(said, info.physical, size)
@@ -176,12 +174,12 @@ def bytes_of_texts(info: FieldInfo, said: _types.Any) -> _types.Any:
 
 
 def length_error(message: type[MessageFacts], data: _types.Buffer) -> LengthError:
-    """What to raise for a frame that does not have the length of the message."""
+    """Return the exception for a frame whose length does not match."""
     return LengthError(message.NAME, message.LENGTH, memoryview(data).nbytes)
 
 
 def range_error(message: MessageFacts) -> RangeError:
-    """What to raise for a message that has a value that does not fit."""
+    """Return the exception for the first field whose value is out of range."""
     for info in message.FIELDS:
         if info.when and not is_there(info, message):
             continue
@@ -192,6 +190,7 @@ def range_error(message: MessageFacts) -> RangeError:
 
 
 def _misfit(info: FieldInfo, value: _types.Any) -> _types.Optional[RangeError]:
+    """Return the exception for a field if its value, or an element, is out of range."""
     if info.elements and not has_elements(info, value):
         return RangeError(info.attribute, elements_of(info), value)
     for one, each in zip(info.parts, value if info.elements else (value,)):
@@ -214,7 +213,7 @@ def value_of_bits(
     frame: bytes,
     kind: _types.Any,
 ) -> _types.Any:
-    """The value of an overlay field in a frame, as an object of type ``kind``."""
+    """Return the value of an overlay field in a frame, as an object of type ``kind``."""
     from ._floats import float32, float64
     from ._layout import pieces
 

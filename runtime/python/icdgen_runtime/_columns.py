@@ -1,4 +1,4 @@
-"""Many frames at once, as columns. Needs numpy; tables need pyarrow as well."""
+"""Decoding of many frames into columns. Needs numpy; tables also need pyarrow."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def decode_many(
     frames: Frames,
     physical: bool,
 ) -> dict[str, Any]:
-    """See `Message.decode_many`. ``decode`` is `Message.from_bytes`."""
+    """Implement `Message.decode_many`. ``decode`` is `Message.from_bytes`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, decode, frames, physical)
     for (info, parts), (name, column) in zip(_lines(message), columns.items()):
@@ -47,7 +47,10 @@ def _columns(
     frames: Frames,
     physical: bool,
 ) -> tuple[dict[str, Any], Any]:
-    """Columns by name, and how many elements the end of each frame has; its others are 0."""
+    """Return the columns by name, and the number of elements at the end of each frame.
+
+    Shorter frames are padded with zeros.
+    """
     joined, counts = _together(message, decode, frames)
     decoder = _Decoder(numpy, message, joined)
     columns: dict[str, Any] = {}
@@ -79,12 +82,16 @@ def _columns(
 def _together(
     message: type[MessageFacts], decode: Callable[[Buffer], Any], frames: Frames
 ) -> tuple[Buffer, list[int]]:
-    """Frames that follow each other; where they differ in length, the longest, and the elements of each."""
+    """Join frames to one buffer of equally long frames.
+
+    Frames of different lengths are padded to the longest. The second result is then the
+    number of elements of each frame, and otherwise empty.
+    """
     is_one = isinstance(frames, (bytes, bytearray, memoryview))
     if message.ENDS_EARLY and not is_one:
         given: list[Any] = list(frames)
         for frame in given:
-            decode(frame)  # if it is one
+            decode(frame)  # raises `LengthError` if it is not a frame
         return b"".join(padded(message, frame) for frame in given), []
     if message.TAIL is None:
         return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
@@ -93,7 +100,7 @@ def _together(
             f"frames of {message.NAME} differ in length: give them as a list"
         )
     kept: list[Any] = list(frames)
-    made = [decode(frame) for frame in kept]  # if it is one
+    made = [decode(frame) for frame in kept]  # raises `LengthError`
     counts = [len(getattr(one, message.TAIL.part)) for one in made]
     return b"".join(padded(message, frame) for frame in kept), counts
 
@@ -104,7 +111,7 @@ def decode_table(
     frames: Frames,
     physical: bool,
 ) -> Any:
-    """See `Message.decode_table`."""
+    """Implement `Message.decode_table`."""
     numpy: Any = import_module("numpy")
     pyarrow: Any = import_module("pyarrow")
     columns, counts = _columns(numpy, message, decode, frames, physical)
@@ -142,11 +149,16 @@ def decode_table(
 
 
 _Line = tuple[FieldInfo, tuple[FieldInfo, ...]]
-"""An item with a column, and the fields of it in each frame."""
+"""A field or array with one column, and its elements in a frame."""
 
 
 def _lines(message: type[MessageFacts]) -> list[_Line]:
-    """What has a column: fields, views, arrays, and the fields of each struct, of an open end all of them together."""
+    """Return everything that has a column, in order.
+
+    These are fields, arrays, overlay fields, derived values and the fields of each
+    struct. A field of the structs at a variable-length end has one column for all
+    structs.
+    """
     found: list[_Line] = []
     for info in message.FIELDS:
         if info.struct is not None and info.is_open:
@@ -157,7 +169,10 @@ def _lines(message: type[MessageFacts]) -> list[_Line]:
 
 
 def _open_lines(info: FieldInfo) -> list[_Line]:
-    """Of the structs of an open end, each field, called ``satellites.gnss``, ``satellites.angles[1]``."""
+    """Return one column per field of the structs in a variable-length array.
+
+    The names are like ``satellites.gnss`` and ``satellites.angles[1]``.
+    """
     each = [
         [leaf for line in lines for leaf in line.parts]
         for lines in (part.lines for part in info.parts)
@@ -184,7 +199,7 @@ def _open_lines(info: FieldInfo) -> list[_Line]:
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
-    """The first elements of each row, as lists or as bytes."""
+    """Return the first elements of each row, as lists or as bytes. ``counts`` are per row."""
     there = numpy.arange(rows.shape[1]) < counts[:, None]
     values = rows[there]
     ends = numpy.concatenate(([0], numpy.cumsum(counts))).astype(numpy.int32)
@@ -198,7 +213,7 @@ def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) ->
 
 
 def _octets(pyarrow: Any, rows: Any, size: int) -> Any:
-    """Rows of so many bytes."""
+    """Return a column of byte strings of ``size`` bytes."""
     buffers = [None, pyarrow.py_buffer(rows)]
     return pyarrow.Array.from_buffers(pyarrow.binary(size), rows.size // size, buffers)
 
@@ -214,7 +229,10 @@ def _metadata(info: FieldInfo) -> dict[str, str]:
 
 
 def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
-    """Correctly rounded: all but the division is exact, or Python's integers do it."""
+    """Return the physical values of a column, correctly rounded.
+
+    Doubles are used if all but the division is exact, otherwise Python's integers.
+    """
     if info.curve:
         return columns_on_curve(numpy, info.curve, raw)
     p, c, q = info.scale
@@ -234,9 +252,9 @@ def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
 
 
 class _Decoder:
-    """The columns of frames that follow each other.
+    """Columns of consecutive frames.
 
-    What stands on whole bytes is a view; frames that can change are copied before.
+    Byte-aligned fields are views. Frames that can change are copied first.
     """
 
     def __init__(self, numpy: Any, message: type[MessageFacts], frames: Buffer) -> None:
@@ -247,7 +265,7 @@ class _Decoder:
             raise LengthError(message.NAME, (count + 1) * size, view.nbytes)
         data: Any = view if view.readonly and view.c_contiguous else view.tobytes()
         self.numpy, self.message, self.count = numpy, message, count
-        self.words = (count + 7) // 8  # of 64 bits, for a byte of every frame
+        self.words = (count + 7) // 8  # 64-bit words that contain a byte of every frame
         self.rows = numpy.frombuffer(data, numpy.uint8).reshape(count, size)
         if message not in _plans:
             _plans[message] = _plan(message)
@@ -258,7 +276,7 @@ class _Decoder:
         self.flags = self._flags(plan)
 
     def _split(self, run: Any, byte: int) -> None:
-        """Keeps each byte of the integers ``run``, which begin at a byte of the frame.
+        """Store each byte of the integers ``run``, which begin at a byte of the frame.
 
         Reading a run from every frame takes as long as reading one byte.
         """
@@ -275,15 +293,15 @@ class _Decoder:
             self._split((run >> 16).astype("<u2"), byte + 2)
 
     def _keep(self, values: Any, byte: int) -> None:
-        """Keeps the lowest byte of integers."""
+        """Store the lowest byte of each integer."""
         self.bytes[byte] = self.numpy.empty(self.words * 8, self.numpy.uint8)
         self.bytes[byte][: self.count] = values
 
     def _flags(self, plan: _Plan) -> dict[str, Any]:
-        """All columns of booleans, eight frames at a time in 64-bit words."""
+        """Return all columns of booleans. Each 64-bit word processes eight frames at a time."""
         numpy = self.numpy
         flags = numpy.empty((len(plan.names), self.words), numpy.uint64)
-        lowest = numpy.uint64(0x0101010101010101)  # bits of the bytes of a word
+        lowest = numpy.uint64(0x0101010101010101)  # lowest bit of each byte of a word
         row = 0
         for byte, shifts in plan.flags:
             words = self.bytes[byte].view(numpy.uint64)
@@ -296,7 +314,7 @@ class _Decoder:
         return dict(zip(plan.names, columns))
 
     def column(self, info: FieldInfo) -> Any:
-        """The raw values of a field."""
+        """Return the raw values of a field, or the results of a derived value."""
         if info.type == "bool":
             return self.flags[info.attribute]
         if info.derived:
@@ -310,7 +328,7 @@ class _Decoder:
         return self._across(info, runs)
 
     def _value(self, name: str) -> Any:
-        """What an attribute holds: physical values, or raw ones."""
+        """Return the column of an attribute: physical or raw values."""
         known = (*self.message.FIELDS, *self.message.VIEWS)
         info = next(one for one in known if name in (one.physical, one.attribute))
         column = self.column(info)
@@ -327,7 +345,7 @@ class _Decoder:
         return column if kind.isnative else column.astype(kind.newbyteorder("="))
 
     def _column(self, kind: Any, start: int) -> Any:
-        """What stands at a byte of every frame, as a view."""
+        """Return a view of the numbers that begin at byte ``start`` of every frame."""
         if not self.count:
             return self.numpy.empty(0, kind)
         return self.numpy.ndarray(
@@ -364,14 +382,14 @@ class _Decoder:
 
 
 class _Plan(NamedTuple):
-    """Where the fields of a message are that do not stand on whole bytes."""
+    """Bytes to read for the fields of a message that are not byte-aligned."""
 
     runs: list[tuple[int, int]]
-    """First byte and width of each run of 1, 2 or 4 bytes that hold them."""
+    """First byte and width of each run of 1, 2 or 4 bytes."""
     flags: list[tuple[int, list[int]]]
     """Each byte that has booleans, with their bits."""
     names: list[str]
-    """Their attributes, in this order."""
+    """Attributes of the booleans, in the order of `flags`."""
 
 
 _plans: dict[type[MessageFacts], _Plan] = {}
@@ -400,6 +418,6 @@ def _plan(message: type[MessageFacts]) -> _Plan:
 
 
 def _is_whole(info: FieldInfo) -> bool:
-    """Whether it is an array element as it stands."""
+    """Return whether numpy can read the field directly as a byte-aligned array element."""
     is_wide = info.type in OCTETS or info.bits in (8, 16, 32, 64)
     return is_wide and info.at % 8 == 0

@@ -1,7 +1,8 @@
-"""`Message.from_bytes` and `Message.to_bytes` of a class: compiled from its fields when they are first used.
+"""Compiler of `Message.from_bytes` and `Message.to_bytes`, at their first use.
 
-Fields that begin and end with a byte are items of one struct format. All other bits come in bytes of their own: fields within
-one byte are looked up in a table of 256 rows, fields that cross bytes are put together from their pieces.
+Byte-aligned fields are items of one struct format. The other bits are read as single
+bytes. Fields within one byte are looked up in a table of 256 rows. Fields that cross
+bytes are assembled from their pieces.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ _functions: dict[tuple[type, str], _types.Any] = {}
 
 
 def compiled(message: type[MessageFacts], name: str) -> _types.Any:
-    """The function ``name`` of the class that declares the fields, which from now on has it as its method."""
+    """Return the function ``name`` of the class that declares the fields.
+
+    The class gets it as its method.
+    """
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     if (owner, name) not in _functions:
         function = longest(owner, name)
@@ -74,17 +78,17 @@ def compiled(message: type[MessageFacts], name: str) -> _types.Any:
 
 
 def longest(owner: type[MessageFacts], name: str) -> _types.Any:
-    """The function ``name`` of the class, for frames of exactly ``LENGTH`` bytes."""
+    """Compile the function ``name`` of the class, for frames of exactly ``LENGTH`` bytes."""
     codec = Codec(owner)
     source = {"from_bytes": codec.decoder, "to_bytes": codec.encoder}[name]()
-    # All that stands in it are numbers and the names of attributes.
+    # The source contains only numbers and names of attributes (see `_units_of`).
     code = compile(source, f"<{owner.__qualname__}.{name}>", "exec")
     exec(code, codec.names)  # noqa: S102
     return codec.names[name]
 
 
 def _padding(owner: type[MessageFacts]) -> _types.Any:
-    """The greatest number of elements that the end of the frame can have, all of them 0."""
+    """Return the maximum number of elements of the variable-length end, all of them 0."""
     tail: _types.Any = owner.TAIL
     info = next(one for one in owner.FIELDS if one.attribute == tail.part)
     if not info.elements:
@@ -105,11 +109,11 @@ class _Item:
         self.target = target
         """Target of the assignment in the unpacking code."""
         self.value = value
-        """What is packed."""
+        """Expression of the packed value."""
 
 
 class Codec:
-    """The sources of a message's decoder and encoder, and what they name."""
+    """Sources of the decoder and the encoder of a message, and the objects that they refer to."""
 
     def __init__(self, message: type[MessageFacts]) -> None:
         self.message, self.order = message, message.BYTE_ORDER
@@ -130,20 +134,20 @@ class Codec:
         self._terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
         self._floats: list[str] = []  # 32-bit floats that the struct converts
         self._holders: dict[str, str] = {}  # attribute of a struct -> its variable
-        self._made: list[str] = []  # statements that make the structs
-        self._placed: list[str] = []  # statements that put them where they stand
-        self._arrays: list[FieldInfo] = []  # whose elements are read one by one
+        self._made: list[str] = []  # statements that create the structs
+        self._placed: list[str] = []  # statements that assign them to attributes
+        self._arrays: list[FieldInfo] = []  # arrays whose elements are read singly
         self._plan()
 
     def decoder(self) -> str:
-        """The source of ``from_bytes``."""
+        """Return the source of ``from_bytes``."""
         targets = "".join(f"{item.target}, " for item in self._items)
         unpack = f"({targets}) = unpack(data)" if targets else "unpack(data)"
         made = _lines(self._made, 4)
         return _DECODER.format(made=made, unpack=unpack, assign=_lines(self._assign, 4))
 
     def encoder(self) -> str:
-        """The source of ``to_bytes``."""
+        """Return the source of ``to_bytes``."""
         values = ", ".join(item.value for item in self._items)
         pack = [f"return pack({values})"]
         if self._floats:
@@ -179,7 +183,7 @@ class Codec:
         for info in crossing:
             self._put_together(info)
         self._join_elements()
-        self._assign += reversed(self._placed)
+        self._assign += reversed(self._placed)  # inner structs before outer structs
         self._items.sort(key=lambda item: item.byte)
         if self._floats:
             self.names |= {
@@ -195,7 +199,10 @@ class Codec:
         self.names |= {"unpack": self.form.unpack, "pack": self.form.pack}
 
     def _units(self) -> _types.Iterator[FieldInfo]:
-        """What is packed by itself: fields, arrays of words, and each element of other arrays."""
+        """Iterate over the parts that are packed separately.
+
+        These are fields, arrays of words and the elements of other arrays.
+        """
         for info in self.fields:
             yield from self._units_of(info)
 
@@ -215,7 +222,10 @@ class Codec:
     def _within(
         self, info: FieldInfo, struct: type[StructFacts]
     ) -> _types.Iterator[FieldInfo]:
-        """The fields of a struct, wherever it stands. Each is a variable while a frame is read or written."""
+        """Iterate over the fields of a struct, or of each struct of an array.
+
+        Each struct is a local variable of the compiled function.
+        """
         own, parts = self._own(info), info.parts
         kind = self._named("struct", struct)
         held = []
@@ -231,19 +241,20 @@ class Codec:
                 yield from self._units_of(inner.within(part))
 
     def _own(self, info: FieldInfo) -> str:
-        """The attribute as an expression: of a message, or of a struct in it."""
+        """Return the attribute of a field as an expression, of the message or of a struct in it."""
         holder, _, name = info.attribute.rpartition(".")
         return f"{self._holders[holder] if holder else 'self'}.{name}"
 
     def _target(self, info: FieldInfo) -> str:
-        """What decoding assigns a value to: the attribute; of an element a variable."""
+        """Return the target of a decoded value: the attribute, or a variable for an element."""
         is_element = info.attribute.endswith("]")
         return f"e{info.at}" if is_element else self._own(info)
 
     def _run(self, info: FieldInfo, byte: int) -> None:
-        """An array of words: one item of the struct, which a struct of its own takes apart."""
+        """Add an array of words: one item of the struct format, which a second format splits."""
         own, local = self._own(info), f"v{byte}"
-        is_single = info.type == "float" and info.bits == 32  # a struct changes NaNs
+        # `struct` makes signalling 32-bit NaNs quiet: unpack these floats as integers.
+        is_single = info.type == "float" and info.bits == 32
         code = (_INTEGERS if info.type != "float" or is_single else _FLOATS)[info.bits]
         code = code.lower() if info.signed else code
         order = "<" if byte_order(info, self.message) == "little" else ">"
@@ -272,7 +283,7 @@ class Codec:
             self._assign.append(f"{self._own(info)} = ({values})")
 
     def _shared_bytes(self) -> set[int]:
-        """Bytes that more than one field touches."""
+        """Return the bytes that contain bits of more than one field."""
         once: set[int] = set()
         more: set[int] = set()
         for info in (leaf for one in self.fields for leaf in one.leaves):
@@ -285,13 +296,13 @@ class Codec:
         return byte_order(info, self.message) == self.order
 
     def _named(self, stem: str, value: _types.Any) -> str:
-        """A name for something that the sources refer to."""
+        """Return a new name for an object that the sources refer to."""
         name = f"{stem}{len(self.names)}"
         self.names[name] = value
         return name
 
     def _whole(self, info: FieldInfo, byte: int, size: int) -> None:
-        """A field of whole bytes: one item of the struct."""
+        """Add a byte-aligned field: one item of the struct format."""
         own, local, target = self._own(info), f"v{byte}", self._target(info)
         code = _INTEGERS.get(info.bits, "")
         if info.type in ("bytes", "text"):
@@ -299,7 +310,8 @@ class Codec:
             self.names["sized"] = _codec.sized
             self._prepare.append(f"{local} = sized({own}, {size})")
         elif info.type == "float" and info.bits == 32 and "." in info.attribute:
-            self._items.append(_Item(byte, size, code, local, local))  # with its NaNs
+            # Unpacked as an integer, as `with_nans` knows only fields of the message.
+            self._items.append(_Item(byte, size, code, local, local))
             self._store(info, f"{self._named('value_of', _floats.float32)}({local})")
             bits_of = self._named("bits_of", _floats.float32_bits)
             self._prepare.append(f"{local} = {bits_of}({own})")
@@ -324,13 +336,13 @@ class Codec:
                 self._store(info, local)
 
     def _store(self, info: FieldInfo, value: str) -> None:
-        """Assigns an integer's value as its type needs it."""
+        """Assign the decoded value, converted to the type of the field."""
         if info.enum is not None:
             value = f"{self._named('members', _codec.Members(info.enum))}[{value}]"
         self._assign.append(f"{self._target(info)} = {value}")
 
     def _bit_byte(self, byte: int) -> None:
-        """A byte of bits: an item, the fields within it, and what crossing fields add to it."""
+        """Add a byte with fields of single bits: an item, a table, and pieces of crossing fields."""
         local = f"v{byte}"
         self._items.append(_Item(byte, 1, "B", local, local))
         parts = sorted(self._parts.get(byte, ()), key=lambda part: part[0])
@@ -347,7 +359,7 @@ class Codec:
             self._prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
 
     def _take_apart(self, info: FieldInfo) -> None:
-        """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
+        """Encode a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
         own, local = self._own(info), f"n{info.at}"
         if info.type == "float":
             bits_of = self._named(
@@ -365,7 +377,7 @@ class Codec:
             self._terms.setdefault(piece.byte, []).append(term)
 
     def _put_together(self, info: FieldInfo) -> None:
-        """Decoding of a field that crosses bytes."""
+        """Decode a field that crosses bytes."""
         runs = pieces(info, self.message)
         value = " | ".join(
             f"(v{one.byte} >> {one.shift} & {(1 << one.bits) - 1}) << {one.at}"
@@ -381,6 +393,7 @@ class Codec:
         self._store(info, value)
 
     def _format(self) -> str:
+        """Return the struct format, with pad bytes between the items."""
         reached = 0
         codes: list[str] = []
         for item in self._items:
@@ -393,13 +406,13 @@ class Codec:
 
 
 def _is_run(info: FieldInfo) -> bool:
-    """Whether it is an array of words, which are taken apart at once."""
+    """Return whether the field is an array of words, which one struct format can unpack."""
     is_word = info.at % 8 == 0 and info.bits in _INTEGERS
     return bool(info.elements) and is_word and info.type not in _NO_WORDS
 
 
 def _bytes_of(info: FieldInfo) -> range:
-    """The bytes that a field touches."""
+    """Return the bytes that contain bits of the field."""
     return range(info.at // 8, (info.at + info.bits + 7) // 8)
 
 

@@ -1,4 +1,4 @@
-"""Fields that are not always there: others say by their values whether they are. What is not there is None."""
+"""Optional fields: present only if other fields have certain values, otherwise None."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ._types import FieldInfo, MessageFacts
 
 
 def settle(message: MessageFacts, given: _types.Any) -> None:
-    """Makes what is not there None, unless it was given."""
+    """Set optional fields that are not present to None, except for ``given`` attributes."""
     for info in message.FIELDS:
         is_given = info.attribute in given or info.physical in given
         if info.when and not is_given and not is_there(info, message):
@@ -18,7 +18,10 @@ def settle(message: MessageFacts, given: _types.Any) -> None:
 
 
 def decoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
-    """``from_bytes`` of a class of which ``steady`` decodes the fields that are always there."""
+    """Return ``from_bytes`` of a class with optional fields.
+
+    ``steady`` decodes the other fields.
+    """
     found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
     def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
@@ -39,7 +42,10 @@ def decoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
 
 
 def encoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
-    """``to_bytes`` of a class of which ``steady`` encodes the fields that are always there."""
+    """Return ``to_bytes`` of a class with optional fields.
+
+    ``steady`` encodes the other fields.
+    """
     found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
     def to_bytes(self: _types.Any) -> bytes:
@@ -68,14 +74,17 @@ def _value(info: FieldInfo, bits: int) -> _types.Any:
 
 
 def _bits(info: FieldInfo, value: _types.Any) -> int:
-    """What of a value goes into the frame, if it fits."""
+    """Return the bits of a value in the frame. Raise one of `REFUSED`."""
     if info.type == "float":
         return float32_bits(value) if info.bits == 32 else float64_bits(value)
     return (signed_bits if info.signed else unsigned_bits)(value, info.bits)
 
 
 def absent(numpy: _types.Any, info: FieldInfo, columns: _types.Any) -> _types.Any:
-    """Of each frame, whether a field is not there; ``columns`` are the raw values of the others."""
+    """Return whether an optional field is missing in each frame.
+
+    ``columns`` are the raw values of the fields in its condition.
+    """
     there = numpy.ones((), bool)
     for name, values in info.when:
         there = there & numpy.isin(columns[name], values)

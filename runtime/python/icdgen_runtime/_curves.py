@@ -1,7 +1,8 @@
-"""Physical values by curves, computed in doubles.
+"""Calibrations: physical values computed in doubles.
 
-A curve is pieces: from a raw value on, the terms of a polynomial in what is above that,
-the constant first; without terms, no number. Each step is rounded: Horner's rule.
+A calibration consists of pieces. Each piece has the raw value at which it begins, and
+the coefficients of a polynomial in the distance from there, the constant first. A piece
+without coefficients gives NaN. Polynomials use Horner's rule, each step rounded.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from ._types import FieldInfo
 
 
 def on_curve(curve: _types.Curve, raw: float) -> float:
-    """The physical value of a raw one: of the last piece that begins there or below.
+    """Return the physical value of a raw value, by the last piece that begins at or below it.
 
     >>> on_curve(((0.0, (-40.0, 0.5, 0.25)),), 2)
     -38.0
@@ -43,8 +44,8 @@ def _starts(curve: _types.Curve) -> tuple[float, ...]:
 def columns_on_curve(
     numpy: _types.Any, curve: _types.Curve, raw: _types.Any
 ) -> _types.Any:
-    """The physical values of a whole column."""
-    with numpy.errstate(all="ignore"):  # that a float is a signalling NaN, too
+    """Return the physical values of a column of raw values."""
+    with numpy.errstate(all="ignore"):  # the conversion warns of a signalling NaN
         x = raw.astype(numpy.float64)
     place = numpy.searchsorted(_starts(curve), x, side="right") - 1
     place = numpy.clip(place, 0, None)
@@ -63,7 +64,10 @@ def columns_on_curve(
 
 
 def from_curve(value: _types.Any, info: FieldInfo, field: str) -> _types.Any:
-    """The nearest raw value, of two the even one. Raises `RangeError` that names ``field``, the attribute that is set."""
+    """Return the nearest raw value, the even one of two.
+
+    Raise `RangeError` that names ``field``, the attribute that is set.
+    """
     try:
         top, bottom = value.as_integer_ratio()
         wanted = value if isinstance(value, float) else top / bottom

@@ -1,4 +1,4 @@
-"""Messages as what `dataclasses` and `inspect` know: made when it is asked for."""
+"""Attributes of messages that `dataclasses` and `inspect` read, created at their first use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PARAMS: Any = vars(dataclasses.make_dataclass("Message", [], **_KEYWORDS))[
 
 
 def dataclass_fields(message: Any) -> dict[str, Any]:
-    """The fields of a class of messages; it keeps them."""
+    """Return the dataclass fields of a message class, which stores them."""
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     notes = vars(owner).get("__annotations__", {})
     fields = [
@@ -35,7 +35,10 @@ def _field(one: FieldInfo) -> Any:
 
 
 def signature(message: Any, shared: Any) -> Signature:
-    """The keywords that a class of messages is made with; ``shared`` is the constructor that takes its fields."""
+    """Return the signature of a message class.
+
+    ``shared`` is the constructor of `Struct`, which takes the fields as keywords.
+    """
     if message.__init__ is not shared:
         own = Signature.from_callable(message.__init__)
         return own.replace(parameters=list(own.parameters.values())[1:])

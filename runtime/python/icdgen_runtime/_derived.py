@@ -1,7 +1,8 @@
-"""Values that are derived from several fields, computed in doubles.
+"""Values derived from several fields, computed in doubles.
 
-``fields`` are the attributes of physical values, or of raw ones without such; their
-values, the ``numbers`` and the result of each step make up a row, whose last one is it.
+A derivation has three parts: attributes of physical values (raw, if a field has none),
+numbers, and steps. The values, the numbers and the result of each step form a row. A
+step names its operands by their index in this row. The last entry is the result.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from . import _types
 
 
 def derived(derivation: _types.Derivation, values: list[float]) -> float:
-    """The result for values of the fields.
+    """Return the derived value for the values of the fields.
 
     >>> derived((("volts", "amperes"), (1000.0,), (("*", 0, 1), ("/", 3, 2))), [2.0, 250.0])
     0.5
@@ -25,7 +26,7 @@ def derived(derivation: _types.Derivation, values: list[float]) -> float:
 
 
 def quotient(one: float, other: float) -> float:
-    """As IEEE 754 divides: by zero, too."""
+    """Divide as IEEE 754 specifies, also by zero."""
     if other:
         return one / other
     if not one or math.isnan(one):
@@ -34,7 +35,10 @@ def quotient(one: float, other: float) -> float:
 
 
 def power(base: float, exponent: float) -> float:
-    """By squaring, from the lowest bit of a whole exponent on; of a negative one the reciprocal."""
+    """Raise to an integer exponent by squaring, from its lowest bit on.
+
+    A negative exponent gives the reciprocal of the positive power.
+    """
     left, found = abs(int(exponent)), 1.0
     while left:
         if left & 1:
@@ -56,7 +60,7 @@ _OPERATORS = {
 def column(
     numpy: _types.Any, derivation: _types.Derivation, columns: list[_types.Any]
 ) -> _types.Any:
-    """The results of whole columns of values."""
+    """Return the derived values for columns of values."""
     _, numbers, steps = derivation
     with numpy.errstate(all="ignore"):
         row = [one.astype(numpy.float64) for one in columns]

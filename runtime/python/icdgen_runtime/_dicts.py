@@ -1,4 +1,4 @@
-"""Messages from and to dictionaries and JSON."""
+"""Conversion of messages from and to dictionaries and JSON."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ OCTETS = ("bytes", "text")  # types whose raw values are bytes
 
 
 def filled(struct: type[S], values: Mapping[str, Any]) -> S:
-    """A struct or a message with the values, of which the rest is as in a new one. See `Struct.from_dict`."""
+    """Return a struct or message with these values and defaults. See `Struct.from_dict`."""
     made, left = struct(), dict(values)
     for info in struct.FIELDS:
-        if info.when:  # what is not there is not looked at
+        if info.when:  # the value of a field that is not present is ignored
             setattr(made, info.attribute, info.default)
     for info in struct.FIELDS:
         if info.attribute in left:
             setattr(made, info.attribute, _raw(info, left.pop(info.attribute)))
         if info.physical in left:
             setattr(made, info.physical, left.pop(info.physical))
-    for info in struct.VIEWS:  # they follow from the fields
+    for info in struct.VIEWS:  # computed from the fields
         left.pop(info.attribute, None)
         left.pop(info.physical, None)
     for name in left:
@@ -32,12 +32,12 @@ def filled(struct: type[S], values: Mapping[str, Any]) -> S:
 
 
 def to_json(values: Mapping[str, Any]) -> str:
-    """See `Struct.to_json`."""
+    """Implement `Struct.to_json`."""
     return json.dumps(values, default=bytes.hex)
 
 
 def values_of_json(data: str) -> dict[str, Any]:
-    """The values by name in a text. Raises `IcdError` for what is no object of JSON."""
+    """Return the values by name. Raise `IcdError` if ``data`` is not a JSON object."""
     try:
         values = json.loads(data)
     except (ValueError, RecursionError) as error:
@@ -48,7 +48,10 @@ def values_of_json(data: str) -> dict[str, Any]:
 
 
 def _raw(info: FieldInfo, value: Any) -> Any:
-    """A raw value as the attribute holds it: bytes may be given as digits, structs as their values."""
+    """Return a raw value of the type of the attribute.
+
+    Bytes may be given as hexadecimal digits, structs as dictionaries.
+    """
     if info.struct is not None:
         return _structs(info, info.struct, value)
     if info.elements and isinstance(value, (list, tuple)):
@@ -57,7 +60,7 @@ def _raw(info: FieldInfo, value: Any) -> Any:
 
 
 def _member(info: FieldInfo, value: Any) -> Any:
-    """Of an enumeration the member, if the value is one of it; bytes of their digits."""
+    """Return the member of an enumeration if the value is one, or the bytes of digits."""
     if info.type in OCTETS and isinstance(value, str):
         try:
             return bytes.fromhex(value)

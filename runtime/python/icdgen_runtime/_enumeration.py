@@ -1,23 +1,25 @@
-"""Enumerations that keep values they do not know."""
+"""Enumerations that preserve unknown values."""
 
 from __future__ import annotations
 
 from enum import IntEnum
 
-_KEPT = 256  # unknown values below this are made once, so that `is` works
+# Unknown values below this are created once, so that `is` works. Any number of larger
+# ones would stay in memory.
+_KEPT = 256
 
 
 class OpenEnum(IntEnum):
-    """An integer with a name where the manual gives one.
+    """An integer with a name if the manual gives one.
 
-    A value that the manual does not list becomes a member of its own, such as
-    ``UNKNOWN_7``, so that decoding never fails and encoding gives back what came. One that
-    lies in a range of the manual has its label: of ``RESERVED_FIRST`` to ``RESERVED_LAST``
-    17 is ``RESERVED_17``.
+    An unknown value becomes an additional member such as ``UNKNOWN_7``. Decoding
+    therefore never fails, and encoding returns the received value. A value in a range
+    of the manual has the label of the range: in ``RESERVED_FIRST`` to
+    ``RESERVED_LAST``, 17 is ``RESERVED_17``.
     """
 
     label: str
-    """The manual's name, verbatim; empty for a value that it does not list."""
+    """The manual's name, verbatim; empty for a value that the manual does not list."""
 
     __ranges__: tuple[tuple[int, int, str, str], ...] = ()
 
@@ -42,7 +44,7 @@ class OpenEnum(IntEnum):
 
     @classmethod
     def _range_of(cls, value: int) -> tuple[str, str]:
-        """What a value that is no member of its own is called in code, and its label."""
+        """Return the name in code and the label of a value that is not a member."""
         for first, last, words, label in cls.__ranges__:
             if first <= value <= last:
                 return words, label
@@ -61,5 +63,5 @@ class OpenEnum(IntEnum):
 
 
 def is_signed(enum: type[OpenEnum]) -> bool:
-    """Whether its values are in two's complement: the manual lists a negative one."""
+    """Return whether the values are in two's complement: the manual lists a negative one."""
     return any(member < 0 for member in enum.__members__.values())

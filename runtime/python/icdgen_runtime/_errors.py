@@ -1,14 +1,14 @@
-"""The exceptions of this package."""
+"""Exceptions of this package."""
 
 from __future__ import annotations
 
 
 class IcdError(ValueError):
-    """Whatever this package refuses."""
+    """Base class of all errors of this package."""
 
 
 class LengthError(IcdError):
-    """A frame has not ``expected`` but ``actual`` bytes."""
+    """Length mismatch: a frame has ``actual`` bytes instead of ``expected``."""
 
     def __init__(self, message: str, expected: int, actual: int) -> None:
         super().__init__(f"{message} has {expected} bytes, {actual} given")
@@ -19,7 +19,7 @@ class LengthError(IcdError):
 
 
 class RangeError(IcdError):
-    """``value`` does not fit ``field``, an attribute; ``allowed`` says what does."""
+    """Value out of range: attribute ``field`` accepts ``allowed``, not ``value``."""
 
     def __init__(self, field: str, allowed: str, value: object) -> None:
         super().__init__(f"{field} takes {allowed}, not {_shortly(value)}")
@@ -30,7 +30,7 @@ class RangeError(IcdError):
 
 
 class UnknownIdError(IcdError):
-    """The node has no such message: ``node``, ``kind`` and ``id``; ``why``, where it is not for the id."""
+    """The node has no message with this ``kind`` and ``id``. ``why`` is any further reason."""
 
     def __init__(self, node: str, kind: str, id: object, why: str = "") -> None:
         what = f"{node} has no {kind} {_shortly(id)}"
@@ -50,7 +50,7 @@ def _shortly(value: object) -> str:
 
 
 def span_of(least: float, most: float, unit: str = "") -> str:
-    """What is allowed, in a unit.
+    """Return a range of values with its unit, for a message.
 
     >>> span_of(0.0, 6553.5, "m/s")
     '0 to 6553.5 m/s'

@@ -1,8 +1,8 @@
-"""Declarations of fields in the class of a message, and the properties that they make."""
+"""Declarations of fields in a message class, and the properties that they create."""
 
 from __future__ import annotations
 
-# The module itself: names in annotations are loaded when they are evaluated.
+# The module, not its names: these are imported when an annotation is evaluated.
 from . import _types
 from ._errors import RangeError, span_of
 from ._types import FieldInfo
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Form:
-    """Another attribute of the field that is declared before it: its value in another form."""
+    """Declaration of another attribute of the preceding field, such as its physical value."""
 
     __slots__ = ("kind", "terms", "curve", "ends")
 
@@ -27,7 +27,7 @@ class Form:
         self.kind, self.terms, self.curve, self.ends = kind, terms, curve, ends
 
     def property_of(self, info: FieldInfo, name: str) -> property:
-        """What the class has as ``name``, which the field is told of."""
+        """Return the property ``name``, and enter its name into the facts of the field."""
         if self.kind == "text":
             info.physical = name
             return _text_property(info)
@@ -68,7 +68,7 @@ def _number_property(info: FieldInfo, form: Form, name: str) -> property:
 
 
 def _optional(attribute: str, get: Any, set: Any) -> property:
-    """The property of a field that is not always there: None then, in both directions."""
+    """Return the property of an optional field: None if the field is not present."""
 
     def get_there(self: Any) -> Any:
         return None if getattr(self, attribute) is None else get(self)
@@ -105,7 +105,7 @@ def _curve_property(info: FieldInfo) -> property:
 
 
 def _counted(info: FieldInfo, name: str, values: Any) -> None:
-    """Raises `RangeError` that names the attribute unless there is a value for each element."""
+    """Raise `RangeError` that names the attribute unless there is a value for each element."""
     from ._codec import elements_of, has_elements
 
     if not has_elements(info, values):
@@ -153,10 +153,10 @@ def _text_property(info: FieldInfo) -> property:
 def field(
     name: str, at: int, bits: int, type: str, *, default: _types.Any, **told: _types.Any
 ) -> _types.Any:
-    """A field: the manual's name, offset and width in bits, type, and its first value.
+    """Declare a field: the manual's name, offset and width in bits, type and default.
 
-    What else is told of it goes by the names of `FieldInfo`; the enumeration is that of
-    the default, unless it is told, too.
+    Further facts are keywords with the names of `FieldInfo`. The enumeration is the
+    type of the default, unless ``enum`` is given.
     """
     if type == "enum" and "enum" not in told:
         one = default[0] if told.get("elements") else default
@@ -172,15 +172,15 @@ def part(
     factory: _types.Any,
     **told: _types.Any,
 ) -> _types.Any:
-    """A struct, or as many of them as there are elements: the class of one is ``factory``."""
+    """Declare a struct of class ``factory``, or an array of such structs."""
     told.update(default=() if told.get("is_open") else None, struct=factory)
     return FieldInfo("", name, at, bits, "struct", **told)
 
 
 def scaled(p: int, c: int, q: int, *, default: _types.Any) -> _types.Any:
-    """The physical value ``(raw * p + c) / q`` of the field above, correctly rounded.
+    """Declare the physical value ``(raw * p + c) / q`` of the field above, correctly rounded.
 
-    Setting it takes the nearest raw value, of two the even one. Raises `RangeError`.
+    Setting it sets the nearest raw value, the even one of two. Raise `RangeError`.
     """
     return Form("scaled", (p, c, q))
 
@@ -190,10 +190,10 @@ def curve(
     default: _types.Any,
     ends: tuple[int, ...] = (),
 ) -> _types.Any:
-    """The physical value of the field above by a curve: see `FieldInfo.curve`.
+    """Declare the physical value of the field above by a calibration: see `FieldInfo.curve`.
 
-    Setting it takes the nearest raw value, of two the even one, between ``ends`` where
-    these are told. Raises `RangeError`.
+    Setting it sets the nearest raw value, the even one of two. Raise `RangeError`. If
+    ``ends`` are given, the raw value is between these.
     """
     return Form("curve", curve=pieces, ends=ends)
 
@@ -203,19 +203,22 @@ def curve_only(
     default: _types.Any,
     init: _types.Literal[False] = False,
 ) -> _types.Any:
-    """The same where it does not lead back to a raw value: it is only read."""
+    """Declare a read-only physical value by a calibration that has no inverse."""
     return Form("curve_only", curve=pieces)
 
 
 def whole(p: int, c: int, *, init: _types.Literal[False] = False) -> _types.Any:
-    """The exact ``raw * p + c`` of the field above, in parts of its unit, set likewise."""
+    """Declare the exact integer ``raw * p + c`` of the field above, in parts of its unit.
+
+    Setting it sets the nearest raw value, the even one of two. Raise `RangeError`.
+    """
     return Form("whole", (p, c, 1))
 
 
 def text(*, default: _types.Any) -> _types.Any:
-    """The field above as a text, or texts: what stands before the first NUL.
+    """Declare the text of the field above, or the texts of an array, up to the first NUL.
 
-    A byte that is not ASCII reads as U+FFFD. Setting it raises `RangeError`.
+    A byte that is not ASCII reads as U+FFFD. Setting it may raise `RangeError`.
     """
     return Form("text")
 
@@ -223,11 +226,11 @@ def text(*, default: _types.Any) -> _types.Any:
 def nearest_raw(
     value: float, info: FieldInfo, field: str, terms: tuple[int, int, int]
 ) -> int:
-    """The raw value whose physical value is nearest; of two, the even one.
+    """Return the raw value whose physical value is nearest, the even one of two.
 
-    The physical value is ``(raw * p + c) / q``. ``value`` is taken exactly: a float,
-    an integer, or anything else that has ``as_integer_ratio``. Raises `RangeError`
-    that names ``field``, the attribute that is set.
+    The physical value is ``(raw * p + c) / q``. ``value`` is used exactly: a float, an
+    integer, or any object that has ``as_integer_ratio``. Raise `RangeError` that names
+    ``field``, the attribute that is set.
     """
     (p, c, q), (low, high) = terms, info.raw_range
     try:
@@ -246,7 +249,10 @@ def nearest_raw(
 
 
 def _allowed(info: FieldInfo, terms: tuple[int, int, int]) -> str:
-    """``0 to 6553.5 m/s``; of whole parts of the unit these, and then the same."""
+    """Return the valid values, such as ``0 to 6553.5 m/s``.
+
+    An integer in parts of the unit has its own range, followed by the physical range.
+    """
     least, most = _ends(info, info.scale)
     span = span_of(least, most, info.unit)
     if terms == info.scale:
@@ -256,6 +262,7 @@ def _allowed(info: FieldInfo, terms: tuple[int, int, int]) -> str:
 
 
 def _ends(info: FieldInfo, terms: tuple[int, int, int]) -> list[float]:
+    """Return the physical values of the smallest and the largest raw value, in order."""
     p, c, q = terms
     return sorted(
         (raw * p + c) / q if q != 1 else raw * p + c for raw in info.raw_range

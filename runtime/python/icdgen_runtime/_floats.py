@@ -1,7 +1,7 @@
 """Floats whose NaNs keep sign and payload.
 
-`struct` makes signalling 32-bit NaNs quiet. Here a 32-bit NaN becomes the 64-bit one
-with the same sign and payload, and goes back the same way.
+`struct` makes signalling 32-bit NaNs quiet. This module converts a 32-bit NaN to the
+64-bit NaN with equal sign and payload, and back.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ isnan = math.isnan
 
 
 def is_special(value: float, special: float) -> bool:
-    """Whether a number is a special value, which no comparison says of NaN: all NaNs are."""
+    """Return whether a number is the special value. Any NaN matches a special NaN."""
     return value == special or (isnan(value) and isnan(special))
 
 
 def float32(bits: int) -> float:
-    """The number that the bits stand for; NaNs keep sign and payload."""
+    """Return the number of 32 bits. NaNs keep sign and payload."""
     if bits & 0x7F800000 == 0x7F800000 and bits & 0x007FFFFF:
         wide = (bits >> 31) << 63 | 0x7FF << 52 | (bits & 0x007FFFFF) << 29
         return float64(wide)
@@ -33,7 +33,7 @@ def float32(bits: int) -> float:
 
 
 def float32_bits(value: float) -> int:
-    """The bits of the nearest 32-bit float; those of a NaN keep sign and payload."""
+    """Return the bits of the nearest 32-bit float. NaNs keep sign and payload."""
     if isnan(value):
         wide = float64_bits(value)
         payload = wide >> 29 & 0x007FFFFF
@@ -43,19 +43,19 @@ def float32_bits(value: float) -> int:
 
 
 def float64(bits: int) -> float:
-    """The number that the bits stand for."""
+    """Return the number of 64 bits."""
     (value,) = _FLOAT64.unpack(_BITS64.pack(bits))
     return float(value)
 
 
 def float64_bits(value: float) -> int:
-    """The bits of the number."""
+    """Return the bits of a 64-bit float."""
     (bits,) = _BITS64.unpack(_FLOAT64.pack(value))
     return int(bits)
 
 
 def keep_nans(message: MessageFacts, data: _types.Buffer) -> None:
-    """Sets the aligned 32-bit floats of ``message`` again, exactly as in ``data``."""
+    """Set the byte-aligned 32-bit floats of ``message`` again, exactly as in ``data``."""
     frame = memoryview(data).tobytes()
     for name, byte in _aligned(message):
         bits = int.from_bytes(frame[byte : byte + 4], message.BYTE_ORDER)
@@ -63,7 +63,7 @@ def keep_nans(message: MessageFacts, data: _types.Buffer) -> None:
 
 
 def with_nans(message: MessageFacts, frame: bytes) -> bytes:
-    """``frame`` with the exact bits of the aligned 32-bit floats of ``message``."""
+    """Return ``frame`` with the exact bits of the byte-aligned 32-bit floats of ``message``."""
     exact = bytearray(frame)
     for name, byte in _aligned(message):
         bits = float32_bits(getattr(message, name))
@@ -76,6 +76,6 @@ def _aligned(message: MessageFacts) -> _types.Iterator[tuple[str, int]]:
         if info.type != "float" or info.bits != 32 or info.at % 8:
             continue
         if info.elements or info.when:
-            continue  # elements, and what is not always there, are read as bits
+            continue  # the decoder reads array elements and optional fields as bits
         if info.byte_order in ("", message.BYTE_ORDER):
             yield info.attribute, info.at // 8

@@ -1,4 +1,4 @@
-"""Types that annotations name; nothing else needs them."""
+"""Types that only annotations use."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ Buffer = Union[bytes, bytearray, memoryview]
 """Types of a frame."""
 
 Frames = Union[Buffer, Iterable[Buffer]]
-"""Many frames: one after the other, or a list of them."""
+"""Several frames: consecutive in one buffer, or a list."""
 
 Derivation = tuple[tuple[str, ...], tuple[float, ...], tuple[tuple[str, int, int], ...]]
-"""Attributes, numbers, and steps on the row of their values: see `_derived`."""
+"""Attributes, numbers and steps of a derived value: see `_derived`."""
 
 Curve = tuple[tuple[float, tuple[float, ...]], ...]
-"""From a raw value on, the terms of a polynomial in what is above that."""
+"""Pieces of a calibration, each with its first raw value and coefficients: see `_curves`."""
 
 T = TypeVar("T")
 
 Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
-"""A message of an id that several have: its name, its lengths, and byte, mask and value of its constants."""
+"""One of several messages with an id: name, lengths, and byte, mask and value of constants."""
 
 Known = Union[str, tuple[Candidate, ...]]
 """The message of an id, or its candidates if several share it."""

@@ -1,4 +1,4 @@
-"""Where the bits of a field lie in the bytes of a frame."""
+"""Bits of a field in the bytes of a frame."""
 
 from __future__ import annotations
 
@@ -6,7 +6,11 @@ from ._types import FieldInfo, MessageFacts
 
 
 class Piece:
-    """``bits`` bits of byte ``byte`` from its bit ``shift`` up are bits ``at`` and up of the value."""
+    """A part of a field within one byte.
+
+    ``bits`` bits of byte ``byte``, from its bit ``shift`` up, are the bits of the value
+    from ``at`` up.
+    """
 
     __slots__ = ("at", "bits", "byte", "shift")
 
@@ -15,12 +19,12 @@ class Piece:
 
 
 def byte_order(info: FieldInfo, message: type[MessageFacts]) -> str:
-    """``little`` or ``big``: the field's own, or the message's."""
+    """Return ``little`` or ``big``: the byte order of the field, or else of the message."""
     return info.byte_order or message.BYTE_ORDER
 
 
 def pieces(info: FieldInfo, message: type[MessageFacts]) -> list[Piece]:
-    """The runs of bits of a field's number, in the order of their bytes."""
+    """Return the parts of a field in single bytes, in the order of the bytes."""
     found = []
     at, end, below = info.at, info.at + info.bits, 0
     is_little = byte_order(info, message) == "little"

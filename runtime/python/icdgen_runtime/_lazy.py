@@ -1,10 +1,10 @@
-"""Loads types when they are first used: importing a node costs next to nothing."""
+"""Import on first use, so that importing a node is fast."""
 
 from __future__ import annotations
 
 from importlib import import_module
 
-# The module itself: names in annotations are loaded when they are evaluated.
+# The module, not its names: these are imported when an annotation is evaluated.
 from . import _lazy  # noqa: PLW0406
 from ._errors import UnknownIdError
 
@@ -45,7 +45,7 @@ else:
 def attribute(
     module: dict[str, _lazy.Any], homes: dict[str, str], name: str
 ) -> _lazy.Any:
-    """The class ``name`` of the node ``module``, from the file that ``homes`` gives."""
+    """Return the class ``name`` of the node ``module``. ``homes`` gives its module."""
     if name not in homes:
         raise AttributeError(f"module {module['__name__']!r} has no attribute {name!r}")
     home = import_module(homes[name], module["__name__"])
@@ -56,8 +56,8 @@ def attribute(
 class Messages:
     """The messages of a node by id: ``TELEMETRY[146]`` is a class.
 
-    For an id that several messages have it stands for all of them: its `from_bytes` gives
-    the one that a frame is.
+    For an id that several messages share, the class represents all of them. Its
+    `from_bytes` returns the message that matches the frame.
     """
 
     def __init__(
@@ -94,12 +94,12 @@ class Messages:
         return found
 
     def of(self, id: int) -> tuple[type[_lazy.Message], ...]:
-        """All messages of an id: one, unless several share it. Raises `UnknownIdError`."""
+        """Return all messages of an id, several if they share it. Raise `UnknownIdError`."""
         found: _lazy.Any = self[id]
         return tuple(one for one, _, _ in getattr(found, "FRAMES", ())) or (found,)
 
     def which(self, id: int, frame: bytes) -> _lazy.Optional[type[_lazy.Message]]:
-        """The message that a frame of an id is; None if it is none of those that share it."""
+        """Return the message of an id that a frame matches, or None."""
         known: _lazy.Any = self[id]
         found: _lazy.Optional[type[Message]]
         found = known.which(frame) if hasattr(known, "FRAMES") else known
@@ -115,5 +115,5 @@ class Messages:
         return len(self._names)
 
     def items(self) -> _lazy.Iterator[tuple[int, type[_lazy.Message]]]:
-        """All ids and classes; loads them."""
+        """Iterate over all ids and classes. This imports all messages."""
         return ((id, self[id]) for id in self._names)

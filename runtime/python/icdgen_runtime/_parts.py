@@ -1,4 +1,4 @@
-"""The messages that a composite message repeats."""
+"""Parts of a composite message."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ._types import FieldInfo, MessageFacts
 
 
 def part(kind: type[_types.M], message: MessageFacts, index: int) -> _types.M:
-    """One of the parts that are of a class. Raises `IcdError` if there is none."""
+    """Return the part with this class and index. Raise `IcdError` if there is none."""
     key = kind.NODE, kind.__name__
     begins = [begin for *one, begin in message.PARTS if tuple(one) == key]
     if not begins:
@@ -24,7 +24,7 @@ def part(kind: type[_types.M], message: MessageFacts, index: int) -> _types.M:
 
 
 def parts(message: MessageFacts) -> _types.Iterator[_types.Any]:
-    """All of them, in the order of the frame."""
+    """Iterate over all parts, in the order of the frame."""
     values = _values(message)
     for node, name, begin in message.PARTS:
         kind: type[MessageFacts] = getattr(import_module(f"{__package__}.{node}"), name)
@@ -32,7 +32,7 @@ def parts(message: MessageFacts) -> _types.Iterator[_types.Any]:
 
 
 def _values(message: MessageFacts) -> dict[int, _types.Any]:
-    """The values by the bits at which they begin, each element of an array."""
+    """Return the values by their first bit, each element of an array separately."""
     found: dict[int, _types.Any] = {}
     for info in message.FIELDS:
         _collect(info, getattr(message, info.attribute), found)
@@ -49,7 +49,7 @@ def _collect(info: FieldInfo, value: _types.Any, found: dict[int, _types.Any]) -
 
 
 def _read(kind: type[_types.M], values: dict[int, _types.Any], begin: int) -> _types.M:
-    """The message whose values begin so many bits after its own places."""
+    """Return the message whose values begin ``begin`` bits after their own offsets."""
     return kind(**{info.attribute: _value(info, values, begin) for info in kind.FIELDS})
 
 

@@ -1,4 +1,4 @@
-"""Messages that have an id in common."""
+"""Messages that share an id."""
 
 from __future__ import annotations
 
@@ -8,19 +8,26 @@ from ._errors import LengthError, UnknownIdError
 
 
 class Shared(Message):
-    """What stands for all messages of an id: `from_bytes` gives the one that a frame is."""
+    """Class for all messages of an id: `from_bytes` returns the one that matches the frame."""
 
     FRAMES: tuple[
         tuple[type[Message], range, tuple[tuple[int, int, int], ...]], ...
     ] = ()
-    """Each message with its lengths, and byte, mask and value of its constants; most constants first."""
+    """Each message with its lengths, and byte, mask and value of its constants.
+
+    The message with the most constants is first.
+    """
 
     def __init__(self, **values: object) -> None:
         raise TypeError(f"{self.NAME} are several messages: make one of them")
 
     @classmethod
     def from_bytes(cls, data: _types.Buffer) -> _types.Any:
-        """The message in a frame. Raises `UnknownIdError` if it is none of them, `LengthError` if all have another length."""
+        """Decode a frame.
+
+        Raise `UnknownIdError` if no message matches it, or `LengthError` if all
+        messages have one length and the frame has another.
+        """
         frame = bytes(data)
         found = cls.which(frame)
         if found is not None:
@@ -35,7 +42,7 @@ class Shared(Message):
 
     @classmethod
     def which(cls, frame: bytes) -> _types.Optional[type[Message]]:
-        """The message that a frame is; None if it is none of them."""
+        """Return the message that matches a frame, or None."""
         for message, lengths, signs in cls.FRAMES:
             whole = frame.ljust(lengths[-1], b"\0")
             if len(frame) in lengths and all(
@@ -52,7 +59,7 @@ def shared(
     candidates: tuple[_types.Candidate, ...],
     named: _types.Callable[[str], type[Message]],
 ) -> type[Message]:
-    """The class for an id that several messages have."""
+    """Return the class for an id that several messages share."""
     frames = tuple((named(name), lengths, signs) for name, lengths, signs in candidates)
     title = " or ".join(message.NAME for message, _, _ in frames)
     known = {"NODE": node, "NAME": title, "KIND": kind, "IDS": (id,), "FRAMES": frames}

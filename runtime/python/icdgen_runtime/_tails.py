@@ -1,4 +1,7 @@
-"""Frames that differ in length: each is the beginning of the longest one, which is decoded and encoded."""
+"""Frames of different lengths.
+
+Each is converted to or from the longest frame, which the compiled functions process.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,10 @@ from ._errors import LengthError, RangeError
 
 
 def decoder(owner: _types.Any, longest: _types.Any) -> _types.Any:
-    """``from_bytes`` of a class whose longest frames ``longest`` decodes."""
+    """Return ``from_bytes`` of a class with variable-length fields.
+
+    ``longest`` decodes the longest frames.
+    """
     tail = owner.TAIL
 
     def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
@@ -26,7 +32,10 @@ def decoder(owner: _types.Any, longest: _types.Any) -> _types.Any:
 
 
 def filling_decoder(owner: _types.Any, whole: _types.Any) -> _types.Any:
-    """``from_bytes`` of a class whose frames may lack the zeros that they end with; ``whole`` decodes those that do not."""
+    """Return ``from_bytes`` of a class whose frames may lack the zeros at their end.
+
+    ``whole`` decodes complete frames.
+    """
 
     def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
         actual = memoryview(data).nbytes
@@ -40,9 +49,10 @@ def filling_decoder(owner: _types.Any, whole: _types.Any) -> _types.Any:
 
 
 def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _types.Any:
-    """``to_bytes`` of a class whose longest frames ``longest`` encodes.
+    """Return ``to_bytes`` of a class with variable-length fields.
 
-    ``padding`` are as many elements as the end can have, all of them 0.
+    ``longest`` encodes the longest frames. ``padding`` is the maximum number of
+    elements at the end, all of them 0.
     """
     tail = owner.TAIL
     info = next(one for one in owner.FIELDS if one.attribute == tail.part)
@@ -79,7 +89,10 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
 def _gap(
     self: _types.Any, part: _types.Any, begin: int, _: _types.Any
 ) -> tuple[int, int]:
-    """Where the longest frame has bytes of a part that this one has not, and how many. Raises `RangeError`."""
+    """Return the place and number of the bytes of a part that are only in the longest frame.
+
+    Raise `RangeError` if the counter is out of range.
+    """
     told = getattr(self, part.counter)
     low, high = max(0, -part.plus), part.most - part.plus
     if not low <= told <= high:
@@ -89,9 +102,10 @@ def _gap(
 
 
 def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
-    """The beginning of the longest frame, and how many of its bytes are not in ``data``: elements in front of the end.
+    """Insert the missing elements in front of the variable-length end.
 
-    Raises `LengthError` for a frame that is shorter than any, or says that it has more elements than there can be.
+    Return the beginning of the longest frame, and the number of inserted bytes. Raise
+    `LengthError` if the frame is too short, or if its counter is out of range.
     """
     frame, actual = memoryview(data).tobytes(), memoryview(data).nbytes
     if message.INNER:
@@ -104,7 +118,7 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
         for byte, shift, bits, at in pieces:
             count += (frame[byte] >> shift & (1 << bits) - 1) << at
         if not max(0, part.plus) <= count <= part.most:
-            # Another length than it has: its count is none that there can be.
+            # The counter is invalid, so no length is correct. Report one that differs.
             longest = message.LENGTH
             expected = message.INNER[0][1] if actual == longest else longest
             raise LengthError(message.NAME, expected, actual)
@@ -117,7 +131,10 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
 
 
 def count_in(message: _types.Any, frame: bytes, lacking: int) -> int:
-    """How many elements the end of a frame has, which lacks so many bytes in front of it. Raises `LengthError`."""
+    """Return the number of elements at the end of a frame.
+
+    ``lacking`` is the number of bytes that `spread` inserted. Raise `LengthError`.
+    """
     tail, actual = message.TAIL, len(frame)
     begin: int = message.LENGTH - tail.most * tail.step
     step: int = tail.step
@@ -130,5 +147,5 @@ def count_in(message: _types.Any, frame: bytes, lacking: int) -> int:
 
 
 def padded(message: _types.Any, data: _types.Buffer) -> bytes:
-    """The longest frame, of which the rest is 0."""
+    """Return the longest frame: ``data`` with missing bytes 0."""
     return spread(message, data)[0].ljust(message.LENGTH, b"\0")

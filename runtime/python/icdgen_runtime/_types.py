@@ -1,14 +1,14 @@
-"""Types that the other modules name: facts of fields, structs and messages, and types in annotations.
+"""Facts of fields, structs and messages, and types that annotations use.
 
-No module below the classes of messages imports these classes. It takes fields and facts,
-which stand here.
+Modules that the message classes import cannot import these classes. They use the types
+of this module instead.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
 
-# The module itself: names in annotations are loaded when they are evaluated.
+# The module, not its names: these are imported when an annotation is evaluated.
 from . import _types  # noqa: PLW0406
 
 __all__ = [
@@ -65,9 +65,9 @@ else:
 
 
 class FieldInfo:
-    """Facts of a field in the ICD. Not to be changed.
+    """Facts of a field in the ICD. Do not change them.
 
-    Limits are those of the physical value, or of the raw one if there is no scale.
+    Limits apply to the physical value, or to the raw value if there is no scale.
     """
 
     __slots__ = (
@@ -120,12 +120,12 @@ class FieldInfo:
         self.unit = unit
         """Unit of the physical value, or of the raw one if there is no scale."""
         self.physical = physical
-        """The attribute that holds the physical value, of ``text`` a `str`.
+        """The attribute that holds the physical value. For ``text``, it is a `str`.
 
         Empty if the field has neither a scale nor a text.
         """
         self.whole = whole
-        """The attribute that holds it exactly, as a whole number of parts of the unit."""
+        """The attribute that holds the exact physical value, as an integer in parts of the unit."""
         self.scale = scale
         """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
         self.enum = enum
@@ -133,33 +133,37 @@ class FieldInfo:
         self.const = const
         """The only valid raw value."""
         self.special = special
-        """Raw values with a meaning of their own."""
+        """Raw values with a special meaning."""
         self.minimum, self.maximum = minimum, maximum
         """The smallest and the largest value, or None."""
         self.above, self.below = above, below
         """Exclusive limits of the value, or None."""
         self.byte_order = byte_order
-        """``little`` or ``big``; empty where it is the message's."""
+        """``little`` or ``big``; empty for the order of the message."""
         self.bit_order = bit_order
-        """``lsb0`` or ``msb0``; empty where it is the message's."""
+        """``lsb0`` or ``msb0``; empty for the order of the message."""
         self.default = default
         """The raw value in a new message."""
         self.elements = elements
-        """Elements of an array, of so many bits each: its attributes hold tuples; else 0."""
-        self.is_open = is_open
-        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
-        self.fewest = fewest
-        """How many of them every frame holds."""
-        self.struct = struct
-        """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
-        self.curve = curve
-        """How it is computed in doubles, and no scale: from a raw value on, the terms of
-        a polynomial in what is above that, the constant first.
+        """Number of elements of an array, 0 if it is not one.
 
-        A table of points has several such pieces; without terms there is no number.
+        `bits` is the width of an element. The attributes hold tuples.
+        """
+        self.is_open = is_open
+        """Whether the length is variable, up to `elements` or bytes: see `Message.TAIL`."""
+        self.fewest = fewest
+        """Minimum number of elements or bytes."""
+        self.struct = struct
+        """The class of a struct. Offsets in it begin at 0."""
+        self.curve = curve
+        """Calibration instead of a scale, computed in doubles.
+
+        It consists of pieces: the first raw value, and the coefficients of a polynomial
+        in the distance from there, the constant first. A lookup table has several
+        pieces. A piece without coefficients has no physical value.
         """
         self.ends = ends
-        """The raw values between which a physical one leads back, where not all do."""
+        """The raw values between which the calibration has an inverse, if not all have one."""
         self.leads_back = leads_back
         """Whether the physical value can be set."""
         self.when = when
@@ -180,7 +184,10 @@ class FieldInfo:
         return self.type == "int"
 
     def allows(self, value: float) -> bool:
-        """Whether a physical value (a raw one if there is no scale) keeps the limits; NaN keeps none."""
+        """Return whether a physical value (raw, if there is no scale) is within the limits.
+
+        NaN is within no limits.
+        """
         return (
             (self.minimum is None or value >= self.minimum)
             and (self.above is None or value > self.above)
@@ -190,14 +197,14 @@ class FieldInfo:
 
     @property
     def raw_range(self) -> tuple[int, int]:
-        """The smallest and the largest raw value of a field that holds integers."""
+        """The smallest and the largest raw value of an integer field."""
         if self.signed:
             return -(1 << (self.bits - 1)), (1 << (self.bits - 1)) - 1
         return 0, (1 << self.bits) - 1
 
     @property
     def parts(self) -> tuple[FieldInfo, ...]:
-        """The elements of an array as fields, called ``temperatures[3]``; else the field."""
+        """The elements of an array as fields with names like ``temperatures[3]``, or the field."""
         return tuple(map(self._part, range(self.elements))) or (self,)
 
     def _part(self, index: int) -> FieldInfo:
@@ -213,14 +220,17 @@ class FieldInfo:
 
     @property
     def leaves(self) -> tuple[FieldInfo, ...]:
-        """The same, and of a struct the fields in it, called ``satellites[2].gnss``: no arrays, no structs."""
+        """Fields without arrays and structs, with names like ``satellites[2].gnss``."""
         if self.struct is None:
             return self.parts
         return tuple(leaf for line in self.lines for leaf in line.parts)
 
     @property
     def lines(self) -> tuple[FieldInfo, ...]:
-        """The field; of a struct the fields in it, called ``satellites[2].gnss``, arrays as one."""
+        """The field, or the fields of a struct, with names like ``satellites[2].gnss``.
+
+        An array of values is one field.
+        """
         if self.struct is None:
             return (self,)
         return tuple(
@@ -231,7 +241,7 @@ class FieldInfo:
         )
 
     def within(self, part: FieldInfo) -> FieldInfo:
-        """This field of a struct, where the struct stands as ``part`` of a message."""
+        """Return this field of a struct as a field of the message, whose struct is ``part``."""
         told = {name: getattr(self, name) for name in self.__slots__}
         for key in ("attribute", "name", "physical", "whole"):
             if told[key]:
@@ -244,7 +254,7 @@ class FieldInfo:
 
     @property
     def fresh(self) -> _types.Any:
-        """The raw value in a new message: of a struct a new one."""
+        """Default raw value. A struct is a new object."""
         made = self.struct
         if made is None:
             return self.default
@@ -268,9 +278,9 @@ class FieldInfo:
 
 
 class Tail:
-    """The end of a message whose frames differ in length.
+    """A variable-length field.
 
-    A frame is the beginning of the longest one, which has ``LENGTH`` bytes.
+    A frame is the beginning of the longest frame, which has ``LENGTH`` bytes.
     """
 
     __slots__ = ("part", "counter", "step", "most", "plus")
@@ -279,22 +289,22 @@ class Tail:
         self, part: str, counter: str, step: int, most: int, plus: int = 0
     ) -> None:
         self.part = part
-        """The attribute that holds it: a tuple, or `bytes`."""
+        """The attribute that holds the elements: a tuple, or `bytes`."""
         self.counter = counter
-        """The attribute that says how many elements it has.
+        """The attribute that holds the number of elements.
 
-        Empty if only the length of the frame does.
+        Empty if only the length of the frame gives it.
         """
         self.step = step
         """Bytes of an element."""
         self.most = most
-        """The most elements."""
+        """Maximum number of elements."""
         self.plus = plus
-        """There are so many more elements than the counter says."""
+        """Number of elements in addition to the counter."""
 
 
 class StructFacts:
-    """Facts of a struct or a message, which its class has as attributes."""
+    """Facts of a struct or a message: attributes of its class."""
 
     __slots__ = ()
 
@@ -304,20 +314,20 @@ class StructFacts:
         NAME: ClassVar[str]
         """The manual's name, verbatim."""
         LENGTH: ClassVar[int]
-        """Length of a frame in bytes, without the id; of the longest frame, if they differ."""
+        """Length of a frame in bytes, without the id. If lengths differ, the longest."""
         FIELDS: ClassVar[tuple[FieldInfo, ...]]
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
-        """Overlay fields and derived values, which are computed from the fields and not set."""
+        """Overlay fields and derived values. They are computed from the fields and cannot be set."""
         CONDITIONAL: ClassVar[bool]
-        """Whether a field is not always there: see `FieldInfo.when`."""
+        """Whether there are optional fields: see `FieldInfo.when`."""
     else:
         FIELDS = VIEWS = ()
         CONDITIONAL = False
 
 
 class MessageFacts(StructFacts):
-    """Facts of a message, which its class has as attributes."""
+    """Facts of a message: attributes of its class."""
 
     __slots__ = ()
 
@@ -327,19 +337,22 @@ class MessageFacts(StructFacts):
         IDS: ClassVar[tuple[int, ...]]
         """Its ids: one, or the id to set it and the id to get it."""
         TABLE: ClassVar[int | None]
-        """The manual's table."""
+        """Number of the table in the manual."""
         ACKNOWLEDGED: ClassVar[bool]
-        """Whether the node acknowledges it, where it is a telecommand."""
+        """Whether the node acknowledges the telecommand."""
         PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
-        """The messages that it repeats: their nodes, their classes, and from which bit."""
+        """Parts of a composite message: node, class and first bit of each."""
         TAIL: ClassVar[Tail | None]
-        """The end of frames that differ in length."""
+        """The variable-length field at the end of the frame."""
         INNER: ClassVar[
             tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
         ]
-        """Variable-length fields in front of `TAIL`: where each begins in the longest frame, and the bits that count it."""
+        """Variable-length fields in front of `TAIL`.
+
+        Each has its first byte in the longest frame, and the pieces of its counter.
+        """
         ENDS_EARLY: ClassVar[bool]
-        """Whether frames may lack the zeros that they end with."""
+        """Whether frames may lack the zeros at their end."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
