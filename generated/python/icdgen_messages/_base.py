@@ -207,7 +207,7 @@ class Struct(StructFacts, metaclass=MessageType):
             if info.struct is not None:
                 value = values[info.attribute]
                 values[info.attribute] = (
-                    tuple(one.as_dict(physical) for one in value)
+                    tuple(element.as_dict(physical) for element in value)
                     if info.elements
                     else value.as_dict(physical)
                 )
@@ -229,8 +229,8 @@ class Struct(StructFacts, metaclass=MessageType):
         """
         from ._dicts import filled
 
-        made: _types.Any = filled(cls, values)
-        checked: _types.S = made._checked()
+        struct: _types.Any = filled(cls, values)
+        checked: _types.S = struct._checked()
         return checked
 
     def _checked(self) -> _types.Any:
@@ -253,13 +253,13 @@ class Struct(StructFacts, metaclass=MessageType):
         from ._dicts import values_of_json
 
         struct: _types.Any = cls
-        made: _types.S = struct.from_dict(values_of_json(data))
-        return made
+        result: _types.S = struct.from_dict(values_of_json(data))
+        return result
 
     def __replace__(self: _types.S, **changes: _types.Any) -> _types.S:
         message: _types.Any = self
-        made: _types.S = type(message)(**{**message._own(), **changes})
-        return made
+        result: _types.S = type(message)(**{**message._own(), **changes})
+        return result
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -281,8 +281,8 @@ class Message(Spoken[N_contra], MessageFacts, Struct):
         """Decode a frame. Raise `LengthError` if the message cannot have its length."""
         from ._compiled import compiled
 
-        made: _types.M = compiled(cls, "from_bytes")(cls, data)
-        return made
+        message: _types.M = compiled(cls, "from_bytes")(cls, data)
+        return message
 
     @classmethod
     def from_part(cls: type[_types.M], message: Message, index: int = 0) -> _types.M:
@@ -346,7 +346,7 @@ def view(message: Message, attribute: str, kind: type[_types.T]) -> _types.T:
     """Return the value of an overlay field, from the encoded message. Raise `RangeError`."""
     from ._codec import value_of_bits
 
-    (info,) = (one for one in message.VIEWS if one.attribute == attribute)
+    (info,) = (overlay for overlay in message.VIEWS if overlay.attribute == attribute)
     value: _types.T = value_of_bits(info, type(message), message.to_bytes(), kind)
     return value
 
@@ -355,8 +355,8 @@ def derived(message: Message, attribute: str) -> float:
     """Return a derived value, computed from the fields. Raise `RangeError`."""
     from ._derived import derived as result_of
 
-    views = (one for one in message.VIEWS if one.attribute == attribute)
-    (derivation,) = (one.derived for one in views if one.derived)
+    views = (entry for entry in message.VIEWS if entry.attribute == attribute)
+    (derivation,) = (entry.derived for entry in views if entry.derived)
     return result_of(derivation, [getattr(message, name) for name in derivation[0]])
 
 
@@ -364,5 +364,7 @@ def on_curve(message: Message, attribute: str) -> float:
     """Return the physical value of an overlay field with a calibration. Raise `RangeError`."""
     from ._curves import on_curve as value_on
 
-    (curve,) = (one.curve for one in message.VIEWS if one.attribute == attribute)
+    (curve,) = (
+        overlay.curve for overlay in message.VIEWS if overlay.attribute == attribute
+    )
     return value_on(curve, getattr(message, attribute))

@@ -137,8 +137,8 @@ def text(value: _types.Buffer) -> str:
     >>> text(bytes([0x31, 0x2E, 0x32, 0, 0]))
     '1.2'
     """
-    said = bytes(value).split(b"\0", 1)[0]
-    return said.decode("ascii", "replace")
+    characters = bytes(value).split(b"\0", 1)[0]
+    return characters.decode("ascii", "replace")
 
 
 def text_bytes(value: str, field: str, size: int) -> bytes:
@@ -160,17 +160,17 @@ def texts_of(info: FieldInfo, value: _types.Any) -> _types.Any:
     return tuple(map(text, value)) if info.elements else text(value)
 
 
-def bytes_of_texts(info: FieldInfo, said: _types.Any) -> _types.Any:
+def bytes_of_texts(info: FieldInfo, value: _types.Any) -> _types.Any:
     """Return the raw value of a text, or of the texts of an array. Raise `RangeError`."""
     size = info.bits // 8
     if not info.elements:
-        raw = text_bytes(said, info.physical, size)
-        return raw[: max(len(said), info.fewest)] if info.is_open else raw
-    if not has_elements(info, said):
-        raise RangeError(info.physical, elements_of(info), said)
+        raw = text_bytes(value, info.physical, size)
+        return raw[: max(len(value), info.fewest)] if info.is_open else raw
+    if not has_elements(info, value):
+        raise RangeError(info.physical, elements_of(info), value)
     return tuple(
-        text_bytes(one, f"{info.physical}[{index}]", size)
-        for index, one in enumerate(said)
+        text_bytes(element, f"{info.physical}[{index}]", size)
+        for index, element in enumerate(value)
     )
 
 
@@ -194,17 +194,17 @@ def _misfit(info: FieldInfo, value: _types.Any) -> _types.Optional[RangeError]:
     """Return the exception for a field if its value, or an element, is out of range."""
     if info.elements and not has_elements(info, value):
         return RangeError(info.attribute, elements_of(info), value)
-    for one, each in zip(info.parts, value if info.elements else (value,)):
-        if one.struct is not None:
-            for inner in one.struct.FIELDS:
-                held = getattr(each, inner.attribute, None)
-                error = _misfit(inner.within(one), held)
+    for part, element in zip(info.parts, value if info.elements else (value,)):
+        if part.struct is not None:
+            for inner in part.struct.FIELDS:
+                inner_value = getattr(element, inner.attribute, None)
+                error = _misfit(inner.within(part), inner_value)
                 if error is not None:
                     return error
             continue
-        allowed, fits = _FITS[info.type](one, each)
+        allowed, fits = _FITS[info.type](part, element)
         if not fits:
-            return RangeError(one.attribute, allowed, each)
+            return RangeError(part.attribute, allowed, element)
     return None
 
 

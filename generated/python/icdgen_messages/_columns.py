@@ -36,8 +36,8 @@ def decode_many(
             is_octets = info.type in OCTETS and not info.elements
             columns[name] = rows = numpy.empty(len(counts), object)
             for row, count in enumerate(counts):
-                one = column[row, :count]
-                rows[row] = one.tobytes() if is_octets else one
+                elements = column[row, :count]
+                rows[row] = elements.tobytes() if is_octets else elements
     return columns
 
 
@@ -55,11 +55,11 @@ def _columns(
     joined, counts = _together(message, decode, frames)
     decoder = _Decoder(numpy, message, joined)
     columns: dict[str, Any] = {}
-    known = {info.attribute: info for info in message.FIELDS}
+    fields = {info.attribute: info for info in message.FIELDS}
     for info, parts in _lines(message):
         if info.elements:
-            found = [decoder.column(one) for one in parts]
-            column = numpy.stack(found, axis=1)
+            elements = [decoder.column(element) for element in parts]
+            column = numpy.stack(elements, axis=1)
         else:
             column = decoder.column(info)
         if physical and info.type == "text":
@@ -74,7 +74,7 @@ def _columns(
     for info in message.FIELDS if message.CONDITIONAL else ():
         if info.when:
             name = info.physical if physical and info.physical else info.attribute
-            raw = {key: decoder.column(known[key]) for key, _ in info.when}
+            raw = {key: decoder.column(fields[key]) for key, _ in info.when}
             mask = absent(numpy, info, raw)
             columns[name] = numpy.ma.array(columns[name], mask=mask)
     return columns, numpy.array(counts, numpy.int32)
@@ -88,22 +88,22 @@ def _together(
     Frames of different lengths are padded to the longest. The second result is then the
     number of elements of each frame, and otherwise empty.
     """
-    is_one = isinstance(frames, (bytes, bytearray, memoryview))
-    if message.ENDS_EARLY and not is_one:
-        given: list[Any] = list(frames)
-        for frame in given:
+    is_buffer = isinstance(frames, (bytes, bytearray, memoryview))
+    if message.ENDS_EARLY and not is_buffer:
+        shortened: list[Any] = list(frames)
+        for frame in shortened:
             decode(frame)  # raises `LengthError` if it is not a frame
-        return b"".join(padded(message, frame) for frame in given), []
+        return b"".join(padded(message, frame) for frame in shortened), []
     if message.TAIL is None:
-        return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
-    if is_one:
+        return (frames if is_buffer else b"".join(frames)), []  # type: ignore[return-value, arg-type]
+    if is_buffer:
         raise IcdError(
             f"frames of {message.NAME} differ in length: give them as a list"
         )
-    kept: list[Any] = list(frames)
-    made = [decode(frame) for frame in kept]  # raises `LengthError`
-    counts = [len(getattr(one, message.TAIL.part)) for one in made]
-    return b"".join(padded(message, frame) for frame in kept), counts
+    given: list[Any] = list(frames)
+    messages = [decode(frame) for frame in given]  # raises `LengthError`
+    counts = [len(getattr(decoded, message.TAIL.part)) for decoded in messages]
+    return b"".join(padded(message, frame) for frame in given), counts
 
 
 def decode_table(
@@ -160,13 +160,13 @@ def _lines(message: type[MessageFacts]) -> list[_Line]:
     struct. A field of the structs at a variable-length end has one column for all
     structs.
     """
-    found: list[_Line] = []
+    lines: list[_Line] = []
     for info in message.FIELDS:
         if info.struct is not None and info.is_open:
-            found += _open_lines(info)
+            lines += _open_lines(info)
         else:
-            found += [(line, line.parts) for line in info.lines]
-    return [*found, *((view, view.parts) for view in message.VIEWS)]
+            lines += [(line, line.parts) for line in info.lines]
+    return [*lines, *((view, view.parts) for view in message.VIEWS)]
 
 
 def _open_lines(info: FieldInfo) -> list[_Line]:
@@ -187,29 +187,29 @@ def _open_lines(info: FieldInfo) -> list[_Line]:
         for line in info.parts[0].lines
         for index in range(len(line.parts))
     ]
-    found = []
+    result = []
     for leaves, name in zip(zip(*each), physical):
-        told = {key: getattr(leaves[0], key) for key in FieldInfo.__slots__}
-        told["physical"] = name
+        facts = {key: getattr(leaves[0], key) for key in FieldInfo.__slots__}
+        facts["physical"] = name
         for key in ("attribute", "name", "physical"):
             head = info.name if key == "name" else info.attribute
-            told[key] = told[key].replace(f"{head}[0].", f"{head}.", 1)
-        told.update(elements=info.elements, is_open=True)
-        found.append((FieldInfo(**told), leaves))
-    return found
+            facts[key] = facts[key].replace(f"{head}[0].", f"{head}.", 1)
+        facts.update(elements=info.elements, is_open=True)
+        result.append((FieldInfo(**facts), leaves))
+    return result
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
     """Return the first elements of each row, as lists or as bytes. ``counts`` are per row."""
-    there = numpy.arange(rows.shape[1]) < counts[:, None]
-    values = rows[there]
+    mask = numpy.arange(rows.shape[1]) < counts[:, None]
+    values = rows[mask]
     ends = numpy.concatenate(([0], numpy.cumsum(counts))).astype(numpy.int32)
     if is_octets:
         buffers = [None, pyarrow.py_buffer(ends), pyarrow.py_buffer(values)]
         return pyarrow.Array.from_buffers(pyarrow.binary(), len(rows), buffers)
     if values.ndim == 2:
-        made = _octets(pyarrow, numpy.ascontiguousarray(values), values.shape[1])
-        return pyarrow.ListArray.from_arrays(pyarrow.array(ends), made)
+        strings = _octets(pyarrow, numpy.ascontiguousarray(values), values.shape[1])
+        return pyarrow.ListArray.from_arrays(pyarrow.array(ends), strings)
     return pyarrow.ListArray.from_arrays(pyarrow.array(ends), pyarrow.array(values))
 
 
@@ -220,13 +220,13 @@ def _octets(pyarrow: Any, rows: Any, size: int) -> Any:
 
 
 def _metadata(info: FieldInfo) -> dict[str, str]:
-    found = {"name": info.name}
+    metadata = {"name": info.name}
     if info.unit:
-        found["unit"] = info.unit
+        metadata["unit"] = info.unit
     if info.enum:
         names = {int(member): member.label for member in info.enum}
-        found["values"] = json.dumps(names)
-    return found
+        metadata["values"] = json.dumps(names)
+    return metadata
 
 
 def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
@@ -261,8 +261,8 @@ class _Decoder:
     def __init__(self, numpy: Any, message: type[MessageFacts], frames: Buffer) -> None:
         view = memoryview(frames)
         size = message.LENGTH
-        count, rest = divmod(view.nbytes, size) if size else (0, view.nbytes)
-        if rest:
+        count, remainder = divmod(view.nbytes, size) if size else (0, view.nbytes)
+        if remainder:
             raise LengthError(message.NAME, (count + 1) * size, view.nbytes)
         data: Any = view if view.readonly and view.c_contiguous else view.tobytes()
         self.numpy, self.message, self.count = numpy, message, count
@@ -306,10 +306,10 @@ class _Decoder:
         row = 0
         for byte, shifts in plan.flags:
             words = self.bytes[byte].view(numpy.uint64)
-            found = flags[row : row + len(shifts)]
+            bits = flags[row : row + len(shifts)]
             by = numpy.array(shifts, numpy.uint64)[:, None]
-            numpy.right_shift(words, by, out=found)
-            numpy.bitwise_and(found, lowest, out=found)
+            numpy.right_shift(words, by, out=bits)
+            numpy.bitwise_and(bits, lowest, out=bits)
             row += len(shifts)
         columns = flags.view(numpy.bool_)[:, : self.count]
         return dict(zip(plan.names, columns))
@@ -330,8 +330,12 @@ class _Decoder:
 
     def _value(self, name: str) -> Any:
         """Return the column of an attribute: physical or raw values."""
-        known = (*self.message.FIELDS, *self.message.VIEWS)
-        info = next(one for one in known if name in (one.physical, one.attribute))
+        infos = (*self.message.FIELDS, *self.message.VIEWS)
+        info = next(
+            candidate
+            for candidate in infos
+            if name in (candidate.physical, candidate.attribute)
+        )
         column = self.column(info)
         return _physical(self.numpy, info, column) if name == info.physical else column
 
@@ -368,9 +372,9 @@ class _Decoder:
     def _across(self, info: FieldInfo, runs: list[Piece]) -> Any:
         numpy = self.numpy
         total = numpy.zeros(self.count, numpy.uint64)
-        for one in runs:
-            part = (self._byte(one.byte) >> one.shift) & ((1 << one.bits) - 1)
-            total |= part.astype(numpy.uint64) << numpy.uint64(one.at)
+        for piece in runs:
+            part = (self._byte(piece.byte) >> piece.shift) & ((1 << piece.bits) - 1)
+            total |= part.astype(numpy.uint64) << numpy.uint64(piece.at)
         size = next(size for size in (8, 16, 32, 64) if size >= info.bits)
         if info.type == "float":
             return total.astype(f"u{size // 8}").view(f"f{size // 8}")
@@ -400,7 +404,7 @@ def _plan(message: type[MessageFacts]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (one for _, parts in _lines(message) for one in parts):
+    for info in (part for _, parts in _lines(message) for part in parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):
@@ -414,7 +418,7 @@ def _plan(message: type[MessageFacts]) -> _Plan:
         width = next(w for w in (4, 2, 1) if needed.issuperset(range(byte, byte + w)))
         runs.append((byte, width))
         needed.difference_update(range(byte, byte + width))
-    ordered = [name for found in names.values() for name in found]
+    ordered = [name for attributes in names.values() for name in attributes]
     return _Plan(runs, list(flags.items()), ordered)
 
 

@@ -46,7 +46,7 @@ def compiled(message: type[MessageFacts], name: str) -> _types.Any:
 
     The class gets it as its method.
     """
-    owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
+    owner = next(base for base in message.__mro__ if "FIELDS" in vars(base))
     if (owner, name) not in _functions:
         function = longest(owner, name)
         if message.CONDITIONAL:
@@ -91,7 +91,7 @@ def longest(owner: type[MessageFacts], name: str) -> _types.Any:
 def _padding(owner: type[MessageFacts]) -> _types.Any:
     """Return the maximum number of elements of the variable-length end, all of them 0."""
     tail: _types.Any = owner.TAIL
-    info = next(one for one in owner.FIELDS if one.attribute == tail.part)
+    info = next(field for field in owner.FIELDS if field.attribute == tail.part)
     if not info.elements:
         return bytes(tail.most)
     zeros = longest(owner, "from_bytes")(owner, bytes(owner.LENGTH))
@@ -118,7 +118,7 @@ class Codec:
 
     def __init__(self, message: type[MessageFacts]) -> None:
         self.message, self.order = message, message.BYTE_ORDER
-        self.fields = [one for one in message.FIELDS if not one.when]
+        self.fields = [info for info in message.FIELDS if not info.when]
         self.names: dict[str, _types.Any] = {
             "new": object.__new__,
             "error": struct.error,
@@ -144,8 +144,10 @@ class Codec:
         """Return the source of ``from_bytes``."""
         targets = "".join(f"{item.target}, " for item in self._items)
         unpack = f"({targets}) = unpack(data)" if targets else "unpack(data)"
-        made = _lines(self._made, 4)
-        return _DECODER.format(made=made, unpack=unpack, assign=_lines(self._assign, 4))
+        create = _lines(self._made, 4)
+        return _DECODER.format(
+            made=create, unpack=unpack, assign=_lines(self._assign, 4)
+        )
 
     def encoder(self) -> str:
         """Return the source of ``to_bytes``."""
@@ -229,12 +231,16 @@ class Codec:
         """
         own, parts = self._own(info), info.parts
         kind = self._named("struct", struct)
-        held = []
+        variables = []
         for part in parts:
             self._holders[part.attribute] = name = f"s{len(self._holders)}"
             self._made.append(f"{name} = new({kind})")
-            held.append(name)
-        row = "".join(f"{name}, " for name in held) if info.elements else held[0]
+            variables.append(name)
+        row = (
+            "".join(f"{name}, " for name in variables)
+            if info.elements
+            else variables[0]
+        )
         self._placed.append(f"{own} = ({row})")
         self._prepare.append(f"{row} = {own}")
         for part in parts:
@@ -287,7 +293,7 @@ class Codec:
         """Return the bytes that contain bits of more than one field."""
         once: set[int] = set()
         more: set[int] = set()
-        for info in (leaf for one in self.fields for leaf in one.leaves):
+        for info in (leaf for field in self.fields for leaf in field.leaves):
             span = _bytes_of(info)
             more |= once.intersection(span)
             once.update(span)
@@ -381,8 +387,8 @@ class Codec:
         """Decode a field that crosses bytes."""
         runs = pieces(info, self.message)
         value = " | ".join(
-            f"(v{one.byte} >> {one.shift} & {(1 << one.bits) - 1}) << {one.at}"
-            for one in runs
+            f"(v{piece.byte} >> {piece.shift} & {(1 << piece.bits) - 1}) << {piece.at}"
+            for piece in runs
         )
         if info.type == "float":
             value_of = self._named(

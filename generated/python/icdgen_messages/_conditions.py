@@ -23,18 +23,18 @@ def decoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
 
     ``steady`` decodes the other fields.
     """
-    found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
+    optional = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
     def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
         self = steady(cls, data)
         frame = memoryview(data).tobytes()
-        for info, runs in found:
+        for info, runs in optional:
             value = None
             if is_there(info, self):
                 bits = 0
-                for one in runs:
-                    part = frame[one.byte] >> one.shift & (1 << one.bits) - 1
-                    bits |= part << one.at
+                for piece in runs:
+                    part = frame[piece.byte] >> piece.shift & (1 << piece.bits) - 1
+                    bits |= part << piece.at
                 value = _value(info, bits)
             setattr(self, info.attribute, value)
         return self
@@ -47,19 +47,19 @@ def encoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
 
     ``steady`` encodes the other fields.
     """
-    found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
+    optional = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
     def to_bytes(self: _types.Any) -> bytes:
         frame = bytearray(steady(self))
-        for info, runs in found:
+        for info, runs in optional:
             if is_there(info, self):
                 try:
                     bits = _bits(info, getattr(self, info.attribute))
                 except REFUSED:
                     raise range_error(self) from None
-                for one in runs:
-                    part = bits >> one.at & (1 << one.bits) - 1
-                    frame[one.byte] |= part << one.shift
+                for piece in runs:
+                    part = bits >> piece.at & (1 << piece.bits) - 1
+                    frame[piece.byte] |= part << piece.shift
         return bytes(frame)
 
     return to_bytes
@@ -86,7 +86,7 @@ def absent(numpy: _types.Any, info: FieldInfo, columns: _types.Any) -> _types.An
 
     ``columns`` are the raw values of the fields in its condition.
     """
-    there = numpy.ones((), bool)
+    present = numpy.ones((), bool)
     for name, values in info.when:
-        there = there & numpy.isin(columns[name], values)
-    return ~there
+        present = present & numpy.isin(columns[name], values)
+    return ~present

@@ -97,8 +97,10 @@ def _curve_property(info: FieldInfo) -> property:
     def set_all(self: Any, values: Any) -> None:
         _counted(info, name, values)
         each = enumerate(values)
-        found = (from_curve(one, info, f"{name}[{place}]") for place, one in each)
-        setattr(self, attribute, tuple(found))
+        raw_values = (
+            from_curve(element, info, f"{name}[{place}]") for place, element in each
+        )
+        setattr(self, attribute, tuple(raw_values))
 
     if info.when:
         return _optional(attribute, get, set)
@@ -126,11 +128,11 @@ def _array_property(info: FieldInfo, form: Form, name: str) -> property:
 
     def set_nearest(self: Any, values: Any) -> None:
         _counted(info, name, values)
-        found = (
+        raw_values = (
             nearest_raw(value, info, f"{name}[{index}]", terms)
             for index, value in enumerate(values)
         )
-        setattr(self, attribute, tuple(found))
+        setattr(self, attribute, tuple(raw_values))
 
     return property(get_whole if is_whole else get_physical, set_nearest)
 
@@ -152,17 +154,23 @@ def _text_property(info: FieldInfo) -> property:
 
 
 def field(
-    name: str, at: int, bits: int, type: str, *, default: _types.Any, **told: _types.Any
+    name: str,
+    at: int,
+    bits: int,
+    type: str,
+    *,
+    default: _types.Any,
+    **facts: _types.Any,
 ) -> _types.Any:
     """Declare a field: the manual's name, offset and width in bits, type and default.
 
     Further facts are keywords with the names of `FieldInfo`. The enumeration is the
     type of the default, unless ``enum`` is given.
     """
-    if type == "enum" and "enum" not in told:
-        one = default[0] if told.get("elements") else default
-        told["enum"] = one.__class__
-    return FieldInfo("", name, at, bits, type, default=default, **told)
+    if type == "enum" and "enum" not in facts:
+        member = default[0] if facts.get("elements") else default
+        facts["enum"] = member.__class__
+    return FieldInfo("", name, at, bits, type, default=default, **facts)
 
 
 def part(
@@ -171,11 +179,11 @@ def part(
     bits: int,
     *,
     factory: _types.Any,
-    **told: _types.Any,
+    **facts: _types.Any,
 ) -> _types.Any:
     """Declare a struct of class ``factory``, or an array of such structs."""
-    told.update(default=() if told.get("is_open") else None, struct=factory)
-    return FieldInfo("", name, at, bits, "struct", **told)
+    facts.update(default=() if facts.get("is_open") else None, struct=factory)
+    return FieldInfo("", name, at, bits, "struct", **facts)
 
 
 def scaled(p: int, c: int, q: int, *, default: _types.Any) -> _types.Any:
@@ -241,8 +249,8 @@ def nearest_raw(
     over, under = over * q - c * under, under * p
     if under < 0:
         over, under = -over, -under
-    raw, rest = divmod(over, under)
-    if 2 * rest > under or (2 * rest == under and raw % 2):
+    raw, remainder = divmod(over, under)
+    if 2 * remainder > under or (2 * remainder == under and raw % 2):
         raw += 1
     if not low <= raw <= high:
         raise RangeError(field, _allowed(info, terms), value)

@@ -26,7 +26,7 @@ def byte_order(info: FieldInfo, message: type[MessageFacts]) -> str:
 
 def pieces(info: FieldInfo, message: type[MessageFacts]) -> list[Piece]:
     """Return the parts of a field in single bytes, in the order of the bytes."""
-    found = []
+    result = []
     at, end, below = info.at, info.at + info.bits, 0
     is_little = byte_order(info, message) == "little"
     is_lsb0 = (info.bit_order or message.BIT_ORDER) == "lsb0"
@@ -35,7 +35,7 @@ def pieces(info: FieldInfo, message: type[MessageFacts]) -> list[Piece]:
         bits = min(8 - first, end - at)
         shift = first if is_lsb0 else 8 - first - bits
         weight = below if is_little else info.bits - below - bits
-        found.append(Piece(byte, shift, bits, weight))
+        result.append(Piece(byte, shift, bits, weight))
         at += bits
         below += bits
-    return found
+    return result

@@ -13,7 +13,7 @@ from ._types import FieldInfo, MessageFacts
 def part(kind: type[_types.M], message: MessageFacts, index: int) -> _types.M:
     """Return the part with this class and index. Raise `IcdError` if there is none."""
     key = kind.NODE, kind.__name__
-    begins = [begin for *one, begin in message.PARTS if tuple(one) == key]
+    begins = [begin for *owner, begin in message.PARTS if tuple(owner) == key]
     if not begins:
         raise IcdError(f"{type(message).__name__} does not repeat {kind.__name__}")
     if not 0 <= index < len(begins):
@@ -34,19 +34,19 @@ def parts(message: MessageFacts) -> _types.Iterator[_types.Any]:
 
 def _values(message: MessageFacts) -> dict[int, _types.Any]:
     """Return the values by their first bit, each element of an array separately."""
-    found: dict[int, _types.Any] = {}
+    values: dict[int, _types.Any] = {}
     for info in message.FIELDS:
-        _collect(info, getattr(message, info.attribute), found)
-    return found
+        _collect(info, getattr(message, info.attribute), values)
+    return values
 
 
-def _collect(info: FieldInfo, value: _types.Any, found: dict[int, _types.Any]) -> None:
-    for one, raw in zip(info.parts, value if info.elements else (value,)):
-        if one.struct is None:
-            found[one.at] = raw
+def _collect(info: FieldInfo, value: _types.Any, values: dict[int, _types.Any]) -> None:
+    for part, raw in zip(info.parts, value if info.elements else (value,)):
+        if part.struct is None:
+            values[part.at] = raw
             continue
-        for inner in one.struct.FIELDS:
-            _collect(inner.within(one), getattr(raw, inner.attribute), found)
+        for inner in part.struct.FIELDS:
+            _collect(inner.within(part), getattr(raw, inner.attribute), values)
 
 
 def _read(kind: type[_types.M], values: dict[int, _types.Any], begin: int) -> _types.M:
@@ -55,14 +55,14 @@ def _read(kind: type[_types.M], values: dict[int, _types.Any], begin: int) -> _t
 
 
 def _value(info: FieldInfo, values: dict[int, _types.Any], begin: int) -> _types.Any:
-    found: list[_types.Any] = []
-    for one in info.parts:
-        if one.struct is None:
-            found.append(values[begin + one.at])
+    elements: list[_types.Any] = []
+    for part in info.parts:
+        if part.struct is None:
+            elements.append(values[begin + part.at])
             continue
-        held = {
-            inner.attribute: _value(inner.within(one), values, begin)
-            for inner in one.struct.FIELDS
+        members = {
+            inner.attribute: _value(inner.within(part), values, begin)
+            for inner in part.struct.FIELDS
         }
-        found.append(one.struct(**held))
-    return tuple(found) if info.elements else found[0]
+        elements.append(part.struct(**members))
+    return tuple(elements) if info.elements else elements[0]

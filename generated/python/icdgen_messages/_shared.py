@@ -30,12 +30,12 @@ class Shared(Message):
         messages have one length and the frame has another.
         """
         frame = bytes(data)
-        found = cls.which(frame)
-        if found is not None:
-            return found.from_bytes(frame)
+        message = cls.which(frame)
+        if message is not None:
+            return message.from_bytes(frame)
         ends = ((lengths[0], lengths[-1]) for _, lengths, _ in cls.FRAMES)
-        length, *others = {length for both in ends for length in both}
-        if not others and len(frame) != length:
+        length, *further = {length for pair in ends for length in pair}
+        if not further and len(frame) != length:
             raise LengthError(cls.NAME, length, len(frame))
         raise UnknownIdError(
             cls.NODE, cls.KIND, cls.IDS[0], f"the frame is no {cls.NAME}"
@@ -45,9 +45,9 @@ class Shared(Message):
     def which(cls, frame: bytes) -> _types.Optional[type[Message]]:
         """Return the message that matches a frame, or None."""
         for message, lengths, signs in cls.FRAMES:
-            whole = frame.ljust(lengths[-1], b"\0")
+            longest = frame.ljust(lengths[-1], b"\0")
             if len(frame) in lengths and all(
-                whole[byte] & mask == value for byte, mask, value in signs
+                longest[byte] & mask == value for byte, mask, value in signs
             ):
                 return message
         return None
@@ -63,5 +63,11 @@ def shared(
     """Return the class for an id that several messages share."""
     frames = tuple((named(name), lengths, signs) for name, lengths, signs in candidates)
     title = " or ".join(message.NAME for message, _, _ in frames)
-    known = {"NODE": node, "NAME": title, "KIND": kind, "IDS": (id,), "FRAMES": frames}
-    return type("Shared", (Shared,), known)
+    namespace = {
+        "NODE": node,
+        "NAME": title,
+        "KIND": kind,
+        "IDS": (id,),
+        "FRAMES": frames,
+    }
+    return type("Shared", (Shared,), namespace)

@@ -209,15 +209,15 @@ class FieldInfo:
         return tuple(map(self._part, range(self.elements))) or (self,)
 
     def _part(self, index: int) -> FieldInfo:
-        told = {name: getattr(self, name) for name in self.__slots__}
+        facts = {name: getattr(self, name) for name in self.__slots__}
         for key in ("attribute", "name"):
-            told[key] += f"[{index}]"
-        told["at"] += index * self.bits
+            facts[key] += f"[{index}]"
+        facts["at"] += index * self.bits
         if self.is_open or self.default is None:
-            told.update(default=None, is_open=False, fewest=0)
+            facts.update(default=None, is_open=False, fewest=0)
         else:
-            told["default"] = self.default[index]
-        return FieldInfo(**{**told, "elements": 0})
+            facts["default"] = self.default[index]
+        return FieldInfo(**{**facts, "elements": 0})
 
     @property
     def leaves(self) -> tuple[FieldInfo, ...]:
@@ -243,24 +243,24 @@ class FieldInfo:
 
     def within(self, part: FieldInfo) -> FieldInfo:
         """Return this field of a struct as a field of the message, whose struct is ``part``."""
-        told = {name: getattr(self, name) for name in self.__slots__}
+        facts = {name: getattr(self, name) for name in self.__slots__}
         for key in ("attribute", "name", "physical", "whole"):
-            if told[key]:
+            if facts[key]:
                 head = part.name if key == "name" else part.attribute
-                told[key] = f"{head}.{told[key]}"
-        told["at"] += part.at
-        told["byte_order"] = self.byte_order or part.byte_order
-        told["bit_order"] = self.bit_order or part.bit_order
-        return FieldInfo(**told)
+                facts[key] = f"{head}.{facts[key]}"
+        facts["at"] += part.at
+        facts["byte_order"] = self.byte_order or part.byte_order
+        facts["bit_order"] = self.bit_order or part.bit_order
+        return FieldInfo(**facts)
 
     @property
     def fresh(self) -> _types.Any:
         """Default raw value. A struct is a new object."""
-        made = self.struct
-        if made is None:
+        struct = self.struct
+        if struct is None:
             return self.default
         count = self.fewest if self.is_open else self.elements
-        return tuple(made() for _ in range(count)) if self.elements else made()
+        return tuple(struct() for _ in range(count)) if self.elements else struct()
 
     def _values(self) -> tuple[_types.Any, ...]:
         return tuple(getattr(self, name) for name in self.__slots__)

@@ -18,20 +18,20 @@ PARAMS: Any = vars(dataclasses.make_dataclass("Message", [], **_KEYWORDS))[
 
 def dataclass_fields(message: Any) -> dict[str, Any]:
     """Return the dataclass fields of a message class, which stores them."""
-    owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
+    owner = next(base for base in message.__mro__ if "FIELDS" in vars(base))
     notes = vars(owner).get("__annotations__", {})
     fields = [
-        (one.attribute, notes[one.attribute], _field(one)) for one in owner.FIELDS
+        (info.attribute, notes[info.attribute], _field(info)) for info in owner.FIELDS
     ]
-    made = dataclasses.make_dataclass(owner.__name__, fields, **_KEYWORDS)
-    owner.__dataclass_fields__ = found = vars(made)["__dataclass_fields__"]
-    return found  # type: ignore[no-any-return]
+    template = dataclasses.make_dataclass(owner.__name__, fields, **_KEYWORDS)
+    owner.__dataclass_fields__ = result = vars(template)["__dataclass_fields__"]
+    return result  # type: ignore[no-any-return]
 
 
-def _field(one: FieldInfo) -> Any:
-    if one.struct is not None:
-        return dataclasses.field(default_factory=lambda: one.fresh)
-    return dataclasses.field(default=one.default)
+def _field(info: FieldInfo) -> Any:
+    if info.struct is not None:
+        return dataclasses.field(default_factory=lambda: info.fresh)
+    return dataclasses.field(default=info.default)
 
 
 def signature(message: Any, shared: Any) -> Signature:
@@ -43,16 +43,18 @@ def signature(message: Any, shared: Any) -> Signature:
         own = Signature.from_callable(message.__init__)
         return own.replace(parameters=list(own.parameters.values())[1:])
     notes = message.__annotations__
-    found = []
-    for one in message.FIELDS:
-        note = notes.get(one.attribute, Parameter.empty)
+    parameters = []
+    for info in message.FIELDS:
+        note = notes.get(info.attribute, Parameter.empty)
         kind = Parameter.KEYWORD_ONLY
-        found.append(Parameter(one.attribute, kind, default=one.fresh, annotation=note))
-        if one.physical:
-            type_name = "str" if one.type == "text" else "float"
-            type_name = f"tuple[{type_name}, ...]" if one.elements else type_name
-            fresh = getattr(message(), one.physical)
-            found.append(
-                Parameter(one.physical, kind, default=fresh, annotation=type_name)
+        parameters.append(
+            Parameter(info.attribute, kind, default=info.fresh, annotation=note)
+        )
+        if info.physical:
+            type_name = "str" if info.type == "text" else "float"
+            type_name = f"tuple[{type_name}, ...]" if info.elements else type_name
+            default = getattr(message(), info.physical)
+            parameters.append(
+                Parameter(info.physical, kind, default=default, annotation=type_name)
             )
-    return Signature(found)
+    return Signature(parameters)

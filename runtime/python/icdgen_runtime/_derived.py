@@ -25,13 +25,13 @@ def derived(derivation: _types.Derivation, values: list[float]) -> float:
     return math.nan if math.isnan(row[-1]) else row[-1]
 
 
-def quotient(one: float, other: float) -> float:
+def quotient(dividend: float, divisor: float) -> float:
     """Divide as IEEE 754 specifies, also by zero."""
-    if other:
-        return one / other
-    if not one or math.isnan(one):
+    if divisor:
+        return dividend / divisor
+    if not dividend or math.isnan(dividend):
         return math.nan
-    return math.copysign(math.inf, one) * math.copysign(1.0, other)
+    return math.copysign(math.inf, dividend) * math.copysign(1.0, divisor)
 
 
 def power(base: float, exponent: float) -> float:
@@ -39,13 +39,13 @@ def power(base: float, exponent: float) -> float:
 
     A negative exponent gives the reciprocal of the positive power.
     """
-    left, found = abs(int(exponent)), 1.0
-    while left:
-        if left & 1:
-            found *= base
+    remaining, result = abs(int(exponent)), 1.0
+    while remaining:
+        if remaining & 1:
+            result *= base
         base *= base
-        left >>= 1
-    return quotient(1.0, found) if exponent < 0 else found
+        remaining >>= 1
+    return quotient(1.0, result) if exponent < 0 else result
 
 
 _OPERATORS = {
@@ -63,29 +63,29 @@ def column(
     """Return the derived values for columns of values."""
     _, numbers, steps = derivation
     with numpy.errstate(all="ignore"):
-        row = [one.astype(numpy.float64) for one in columns]
+        row = [values.astype(numpy.float64) for values in columns]
         row += [numpy.full(len(row[0]), number) for number in numbers]
         for operator, left, right in steps:
             row.append(_on_columns(numpy, operator, row[left], row[right]))
-    found = row[-1].copy()
-    found[numpy.isnan(found)] = numpy.nan
-    return found
+    result = row[-1].copy()
+    result[numpy.isnan(result)] = numpy.nan
+    return result
 
 
 def _on_columns(
-    numpy: _types.Any, operator: str, one: _types.Any, other: _types.Any
+    numpy: _types.Any, operator: str, left: _types.Any, right: _types.Any
 ) -> _types.Any:
     if operator == "^":
-        return _powers(numpy, one, other)
+        return _powers(numpy, left, right)
     name = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide"}[operator]
-    return getattr(numpy, name)(one, other)
+    return getattr(numpy, name)(left, right)
 
 
 def _powers(numpy: _types.Any, base: _types.Any, exponent: _types.Any) -> _types.Any:
-    left = numpy.abs(exponent).astype(numpy.int64)
-    found = numpy.ones(len(base))
-    while left.any():
-        found = numpy.where(left & 1, found * base, found)
+    remaining = numpy.abs(exponent).astype(numpy.int64)
+    result = numpy.ones(len(base))
+    while remaining.any():
+        result = numpy.where(remaining & 1, result * base, result)
         base = base * base
-        left = left >> 1
-    return numpy.where(exponent < 0, 1.0 / found, found)
+        remaining = remaining >> 1
+    return numpy.where(exponent < 0, 1.0 / result, result)

@@ -14,21 +14,21 @@ OCTETS = ("bytes", "text")  # types whose raw values are bytes
 
 def filled(struct: type[S], values: Mapping[str, Any]) -> S:
     """Return a struct or message with these values and defaults. See `Struct.from_dict`."""
-    made, left = struct(), dict(values)
+    result, remaining = struct(), dict(values)
     for info in struct.FIELDS:
         if info.when:  # the value of a field that is not present is ignored
-            setattr(made, info.attribute, info.default)
+            setattr(result, info.attribute, info.default)
     for info in struct.FIELDS:
-        if info.attribute in left:
-            setattr(made, info.attribute, _raw(info, left.pop(info.attribute)))
-        if info.physical in left:
-            setattr(made, info.physical, left.pop(info.physical))
+        if info.attribute in remaining:
+            setattr(result, info.attribute, _raw(info, remaining.pop(info.attribute)))
+        if info.physical in remaining:
+            setattr(result, info.physical, remaining.pop(info.physical))
     for info in struct.VIEWS:  # computed from the fields
-        left.pop(info.attribute, None)
-        left.pop(info.physical, None)
-    for name in left:
+        remaining.pop(info.attribute, None)
+        remaining.pop(info.physical, None)
+    for name in remaining:
         raise IcdError(f"{struct.NAME} has no field {name!r}")
-    return made
+    return result
 
 
 def to_json(values: Mapping[str, Any]) -> str:
@@ -55,7 +55,7 @@ def _raw(info: FieldInfo, value: Any) -> Any:
     if info.struct is not None:
         return _structs(info, info.struct, value)
     if info.elements and isinstance(value, (list, tuple)):
-        return tuple(_member(info, one) for one in value)
+        return tuple(_member(info, element) for element in value)
     return _member(info, value)
 
 
@@ -81,5 +81,6 @@ def _structs(info: FieldInfo, struct: type[StructFacts], value: Any) -> Any:
     if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__"):
         raise RangeError(info.attribute, f"{info.elements} values", value)
     return tuple(
-        filled(struct, one) if isinstance(one, Mapping) else one for one in value
+        filled(struct, element) if isinstance(element, Mapping) else element
+        for element in value
     )

@@ -90,20 +90,22 @@ class Messages:
         return message
 
     def _named(self, name: str) -> type[_lazy.Message]:
-        found: type[Message] = attribute(self._module, self._module["_HOMES"], name)
-        return found
+        message: type[Message] = attribute(self._module, self._module["_HOMES"], name)
+        return message
 
     def of(self, id: int) -> tuple[type[_lazy.Message], ...]:
         """Return all messages of an id, several if they share it. Raise `UnknownIdError`."""
-        found: _lazy.Any = self[id]
-        return tuple(one for one, _, _ in getattr(found, "FRAMES", ())) or (found,)
+        entry: _lazy.Any = self[id]
+        return tuple(message for message, _, _ in getattr(entry, "FRAMES", ())) or (
+            entry,
+        )
 
     def which(self, id: int, frame: bytes) -> _lazy.Optional[type[_lazy.Message]]:
         """Return the message of an id that a frame matches, or None."""
-        known: _lazy.Any = self[id]
-        found: _lazy.Optional[type[Message]]
-        found = known.which(frame) if hasattr(known, "FRAMES") else known
-        return found
+        entry: _lazy.Any = self[id]
+        message: _lazy.Optional[type[Message]]
+        message = entry.which(frame) if hasattr(entry, "FRAMES") else entry
+        return message
 
     def __contains__(self, id: object) -> bool:
         return isinstance(id, int) and id in self._names

@@ -22,8 +22,8 @@ def decoder(owner: _types.Any, longest: _types.Any) -> _types.Any:
         count = count_in(cls, frame, lacking)
         self = longest(cls, frame.ljust(cls.LENGTH, b"\0"))
         if tail.counter and getattr(self, tail.counter) + tail.plus != count:
-            told = getattr(self, tail.counter) + tail.plus
-            expected = cls.LENGTH - (tail.most - told) * tail.step - lacking
+            counted = getattr(self, tail.counter) + tail.plus
+            expected = cls.LENGTH - (tail.most - counted) * tail.step - lacking
             raise LengthError(cls.NAME, max(0, expected), memoryview(data).nbytes)
         setattr(self, tail.part, getattr(self, tail.part)[:count])
         return self
@@ -55,12 +55,12 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
     elements at the end, all of them 0.
     """
     tail = owner.TAIL
-    info = next(one for one in owner.FIELDS if one.attribute == tail.part)
+    info = next(field for field in owner.FIELDS if field.attribute == tail.part)
     is_array = info.elements > 0
     least = owner.LENGTH - tail.most * tail.step
 
     def to_bytes(self: _types.Any) -> bytes:
-        gaps = [_gap(self, *one) for one in owner.INNER]
+        gaps = [_gap(self, *inner) for inner in owner.INNER]
         values = getattr(self, tail.part)
         try:
             values = tuple(values) if is_array else memoryview(values).tobytes()
@@ -73,11 +73,11 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
             less = f", of which there are {count}" if tail.plus else ""
             allowed = f"{count - tail.plus}, as many as {tail.part} has{less}"
             raise RangeError(tail.counter, allowed, getattr(self, tail.counter))
-        whole = object.__new__(type(self))
-        for one in self.FIELDS:
-            setattr(whole, one.attribute, getattr(self, one.attribute))
-        setattr(whole, tail.part, values + padding[count:])
-        frame: bytes = longest(whole)
+        message = object.__new__(type(self))
+        for field in self.FIELDS:
+            setattr(message, field.attribute, getattr(self, field.attribute))
+        setattr(message, tail.part, values + padding[count:])
+        frame: bytes = longest(message)
         frame = frame[: least + count * tail.step]
         for place, lacking in reversed(gaps):
             frame = frame[:place] + frame[place + lacking :]
@@ -93,11 +93,11 @@ def _gap(
 
     Raise `RangeError` if the counter is out of range.
     """
-    told = getattr(self, part.counter)
+    counter = getattr(self, part.counter)
     low, high = max(0, -part.plus), part.most - part.plus
-    if not low <= told <= high:
-        raise RangeError(part.counter, f"{low} to {high}", told)
-    count = told + part.plus
+    if not low <= counter <= high:
+        raise RangeError(part.counter, f"{low} to {high}", counter)
+    count = counter + part.plus
     return begin + count * part.step, (part.most - count) * part.step
 
 
@@ -110,7 +110,7 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
     frame, actual = memoryview(data).tobytes(), memoryview(data).nbytes
     if message.INNER:
         parts = [*(part for part, *_ in message.INNER), message.TAIL]
-        fewer = sum((one.most - max(0, one.plus)) * one.step for one in parts)
+        fewer = sum((item.most - max(0, item.plus)) * item.step for item in parts)
         if actual < message.LENGTH - fewer:
             raise LengthError(message.NAME, message.LENGTH - fewer, actual)
     for part, begin, pieces in message.INNER:
