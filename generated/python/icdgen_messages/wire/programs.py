@@ -12,9 +12,9 @@ from .procedures import Ended, Procedure, Steps, Values, one_of
 
 
 class ProgramOperation(Procedure):
-    """What a telecommand starts for a program, and a frame tells the end of.
+    """An operation on a program: a telecommand starts it and a frame reports its end.
 
-    Raises `RangeError` for a program that it may not be asked for.
+    Raise `RangeError` for a program that is not supported.
     """
 
     def __init__(self, link: Link, form: Operation, program: int) -> None:
@@ -47,9 +47,9 @@ class ProgramOperation(Procedure):
 
 
 class ProgramCopy(ProgramOperation):
-    """Copies a stored program to where it can run.
+    """Copy a stored program to the memory in which it can run.
 
-    Raises `RangeError` and `UnsupportedError`.
+    Raise `RangeError` and `UnsupportedError`.
     """
 
     def __init__(self, link: Link, program: int) -> None:
@@ -57,9 +57,9 @@ class ProgramCopy(ProgramOperation):
 
 
 class ProgramInformation(ProgramOperation):
-    """Reads size and checksum of a stored program; None until it is done.
+    """Read size and checksum of a stored program. They are None until it is done.
 
-    Raises `RangeError` and `UnsupportedError`.
+    Raise `RangeError` and `UnsupportedError`.
     """
 
     def __init__(self, link: Link, program: int) -> None:
@@ -68,10 +68,10 @@ class ProgramInformation(ProgramOperation):
 
     @property
     def size(self) -> Optional[int]:
-        """Bytes of the program; None also if the ICD has no such field."""
+        """Size of the program in bytes; None also if the ICD has no such field."""
         return self._value("size")
 
     @property
     def checksum(self) -> Optional[int]:
-        """Its checksum; None also if the ICD has no such field."""
+        """Checksum of the program; None also if the ICD has no such field."""
         return self._value("checksum")

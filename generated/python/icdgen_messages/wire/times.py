@@ -13,7 +13,7 @@ from .link import Link
 
 
 class DosTime(NamedTuple):
-    """The parts of a packed time, whatever they are."""
+    """The parts of a packed time, valid or not."""
 
     year: int
     month: int
@@ -24,16 +24,16 @@ class DosTime(NamedTuple):
 
     @property
     def is_valid(self) -> bool:
-        """Whether the calendar has it."""
+        """Whether the date and time exist."""
         return _wrong(self) is None
 
     def datetime(self) -> datetime:
-        """The same, without time zone. Raises `ValueError` if it does not exist."""
+        """Return a `datetime` without time zone. Raise `ValueError` if it does not exist."""
         return datetime(*self)
 
 
 def dos_time_unpack(link: Link, value: int) -> DosTime:
-    """The parts of a packed time. Raises `UnsupportedError`."""
+    """Return the parts of a packed time. Raise `UnsupportedError`."""
     form = need(link.time, "msdos_time")
     parts = dict.fromkeys(DosTime._fields, 0)
     for name, part in form.items():
@@ -43,9 +43,9 @@ def dos_time_unpack(link: Link, value: int) -> DosTime:
 
 
 def dos_time_pack(link: Link, time: Union[DosTime, datetime]) -> int:
-    """The packed time; what is finer than its resolution is cut off.
+    """Return the packed time, rounded down to its resolution.
 
-    Raises `RangeError` for the first part that does not exist or does not fit, and
+    Raise `RangeError` for the first part that does not exist or is out of range, and
     `UnsupportedError`.
     """
     form = need(link.time, "msdos_time")
@@ -68,10 +68,10 @@ def dos_time_pack(link: Link, time: Union[DosTime, datetime]) -> int:
 
 
 def _wrong(time: DosTime) -> Optional[str]:
-    """The first part that does not exist."""
+    """Return the name of the first part that does not exist, or None."""
     if not 1 <= time.month <= 12:
         return "month"
-    # Every 400 years are alike; `calendar` does not have all years.
+    # The calendar repeats every 400 years; `monthrange` does not accept all years.
     days = monthrange(2000 + time.year % 400, time.month)[1]
     most = {"day": (1, days), "hour": (0, 23), "minute": (0, 59), "second": (0, 59)}
     for name, (low, high) in most.items():

@@ -1,8 +1,9 @@
 """Wire layer: framing, checksums, CAN packets, clients, file transfer and logs.
 
-The application passes received bytes and the time in, and takes bytes to send and
-events out. Nothing opens a port, sleeps or reads a clock, except `Session`, over a
-port of the application, and `AsyncSession`, over streams. The ``LINK`` of a node describes its protocol.
+The application passes in received bytes and the time, and takes out bytes to send and
+events. No object opens a port, sleeps or reads a clock, except `Session`, over a port
+of the application, and `AsyncSession`, over streams. The ``LINK`` of a node describes
+its protocol.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Client over streams of asyncio."""
+"""Client over asyncio streams."""
 
 from __future__ import annotations
 
@@ -26,24 +26,28 @@ from .exchanges import (
 from .link import Link, Settings
 from .spoken import KindOf, M, SpokenBy, class_of, message_of
 
-_PIECE = 4096  # bytes that are read at a time
+_PIECE = 4096  # maximum bytes of a read
 
 
 class _Locks(NamedTuple):
-    turn: asyncio.Lock  # of requests that wait for each other
+    turn: asyncio.Lock  # for requests that cannot run concurrently
     read: asyncio.Lock
     write: asyncio.Lock
 
 
 class AsyncSession(Exchanges[N]):
-    """Client over the bytes of a UART: `Session` for asyncio.
+    """Client over a byte stream: `Session` for asyncio.
 
-    The streams are yours: those of `asyncio.open_connection`, or of a serial port
-    (pyserial-asyncio). What they raise ends the request, as does its cancellation, and
-    `ConnectionResetError` tells that the other side closed. Several tasks may ask, and
-    listen: over envelopes requests that different telemetry answers are under way
-    together, others wait for each other. ``clock`` gives seconds; ``on_event`` is told
-    of what comes unasked. ``values``: see `Session`.
+    The application opens the streams, with `asyncio.open_connection` or a serial port
+    (pyserial-asyncio). Their exceptions end the request, and so does its cancellation.
+    `ConnectionResetError` reports that the other side closed the connection.
+
+    Several tasks may send requests and receive messages. With header and trailer,
+    requests with different replies run concurrently. Other requests wait for each
+    other.
+
+    ``clock`` returns seconds. ``on_event`` is called with each unsolicited event.
+    ``values``: see `Session`.
     """
 
     def __init__(
@@ -60,13 +64,14 @@ class AsyncSession(Exchanges[N]):
         super().__init__(client_of(link, crc, settings, values), on_event, clock)
         self._reader, self._writer = reader, writer
         self._locks: Optional[_Locks] = None
-        self._boxes: dict[object, list[Event]] = {}  # of each task that waits
+        self._boxes: dict[object, list[Event]] = {}  # events by waiting task
         self._read_before: Optional[asyncio.Future[bytes]] = None
 
     async def get(self, message: KindOf[N, M]) -> M:
         """Request telemetry or read a configuration.
 
-        Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
+        Raise `RefusedError`, `ReplyTimeoutError` and the exceptions of
+        `Client.request`.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
         return class_of(message).from_bytes(
@@ -76,13 +81,13 @@ class AsyncSession(Exchanges[N]):
     async def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
         """Request telemetry or read a configuration; return the outcome.
 
-        Raises what `Client.request` does.
+        Raise the exceptions of `Client.request`.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
         return outcome_of(outcome, class_of(message))
 
     async def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
-        """Send a telecommand or set a configuration; raises as `get`, `Client.send`."""
+        """Send a telecommand or set a configuration. Raise as `get` and `Client.send`."""
         outcome = await self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 
@@ -91,7 +96,7 @@ class AsyncSession(Exchanges[N]):
     ) -> M:
         """Send a telecommand (with header and trailer) and return its reply.
 
-        Raises like `get` and `EnvelopeClient.send`.
+        Raise as `get` and `EnvelopeClient.send`.
         """
         outcome = await self._run(self._answered(message, reply, repeat))
         name = message_of(message).NAME
@@ -114,9 +119,10 @@ class AsyncSession(Exchanges[N]):
     async def messages(
         self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
     ) -> AsyncIterator[Message]:
-        """Unsolicited messages, without end or for this number of seconds.
+        """Iterate over unsolicited messages, without end or for this number of seconds.
 
-        Without ``kinds`` all of them. What else happens is told to ``on_event``.
+        ``kinds`` selects message classes; without it, all are returned. Other events
+        are passed to ``on_event``.
         """
         end = None if seconds is None else self._now() + 1000 * seconds
         with self._box() as box:
@@ -125,24 +131,25 @@ class AsyncSession(Exchanges[N]):
                     yield message
 
     async def start(self, request: Request) -> Outcome:
-        """Send any request and return its outcome. Raises as `Client.start`."""
+        """Send any request and return its outcome. Raise as `Client.start`."""
         return await self._run(self._exchange(self.client.start, request))
 
     async def run(self, procedure: P, progress: Optional[Progress] = None) -> P:
-        """Run a procedure to its end, as `Session.run`. Raises `FailedError`."""
+        """Run a procedure to its end, as `Session.run`. Raise `FailedError`."""
         return await self._run(self._procedure(procedure, progress))
 
     async def wait(self, until: Optional[float] = None) -> list[Event]:
         """Return the next events, until ``until`` (milliseconds of the clock).
 
-        Without ``until`` it waits as long as the client wants to, and a second at most.
+        Without ``until``, wait until the deadline of the client, but at most one
+        second.
         """
         with self._box() as box:
             return await self._next(box, until)
 
     @contextmanager
     def _box(self) -> Iterator[list[Event]]:
-        """Where a task finds what happened, whoever read it."""
+        """Return the list to which any reading task adds events for this task."""
         key = object()
         box: list[Event] = []
         self._boxes[key] = box
@@ -152,7 +159,7 @@ class AsyncSession(Exchanges[N]):
             del self._boxes[key]
 
     async def _next(self, box: list[Event], until: Optional[float]) -> list[Event]:
-        """What has happened, or happens next. One task reads, for all."""
+        """Return the events of a task, or wait for the next. One task reads for all."""
         await self._flush()
         async with self._lock.read:
             if not box:
@@ -161,7 +168,8 @@ class AsyncSession(Exchanges[N]):
         return events
 
     async def _receive(self, until: Optional[float]) -> None:
-        longest = self.client.settings.reply_timeout  # another task may ask meanwhile
+        # Another task may send a request meanwhile, whose deadline is earlier.
+        longest = self.client.settings.reply_timeout
         data = await self._read(min(self._seconds(until), longest / 1000))
         if data is None:
             events = self.client.tick(self._now())
@@ -176,7 +184,7 @@ class AsyncSession(Exchanges[N]):
 
     @property
     def _lock(self) -> _Locks:
-        if self._locks is None:  # older Pythons bind them where they are made
+        if self._locks is None:  # before Python 3.10, a new lock needs the event loop
             self._locks = _Locks(asyncio.Lock(), asyncio.Lock(), asyncio.Lock())
         return self._locks
 
@@ -203,10 +211,10 @@ class AsyncSession(Exchanges[N]):
                 exchange.close()
 
     async def _read(self, seconds: float) -> Optional[bytes]:
-        """What comes by then; None if nothing does.
+        """Return received bytes, or None after ``seconds``.
 
-        `asyncio.wait_for` could lose a cancellation at the moment at which bytes come, before
-        Python 3.12; here the bytes are kept for whoever reads next.
+        `asyncio.wait_for` could lose a cancellation at the moment at which bytes
+        arrive, before Python 3.12. Here these bytes are stored for the next read.
         """
         reading = self._read_before or asyncio.ensure_future(self._reader.read(_PIECE))
         self._read_before = None
@@ -217,7 +225,8 @@ class AsyncSession(Exchanges[N]):
                 self._read_before = reading
             raise
         if reading.cancel():
-            await asyncio.wait((reading,))  # until the stream can be read again
+            # The stream can be read again only when the cancelled read has ended.
+            await asyncio.wait((reading,))
             return None
         return reading.result()
 

@@ -1,4 +1,4 @@
-"""CAN: messages from and to packets."""
+"""CAN: conversion between messages and packets."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _WITH_DATA = ("telecommand", "reply")
 
 
 class CanPacket(NamedTuple):
-    """A CAN frame: identifier of 29 bits, and data."""
+    """A CAN frame: 29-bit identifier and data."""
 
     id: int
     data: bytes
 
 
 class CanMessage(NamedTuple):
-    """A message: ``id`` is that of the telecommand or telemetry."""
+    """A message. ``id`` is the id of the telecommand or telemetry."""
 
     kind: CanKind
     id: int
@@ -32,11 +32,12 @@ class CanMessage(NamedTuple):
 
 
 class CanEvent(NamedTuple):
-    """A message, or what went wrong with the one of that id and sender.
+    """A message, or an error of the message with this id and sender.
 
-    ``duplicate``: the packet was there already. ``incomplete``: so many packets were
-    ``missing``. ``malformed``: the packet cannot be part of such a message. ``busy``:
-    there was no room for another sender. ``unknown_type``: the ICD does not have it.
+    ``duplicate``: the packet was already received. ``incomplete``: ``missing`` packets
+    did not arrive. ``malformed``: the packet cannot be part of such a message.
+    ``busy``: too many senders at once. ``unknown_type``: the ICD does not define the
+    message type.
     """
 
     event: Found
@@ -47,9 +48,9 @@ class CanEvent(NamedTuple):
 
 
 def can_split(link: Link, message: CanMessage) -> list[CanPacket]:
-    """The packets of a message, in the order in which they are to be sent.
+    """Return the packets of a message, in the order of transmission.
 
-    Raises `TooLongError`, `RangeError` for an id or an address that does not fit, and
+    Raise `TooLongError`, `RangeError` for an id or address out of range, and
     `UnsupportedError`.
     """
     can, data = need(link.can, "can"), message.data
@@ -89,7 +90,10 @@ def _identifier(can: Can, type: int, message: CanMessage) -> int:
 
 
 class _Joining:
-    """A message of several packets; also after it is complete, to know duplicates."""
+    """Received packets of one message.
+
+    A complete message is kept, so that duplicate packets can be detected.
+    """
 
     def __init__(
         self, message: CanMessage, count: int, length: Optional[int], now: float
@@ -97,11 +101,12 @@ class _Joining:
         self.message, self.count, self.length = message, count, length
         self.last = now
         self.pieces: dict[int, bytes] = {}
-        self.in_order = 0  # so many packets came last in order, from the first on
+        # Length of the last run of packets in order, counted from the first packet.
+        self.in_order = 0
         self.completed_by: Optional[int] = None
 
     def came(self, position: int, now: float) -> None:
-        """Notes a packet, be it a repeated one."""
+        """Record a packet, new or repeated."""
         self.last = now
         if position == self.in_order:
             self.in_order += 1
@@ -109,22 +114,22 @@ class _Joining:
             self.in_order = 0 if position else 1
 
     def again(self, position: int, piece: bytes) -> bool:
-        """Whether the packet is there already, and no part of another message."""
+        """Return whether the packet is a duplicate rather than part of another message."""
         expected = self.completed_by in (None, position)
         return expected and self.pieces.get(position) == piece
 
     def is_over(self, position: int, count: int) -> bool:
-        """Whether the packet is of another message."""
+        """Return whether the packet belongs to another message."""
         if self.completed_by is not None or self.count != count:
             return True
         return position in self.pieces
 
 
 class CanJoiner:
-    """Puts messages together from packets in any order, of several senders.
+    """Assemble messages from packets in any order and from several senders.
 
-    ``address``: whose messages (None: everybody's). ``senders``: how many extended
-    messages at once.
+    ``address``: destination of the messages (None for any). ``senders``: maximum number
+    of extended messages at once.
     """
 
     def __init__(
@@ -141,7 +146,7 @@ class CanJoiner:
         }
 
     def expire(self, now: float) -> list[CanEvent]:
-        """Gives up what has waited too long for its next packet."""
+        """Drop messages whose next packet is overdue. ``now`` is in milliseconds."""
         form = self._can.extended
         if form is None or not self._open:
             return []
@@ -153,7 +158,7 @@ class CanJoiner:
         return [event for key in late for event in self._give_up(key)]
 
     def feed(self, now: float, packet: CanPacket) -> list[CanEvent]:
-        """Takes one packet; ``now`` in milliseconds."""
+        """Process one packet. ``now`` is in milliseconds."""
         events = self.expire(now)
         type, id, source, destination = key = self._parts(packet.id)
         if self._address is not None and destination != self._address:
@@ -186,7 +191,7 @@ class CanJoiner:
         data: bytes,
         form: Extended,
     ) -> list[CanEvent]:
-        """One packet of an extended message."""
+        """Process one packet of an extended message."""
         malformed = CanEvent("malformed", head.id, head.source)
         if len(data) != form.left_at + 1:
             return [*self._give_up(key), malformed]
@@ -197,7 +202,7 @@ class CanJoiner:
             count = -(-length // form.data_bytes)
         elif joining and joining.completed_by is None and left < joining.count:
             count = joining.count
-        else:  # the first packet that comes tells how many there are
+        else:  # first received packet of a message of unknown length
             count = left + 1
         most = -(-self._link.longest_data // form.data_bytes)
         if not 0 <= left < count <= most:
@@ -209,7 +214,8 @@ class CanJoiner:
             return [CanEvent("duplicate", head.id, head.source)]
         if joining and joining.is_over(position, count):
             if joining.completed_by is None and position == joining.in_order:
-                # What came again, in order, belongs to the new message.
+                # The sender started again. The repeated packets, which arrived in
+                # order, belong to the new message.
                 kept = {n: joining.pieces[n] for n in range(position)}
             events = self._give_up(key)
             joining = None
@@ -228,7 +234,7 @@ class CanJoiner:
         return events
 
     def _make_room(self) -> bool:
-        """The oldest complete message makes room for a new one."""
+        """Drop the oldest complete message if there are too many. Return whether there is room."""
         if len(self._open) < self._senders:
             return True
         for key, joining in self._open.items():
@@ -238,7 +244,7 @@ class CanJoiner:
         return False
 
     def _length(self, head: CanMessage) -> Optional[int]:
-        """Bytes of the message, if the ICD knows it and it needs several packets."""
+        """Return the bytes of a known message that needs several packets, otherwise None."""
         if head.kind == "telecommand":
             sent = self._link.commands.get(head.id)
             length = sent.length if sent else None
@@ -247,7 +253,7 @@ class CanJoiner:
         return length if length and length > self._can.data_bytes else None
 
     def _give_up(self, key: tuple[int, int, int, int]) -> list[CanEvent]:
-        """Forgets a message; silently, if it was complete."""
+        """Drop a message. Return an event if it was incomplete."""
         joining = self._open.pop(key, None)
         if joining is None or joining.completed_by is not None:
             return []

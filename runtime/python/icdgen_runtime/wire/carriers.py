@@ -1,6 +1,7 @@
-"""What carries the messages of a `Session`: bytes, CAN packets or I2C transactions.
+"""Transports of a `Session`: bytes, CAN packets or I2C transactions.
 
-What is needed of a library of CAN or I2C is taken from where the given object is from.
+The message classes of a CAN or I2C library are taken from the modules of the given
+port, so that no library is imported here.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ _NOT_ANSWERED = tuple(
 
 
 class Carrier(Protocol):
-    """A port, for whoever may wait. What its library raises is not caught."""
+    """Transport of a blocking client. Exceptions of the library pass through."""
 
     @property
     def bus(self) -> Bus: ...
 
     def send(self, client: Any) -> None:
-        """Sends what the client wants to be sent."""
+        """Send the pending output of the client."""
 
     def receive(
         self, client: Any, now: Callable[[], float], seconds: float
@@ -50,7 +51,7 @@ class Carrier(Protocol):
 
 
 class ByteCarrier:
-    """A stream of bytes, or packets of them."""
+    """Transport over a stream of bytes, or over datagrams."""
 
     bus: Bus = "uart"
 
@@ -72,7 +73,7 @@ class ByteCarrier:
 
 
 class CanCarrier:
-    """A CAN bus of python-can."""
+    """Transport over a CAN bus of python-can."""
 
     bus: Bus = "can"
 
@@ -100,14 +101,14 @@ class CanCarrier:
 
 
 def _is_foreign(found: Any) -> bool:
-    """Whether a packet is none of a link: those have identifiers of 29 bits."""
+    """Return whether a packet cannot belong to a link. All links have 29-bit identifiers."""
     return bool(
         not found.is_extended_id or found.is_error_frame or found.is_remote_frame
     )
 
 
 class I2cCarrier:
-    """An I2C bus of smbus2; ``joins``: a read follows its write by a repeated start."""
+    """Transport over an I2C bus of smbus2. ``joins``: use a repeated start for each read."""
 
     bus: Bus = "i2c"
 
@@ -116,7 +117,7 @@ class I2cCarrier:
         self._message = _beside(port, "i2c_msg")
 
     def send(self, client: Any) -> None:
-        """Nothing: a transaction gives its answer at once, so it waits for `receive`."""
+        """Do nothing. A transaction has an immediate result, so `receive` performs it."""
 
     def receive(
         self, client: Any, now: Callable[[], float], seconds: float
@@ -130,14 +131,15 @@ class I2cCarrier:
             try:
                 data = self._transferred(*transfer)
             except BaseException:
-                for _ in transfers[done:]:  # else the client waits for them
+                # Report the others as failed. Otherwise the client waits for them.
+                for _ in transfers[done:]:
                     client.transferred(now(), None)
                 raise
             events += client.transferred(now(), data)
         return events
 
     def _transferred(self, write: bytes, count: int) -> Optional[bytes]:
-        """What was read; None if the node did not take it."""
+        """Perform a transaction. Return the bytes read, or None without acknowledge."""
         parts = [self._message.write(self._address, write)]
         if count:
             parts.append(self._message.read(self._address, count))
@@ -152,9 +154,9 @@ class I2cCarrier:
 
 
 def _beside(port: object, name: str) -> Any:
-    """A class of the library that the class of a port, or what that is made of, is from.
+    """Return a class of the library that defines the class of ``port`` or a base class.
 
-    Raises `TypeError` if there is none.
+    Raise `TypeError` if there is none.
     """
     for kind in type(port).__mro__:
         for module in (kind.__module__, kind.__module__.partition(".")[0]):
@@ -167,9 +169,9 @@ def _beside(port: object, name: str) -> Any:
 def carrier_of(
     link: Link[Any], port: Union[Port, Write], read: Optional[Read]
 ) -> Carrier:
-    """What carries messages over a port, or over the functions ``port`` and ``read``.
+    """Return the transport over a port, or over the functions ``port`` and ``read``.
 
-    Raises `TypeError` for what is no port.
+    Raise `TypeError` for an object that is not a port.
     """
     if read is not None:
         return ByteCarrier(cast(Write, port), read)

@@ -1,4 +1,4 @@
-"""The checksums of envelopes."""
+"""Checksums of messages with header and trailer."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .envelope import CheckForm
 
 
 def check(form: CheckForm, data: bytes) -> int:
-    """The checksum of all that it covers, as a number."""
+    """Return the checksum of ``data`` as a number."""
     crc = form.crc
     if form.kind == "crc":
         return Crc(crc).feed(data).result()

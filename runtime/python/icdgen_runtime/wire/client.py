@@ -30,8 +30,8 @@ from .uart import UartDecoder, uart_encode, uart_kind
 class Request(NamedTuple):
     """A request to a node.
 
-    ``repeat``: whether it may be sent again although it may have arrived. Telemetry and
-    settings always may.
+    ``repeat``: whether it may be sent again although the node may have received it.
+    Requests of telemetry and settings may always be sent again.
     """
 
     kind: Literal["telecommand", "telemetry"]
@@ -45,9 +45,9 @@ class Client(Generic[N]):
 
     Pass received data to `received`, `packet` or `transferred`, and call `tick` at
     `deadline` at the latest. Take the data to send from `output`, `packets` or
-    `transfers`. Times are in milliseconds of any clock that never goes back.
+    `transfers`. Times are in milliseconds of any monotonic clock.
 
-    ``crc``: use optional checksums. ``address``: address of the client on CAN. Raises
+    ``crc``: use optional checksums. ``address``: address of the client on CAN. Raise
     `UnsupportedError` for a bus that the ICD does not describe.
     """
 
@@ -81,14 +81,16 @@ class Client(Generic[N]):
         self._stream: list[bytes] = []
         self._packets: list[CanPacket] = []
         self._transfers: list[I2cTransfer] = []
-        self._owed = 0  # I2C: transfers taken of which `transferred` was not told
+        self._owed = 0  # I2C: transfers taken, but not yet passed to `transferred`
         self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
         self._asked = Request("telemetry", 0)
         self._attempts = 0
         self._until: float = 0
-        self._is_written = False  # I2C: the telecommand; its acknowledge is polled
+        self._is_written = False  # I2C: telecommand is sent, acknowledge is polled
         self._give_up: float = 0  # when polling ends
-        self._late: Optional[tuple[int, float]] = None  # id that may be answered again
+        # Id of an ended request whose reply may still arrive, and until when. A new
+        # request of this id waits, so that it does not take the old reply for its own.
+        self._late: Optional[tuple[int, float]] = None
 
     @property
     def busy(self) -> bool:
@@ -107,15 +109,15 @@ class Client(Generic[N]):
     def send(
         self, now: float, message: SpokenBy[N], repeat: bool = False
     ) -> list[Event]:
-        """Send a telecommand or set a configuration. See `start`; or `RangeError`."""
+        """Send a telecommand or set a configuration. See `start`; also raise `RangeError`."""
         id, data = sent(self.link, message), message_of(message).to_bytes()
         return self.start(now, Request("telecommand", id, data, repeat))
 
     def start(self, now: float, request: Request) -> list[Event]:
         """Start a request.
 
-        Raises `UnknownIdError`, `BusyError` while another one is going on or its output
-        has not been taken, and `LengthError`.
+        Raise `UnknownIdError`, `LengthError`, and `BusyError` while another request is
+        in progress or its output has not been taken.
         """
         id = request.id
         command = self.link.commands.get(id)
@@ -152,7 +154,7 @@ class Client(Generic[N]):
     def transfers(self) -> list[I2cTransfer]:
         """I2C: return the transactions to perform, each once.
 
-        `transferred` is told of each, once and in this order.
+        Call `transferred` once for each transaction, in this order.
         """
         taken, self._transfers = self._transfers, []
         self._owed += len(taken)
@@ -161,7 +163,8 @@ class Client(Generic[N]):
     def cancel(self) -> None:
         """Cancel the request without an event, and drop its remaining output.
 
-        The next one may begin at once; a late reply to this one is `Stray`.
+        The next request may begin at once. A late reply to the cancelled one is
+        `Stray`.
         """
         self._stream, self._packets, self._transfers = [], [], []
         if self.busy and self._attempts:
@@ -204,7 +207,7 @@ class Client(Generic[N]):
         """
         is_awaited = self._owed == 1 and self._awaits_transfer
         self._owed = max(0, self._owed - 1)
-        events = self.tick(now)  # which may end the request that it belongs to
+        events = self.tick(now)  # may end the request of this transaction
         read = None if data is None else bytes(data)
         if not (is_awaited and self._awaits_transfer):
             return [*events, Stray(read or b"")]
@@ -280,7 +283,7 @@ class Client(Generic[N]):
         """Process a missing or unusable reply: send again or end the request."""
         if not self._asked.repeat or self._attempts > self.settings.retries:
             return self._timeout(now)
-        if self.bus == "i2c":  # the bus said so at once: the node gets some time
+        if self.bus == "i2c":  # a failure is immediate here: give the node some time
             self._state, self._until = "pause", now + self.settings.poll_interval
             self._give_up = now + self.settings.poll_timeout
             return []

@@ -1,4 +1,4 @@
-"""Checksums, in one go or piece by piece."""
+"""CRC checksums, also of data in several pieces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .link import CrcForm, Link
 
 
 class Crc:
-    """A CRC that is fed piece by piece. Without ``table`` it goes bit by bit."""
+    """A CRC of data in several pieces. Without ``table``, it is computed bit by bit."""
 
     def __init__(self, form: CrcForm, table: bool = True) -> None:
         self._form = form
@@ -25,10 +25,10 @@ class Crc:
         self._is_known = table and form[:4] == (16, 0x1021, form.init, False)
 
     def feed(self, data: Buffer) -> Crc:
-        """Takes the next bytes; returns itself."""
+        """Add bytes. Return the object itself."""
         data = memoryview(data).cast("B")
         self._is_fed = self._is_fed or bool(data)
-        if self._is_known:  # the standard library has it
+        if self._is_known:  # implemented in C by the standard library
             self._register = crc_hqx(data, self._register)
         elif self._rows is None:
             for byte in data:
@@ -48,7 +48,7 @@ class Crc:
         return self
 
     def result(self) -> int:
-        """The CRC of everything fed so far."""
+        """Return the CRC of all bytes so far."""
         form, value = self._form, self._register >> _padding(self._form)
         if not self._is_fed and form.empty is not None:
             return form.empty
@@ -58,12 +58,12 @@ class Crc:
 
 
 def crc8(link: Link, data: Buffer) -> int:
-    """The checksum of telecommands and frames. Raises `UnsupportedError`."""
+    """Return the checksum of telecommands and frames. Raise `UnsupportedError`."""
     return Crc(need(link.checksum, "crc8").crc).feed(data).result()
 
 
 def crc16(link: Link, data: Buffer) -> int:
-    """The checksum of files and blocks. Raises `UnsupportedError`."""
+    """Return the checksum of files and blocks. Raise `UnsupportedError`."""
     return Crc(need(link.crc16, "crc16")).feed(data).result()
 
 
@@ -73,7 +73,7 @@ def _table(form: CrcForm) -> tuple[int, ...]:
 
 
 def _step(form: CrcForm, register: int, byte: int) -> int:
-    """The register after one more byte, bit by bit."""
+    """Return the register after one more byte, computed bit by bit."""
     if form.reflect_in:
         polynomial = _reversed(form.polynomial, form.width)
         register ^= byte
@@ -90,7 +90,10 @@ def _step(form: CrcForm, register: int, byte: int) -> int:
 
 
 def _padding(form: CrcForm) -> int:
-    """Zeros behind the register's lowest bit, which make it as wide as the bytes that enter at its top."""
+    """Return the number of zeros below the lowest bit of the register.
+
+    They widen a register of less than 8 bits, as bytes enter at its top.
+    """
     return 0 if form.reflect_in else max(8 - form.width, 0)
 
 

@@ -1,4 +1,4 @@
-"""The envelope of a link that the ICD describes as fields with roles around the data."""
+"""Frame format that the ICD describes by header and trailer fields with roles."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Direction = Literal["telecommand", "telemetry"]
 
 
 class CrcForm(NamedTuple):
-    """Parameters of a CRC, as catalogues give them. ``empty``: of no bytes at all."""
+    """Parameters of a CRC, as in CRC catalogues."""
 
     width: int
     """Bits of the checksum."""
@@ -29,7 +29,7 @@ class CrcForm(NamedTuple):
 
 
 class EnvelopeField(NamedTuple):
-    """Some bytes of the header or trailer are a number, shifted and cut to ``bits``."""
+    """A field of the header or trailer: a number in some bytes, shifted, of ``bits`` bits."""
 
     role: str
     in_trailer: bool
@@ -48,7 +48,7 @@ class CheckForm(NamedTuple):
     kind: CheckKind
     crc: CrcForm
     covered_from: int
-    """The byte of the header from which on it is computed."""
+    """The first byte of the header that it covers."""
     covered_trailer: int
     """Bytes of the trailer that it covers."""
     is_seeded: bool
@@ -56,20 +56,20 @@ class CheckForm(NamedTuple):
 
 
 class StreamRow(NamedTuple):
-    """A message: its id, the lengths that its data can have, and its seed."""
+    """A message: its id, the valid lengths of its data, and its seed."""
 
     id: int
     least: int
     most: int
     cuts_zeros: bool
-    """Whether zeros at the end of the data are not sent, but for one byte."""
+    """Whether zeros at the end of the data are not sent, except for the first byte."""
     seed: int
     reply: Optional[int] = None
     """For a telecommand: the id of the telemetry that responds to it."""
 
 
 class Stream(NamedTuple):
-    """How messages are put into a stream of bytes, or into packets."""
+    """Frame format of messages in a byte stream or in packets."""
 
     delimited_by: Delimiter
     header_bytes: int
@@ -77,16 +77,16 @@ class Stream(NamedTuple):
     length_plus: int
     """Number that the length field adds to the bytes of the data."""
     per_id: bool
-    """Whether each id counts its own sequence."""
+    """Whether each id has its own sequence counter."""
     fields: tuple[EnvelopeField, ...]
     telecommands: tuple[StreamRow, ...]
     telemetry: tuple[StreamRow, ...]
     check: Optional[CheckForm] = None
 
     def rows(self, direction: Direction) -> tuple[StreamRow, ...]:
-        """The messages of a direction."""
+        """Return the messages of a direction."""
         return self.telemetry if direction == "telemetry" else self.telecommands
 
     def of(self, role: str) -> Optional[EnvelopeField]:
-        """The field of a role that there is at most once."""
+        """Return the field of a role that occurs at most once, or None."""
         return next((field for field in self.fields if field.role == role), None)

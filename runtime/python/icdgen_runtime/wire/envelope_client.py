@@ -27,27 +27,29 @@ class _Slot:
 
     asked: Request = _NOTHING
     state: Literal["idle", "hold", "wait"] = "idle"
-    sent: int = 0  # id of the telecommand that asks
-    reply: Optional[int] = None  # id of the telemetry that is waited for
-    kind: Optional[type[Message]] = None  # what it must be, if that was said
+    sent: int = 0  # id of the telecommand
+    reply: Optional[int] = None  # id of the expected reply
+    kind: Optional[type[Message]] = None  # class of the expected reply, if given
     attempts: int = 0
     until: float = 0
-    was_taken: bool = False  # by whoever sends
-    late: Optional[tuple[int, float]] = None  # id that may still come
+    was_taken: bool = False  # by `output`
+    late: Optional[tuple[int, float]] = None  # reply that may still arrive, until when
 
 
 class EnvelopeClient(Generic[N]):
     """A client for messages with header and trailer, in a stream or in packets.
 
-    It is told what happens and when, in milliseconds of any clock that never goes back:
-    `received`, and `tick` at the latest at `deadline`. What is to be sent is taken from
-    `output`, a message at a time.
+    Pass received data to `received`, and call `tick` at `deadline` at the latest. Take
+    the data to send from `output`, one message at a time. Times are in milliseconds of
+    any monotonic clock.
 
-    Telemetry that comes unasked is `Arrived`. A telecommand that the ICD names no reply to
-    is `Done` when it is sent; another one when the reply has come. Requests are told apart
-    by the ids of their replies: those that wait for different ones are under way together,
-    ``requests`` of them at most. ``values``: of the fields of the envelope that the sender
-    chooses, such as ``source``; see `Sender`.
+    Unsolicited telemetry is reported as `Arrived`. A telecommand without a reply in the
+    ICD is `Done` when it is sent, any other when its reply has arrived. Replies are
+    assigned to requests by their ids. Up to ``requests`` requests with different
+    replies may be in progress at once.
+
+    ``values``: values of the frame fields that the sender chooses, such as ``source``;
+    see `Sender`.
     """
 
     def __init__(
@@ -96,9 +98,9 @@ class EnvelopeClient(Generic[N]):
         repeat: bool = False,
         reply: Optional[KindOf[N, Message]] = None,
     ) -> list[Event]:
-        """Send a telecommand. See `start`; also raises `RangeError`.
+        """Send a telecommand. See `start`; also raise `RangeError`.
 
-        ``reply``: the telemetry that answers it, where the ICD does not say so.
+        ``reply``: class of the reply, if the ICD does not specify one.
         """
         id, data = sent(self.link, message), message_of(message).to_bytes()
         request = Request("telecommand", id, data, repeat)
@@ -109,11 +111,12 @@ class EnvelopeClient(Generic[N]):
     def start(
         self, now: float, request: Request, reply: Optional[int] = None
     ) -> list[Event]:
-        """Start a request; ``reply`` is the id of the reply to a telecommand.
+        """Start a request. ``reply`` is the id of the reply to a telecommand.
 
-        Raises `UnknownIdError`, `LengthError`, `BusyError` while another one waits for the
-        same reply or no more may be under way, and `UnsupportedError` for telemetry that no
-        telecommand without parameters is answered with.
+        Raise `UnknownIdError` and `LengthError`. Raise `BusyError` if another request
+        waits for that reply, or if there are too many requests. Raise
+        `UnsupportedError` for telemetry that is not the reply to a telecommand without
+        parameters.
         """
         return self._begin(now, request, reply)
 
@@ -133,7 +136,7 @@ class EnvelopeClient(Generic[N]):
     ) -> None:
         """Cancel a request, or all, without an event; drop the remaining output.
 
-        ``reply``: only what waits for telemetry of that id.
+        ``reply``: only the request that waits for telemetry of that id.
         """
         for slot in self._slots:
             is_meant = kind in (None, slot.asked.kind) and id in (None, slot.asked.id)

@@ -1,4 +1,4 @@
-"""What the wire layer refuses, beside the errors of the messages."""
+"""Exceptions of the wire layer, in addition to those of messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class UnsupportedError(IcdError):
 
 
 class TooLongError(IcdError):
-    """``actual`` bytes are more than the ``expected`` ones that fit the packets."""
+    """The data has ``actual`` bytes, but the packets can contain only ``expected``."""
 
     def __init__(self, expected: int, actual: int) -> None:
         super().__init__(f"{actual} bytes, at most {expected} fit")
@@ -25,7 +25,7 @@ class TooLongError(IcdError):
 
 
 class ChecksumError(IcdError):
-    """The checksum of a frame is ``actual``, and should be ``expected``."""
+    """The checksum of a frame is ``actual`` instead of ``expected``."""
 
     def __init__(self, expected: int, actual: int) -> None:
         super().__init__(
@@ -38,11 +38,11 @@ class ChecksumError(IcdError):
 
 
 class BusyError(IcdError):
-    """A request is going on: another one would overrun the node's buffer."""
+    """Another request is in progress. A second one would overrun the buffer of the node."""
 
 
 def need(part: Optional[T], name: str) -> T:
-    """The part of a link. Raises `UnsupportedError` if the ICD does not have it."""
+    """Return a part of a link. Raise `UnsupportedError` if the ICD does not describe it."""
     if part is None:
         raise UnsupportedError(f"the ICD says nothing about `{name}`")
     return part

@@ -1,4 +1,4 @@
-"""What a client tells. Every request ends in one of `Done`, `Refused` and `Timeout`."""
+"""Events of a client. Every request ends with one of `Done`, `Refused` and `Timeout`."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ R_co = TypeVar("R_co", bound=Optional[Message], covariant=True)
 
 @dataclass(frozen=True)
 class Done(Generic[R_co]):
-    """A request was executed: a telecommand, or telemetry with the frame in ``data``.
+    """A request was executed. ``data`` is the frame of requested telemetry.
 
-    ``Done[EstimatedAttitudeAngles]`` has such a message, ``Done[None]`` none. ``reply``: in
-    envelopes, the id of the telemetry that answered.
+    ``Done[EstimatedAttitudeAngles]`` has a message of this class, ``Done[None]`` has
+    none. ``reply``: with header and trailer, the id of the reply.
     """
 
     id: int
@@ -36,17 +36,17 @@ class Done(Generic[R_co]):
         return cast(R_co, found)
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
-        """The message, if it is one of these."""
+        """Return the message if it has this class, otherwise None."""
         found: Optional[Message] = self.message
         return found if isinstance(found, message) else None
 
 
 @dataclass(frozen=True)
 class Refused:
-    """The node refused a request.
+    """The node rejected a request.
 
-    ``reason`` is the role that the ICD gives the code: ``unknown_id``, ``length``,
-    ``parameter`` or ``checksum``. CAN has no code, and only I2C tells which parameter.
+    ``reason`` is the role of the code in the ICD: ``unknown_id``, ``length``,
+    ``parameter`` or ``checksum``. CAN has no code. Only I2C reports the parameter.
     """
 
     id: int
@@ -58,7 +58,7 @@ class Refused:
 
 @dataclass(frozen=True)
 class Timeout:
-    """A request had no reply; in envelopes, ``reply`` is the id of what was waited for."""
+    """A request had no reply. ``reply``: with header and trailer, the id of the missing reply."""
 
     id: int
     attempts: int
@@ -67,14 +67,14 @@ class Timeout:
 
 @dataclass(frozen=True)
 class Malformed:
-    """A reply has not the length of the message; it is waited on."""
+    """A reply does not have the length of the message. The client still waits for a reply."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Packet:
-    """A packet of a download came."""
+    """A packet of a download arrived."""
 
     number: int
     data: bytes
@@ -82,7 +82,7 @@ class Packet:
 
 @dataclass(frozen=True)
 class Log:
-    """The node sent a log of its own accord; ``data`` is the message with its id."""
+    """The node sent an unsolicited log. ``data`` is the message with its id."""
 
     data: bytes
     log: LogMessage
@@ -90,17 +90,19 @@ class Log:
 
 @dataclass(frozen=True)
 class Stray:
-    """A message that nobody waits for, with its id; on I2C, what was read."""
+    """A message without a matching request, with its id; on I2C, the bytes read."""
 
     data: bytes
 
 
 @dataclass(frozen=True)
 class LineError:
-    """What a decoder or the CAN joiner found wrong; on CAN and in envelopes, with the id.
+    """An error that a decoder or the CAN joiner detected.
 
-    ``checksum``: that of a frame is wrong; ``unchecked``: it has none, though it must. With
-    the id; the frame is waited on. In envelopes, `StreamEvent` has the others.
+    On CAN, and with header and trailer, ``id`` is the id of the message. ``checksum``:
+    the checksum of a frame is wrong. ``unchecked``: a required checksum is missing.
+    After these two, the client still waits for the frame. For the other errors see
+    `StreamEvent`, `UartEvent` and `CanEvent`.
     """
 
     error: str
@@ -109,7 +111,7 @@ class LineError:
 
 @dataclass(frozen=True)
 class Arrived:
-    """Telemetry that came unasked in an envelope, with what its sender chose of that."""
+    """Unsolicited telemetry, with the values of the frame fields that its sender chose."""
 
     id: int
     data: bytes
@@ -118,17 +120,17 @@ class Arrived:
 
     @property
     def message(self) -> Optional[Message]:
-        """The message; None if it is none of those that share its id."""
+        """The message; None if no message of its id matches the data."""
         return self.type.from_bytes(self.data) if self.type else None
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
-        """The message, if it is one of these."""
+        """Return the message if it has this class, otherwise None."""
         return message.from_bytes(self.data) if self.type is message else None
 
 
 @dataclass(frozen=True)
 class Gap:
-    """In envelopes: ``missing`` messages did not come before the next; none: one came again."""
+    """``missing`` messages were lost before the next one; 0 if a message was repeated."""
 
     id: Optional[int]
     missing: int

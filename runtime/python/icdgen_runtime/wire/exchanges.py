@@ -1,4 +1,4 @@
-"""What blocking and asyncio sessions share: how a request, or a procedure, is driven to its end by whoever can wait."""
+"""Requests and procedures, independent of blocking and asyncio sessions."""
 
 from __future__ import annotations
 
@@ -34,11 +34,14 @@ P = TypeVar("P", bound=Procedure)
 T = TypeVar("T")
 Step = Union[Literal["send"], float, None]
 Exchange = Generator[Step, list[Event], T]
-"""Wants what the client has to be sent, or what happens next, by a time in milliseconds
-if it says one; returns how it ended."""
+"""A request or procedure in progress.
+
+It yields ``"send"`` to send the output of the client. Otherwise it yields the latest
+time in milliseconds, or None, and receives the next events. It returns the outcome.
+"""
 Progress = Callable[[int, Optional[int]], object]
 
-_LONGEST_WAIT = 1000.0  # ms in one go
+_LONGEST_WAIT = 1000.0  # ms
 
 
 def client_of(
@@ -47,7 +50,7 @@ def client_of(
     settings: Optional[Settings],
     values: Optional[Mapping[str, int]],
 ) -> AnyClient[N]:
-    """The client for a stream of bytes. Raises `UnsupportedError`."""
+    """Return the client for a byte stream. Raise `UnsupportedError`."""
     if link.stream:
         if crc:
             raise UnsupportedError(
@@ -60,7 +63,7 @@ def client_of(
 
 
 class Exchanges(Generic[N]):
-    """A client, a clock, and whom to tell what comes unasked."""
+    """A client with a clock and a handler of unsolicited events."""
 
     def __init__(
         self,
@@ -75,7 +78,7 @@ class Exchanges(Generic[N]):
         return self._clock() * 1000
 
     def _seconds(self, until: Optional[float]) -> float:
-        """How long to wait at most."""
+        """Return the longest time to wait, in seconds."""
         now = self._now()
         times = [time for time in (until, self.client.deadline) if time is not None]
         return max(0.0, min([_LONGEST_WAIT, *(time - now for time in times)])) / 1000
@@ -93,7 +96,7 @@ class Exchanges(Generic[N]):
     def _answered(
         self, message: SpokenBy[N], reply: KindOf[N, Message], repeat: bool
     ) -> Exchange[Outcome]:
-        """A telecommand, to the telemetry that answers it."""
+        """Send a telecommand and wait for its reply."""
         if isinstance(self.client, Client):
             what = "telecommands are acknowledged, and answered with nothing"
             raise UnsupportedError(what)
@@ -102,13 +105,13 @@ class Exchanges(Generic[N]):
     def _messages_in(
         self, events: list[Event], kinds: tuple[KindOf[N, Message], ...]
     ) -> Iterator[Message]:
-        """The messages of these kinds that came unasked; without kinds all."""
+        """Return the unsolicited messages of these classes; all messages without ``kinds``."""
         for event in events:
             if not isinstance(event, Arrived) or (kinds and event.type not in kinds):
                 continue
             try:
                 message = event.message
-            except IcdError:  # what the frame counts does not fit its length
+            except IcdError:  # a counter in the frame does not match its length
                 self._tell(Malformed(event.id))
                 continue
             if message is not None:
@@ -117,9 +120,9 @@ class Exchanges(Generic[N]):
     def _exchange(
         self, start: Callable[..., list[Event]], *arguments: Any
     ) -> Exchange[Outcome]:
-        """A request, which a method of the client begins, to its outcome.
+        """Run a request, which the method ``start`` of the client begins.
 
-        It begins when no other is in its way.
+        If the client is busy, wait until another request has ended.
         """
         while True:
             try:
@@ -142,12 +145,12 @@ class Exchanges(Generic[N]):
                 events = yield None
         finally:
             if isinstance(client, Client):
-                client.cancel()  # else a port that fails leaves it busy
+                client.cancel()  # otherwise it stays busy after an exception of the port
             elif is_going_on:
                 client.cancel(reply=reply)
 
     def _together(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
-        """Exchanges that go on together, each to its end; one that fails ends all."""
+        """Run several exchanges at once. If one fails, the others are closed."""
         ends: dict[int, T] = {}
         events: Optional[list[Event]] = None
         try:
@@ -174,7 +177,7 @@ class Exchanges(Generic[N]):
     def _procedure(
         self, procedure: P, progress: Optional[Progress] = None
     ) -> Exchange[P]:
-        """A procedure to its end. Raises `FailedError`."""
+        """Run a procedure to its end. Raise `FailedError`."""
         try:
             return (yield from self._driven(procedure, progress))
         finally:
@@ -220,7 +223,7 @@ class Exchanges(Generic[N]):
 
 
 def executed(outcome: Outcome, name: str) -> AnyDone:
-    """What was done of a request. Raises `RefusedError` and `ReplyTimeoutError`."""
+    """Return the outcome if it is `Done`. Otherwise raise `RefusedError` or `ReplyTimeoutError`."""
     if isinstance(outcome, Refused):
         raise RefusedError(outcome, name)
     if isinstance(outcome, Timeout):
@@ -229,10 +232,10 @@ def executed(outcome: Outcome, name: str) -> AnyDone:
 
 
 def outcome_of(outcome: Outcome, message: type[R_co]) -> OutcomeOf[R_co]:
-    """The outcome of a request of such a message: the client has seen to it."""
+    """Return the outcome with the type of the message, which the client has checked."""
     return cast(OutcomeOf[R_co], outcome)
 
 
 def _may_be_damaged(event: Refused) -> bool:
-    """Whether the code is one that the ICD does not have."""
+    """Return whether the ICD does not define the code."""
     return event.code is not None and event.reason is None

@@ -1,4 +1,4 @@
-"""Errors that carry the event that a request, or a procedure, ended with."""
+"""Exceptions with the event that ended a request or a procedure."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .events import Refused, Timeout
 
 
 class RefusedError(IcdError):
-    """The node refused a request; ``event`` says why, ``name`` what it was."""
+    """The node rejected a request. ``event`` has the reason, ``name`` is the message."""
 
     def __init__(self, event: Refused, name: str = "") -> None:
         why = event.reason or ("no reason" if event.code is None else str(event.code))
@@ -21,7 +21,7 @@ class RefusedError(IcdError):
 
 
 class ReplyTimeoutError(IcdError):
-    """A request had no reply; ``name`` says what it was."""
+    """A request had no reply. ``name`` is the message."""
 
     def __init__(self, event: Timeout, name: str = "") -> None:
         often = "1 attempt" if event.attempts == 1 else f"{event.attempts} attempts"
@@ -33,9 +33,9 @@ class ReplyTimeoutError(IcdError):
 
 
 class FailedError(IcdError):
-    """A procedure did not end well: ``result`` is its `Procedure.result`.
+    """A procedure failed. ``result`` is its `Procedure.result`.
 
-    ``event`` is the refusal that ended it, if one did.
+    ``event`` is the rejection that ended it, or None.
     """
 
     def __init__(self, result: str, event: Optional[Refused] = None) -> None:

@@ -1,4 +1,4 @@
-"""Hole maps, and the entries of the index file."""
+"""Hole maps, and the index file."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from .link import Link
 
 
 class HoleMap:
-    """Which packets of a block were received: one bit each.
+    """Received packets of a block, one bit each.
 
-    Packets go by their number in the block, which begins with what the ICD says. Raises
-    `RangeError` for more packets than the map has bits, and `UnsupportedError`.
+    Packets have their number in the block, from the first number in the ICD. Raise
+    `RangeError` for more packets than bits of the map, and `UnsupportedError`.
     """
 
     def __init__(self, link: Link, packets: int, received: Iterable[int] = ()) -> None:
@@ -29,10 +29,7 @@ class HoleMap:
 
     @classmethod
     def from_bytes(cls, link: Link, packets: int, data: bytes) -> HoleMap:
-        """The map in ``data``; bits beyond the block's end are ignored.
-
-        Raises `LengthError`.
-        """
+        """Decode a map. Bits beyond the end of the block are ignored. Raise `LengthError`."""
         form = need(link.hole_map, "file_transfer.hole_map")
         if len(data) != form.bytes:
             raise LengthError("a hole map", form.bytes, len(data))
@@ -43,24 +40,24 @@ class HoleMap:
         return made
 
     def set(self, number: int) -> None:
-        """Notes a packet as received. Raises `RangeError`."""
+        """Mark a packet as received. Raise `RangeError`."""
         self._there[self._position(number)] = 1
 
     def get(self, number: int) -> bool:
-        """Whether a packet was received. Raises `RangeError`."""
+        """Return whether a packet was received. Raise `RangeError`."""
         return bool(self._there[self._position(number)])
 
     def count(self) -> int:
-        """How many packets were received."""
+        """Return the number of received packets."""
         return sum(self._there)
 
     def missing(self) -> list[int]:
-        """Numbers of the packets that were not received, rising."""
+        """Return the numbers of the missing packets, in ascending order."""
         there = enumerate(self._there, self._first)
         return [number for number, is_there in there if not is_there]
 
     def to_bytes(self) -> bytes:
-        """The map as it is sent."""
+        """Encode the map."""
         form = self._form
         out = bytearray(form.bytes)
         for bit in range(8 * form.bytes):
@@ -72,7 +69,7 @@ class HoleMap:
         return bytes(out)
 
     def messages(self) -> list[bytes]:
-        """The map in the pieces that its messages carry."""
+        """Return the encoded map in pieces, one for each message."""
         data, size = self.to_bytes(), self._form.message_bytes
         return [data[at : at + size] for at in range(0, len(data), size)]
 
@@ -87,7 +84,7 @@ class HoleMap:
 
 
 class IndexEntry(NamedTuple):
-    """An entry of the index file; ``time`` is packed, see `dos_time_unpack`."""
+    """An entry of the index file. ``time`` is packed, see `dos_time_unpack`."""
 
     type: int
     counter: int
@@ -98,9 +95,9 @@ class IndexEntry(NamedTuple):
 
 
 def read_index(link: Link, data: bytes) -> tuple[list[IndexEntry], int]:
-    """The entries of an index file, and the bytes of a truncated last one.
+    """Decode an index file. Return its entries and the number of surplus bytes at its end.
 
-    Raises `UnsupportedError`.
+    Raise `UnsupportedError`.
     """
     form = need(link.index_file, "index_file")
     count, truncated = divmod(len(data), form.entry_bytes)
@@ -119,10 +116,10 @@ def read_index(link: Link, data: bytes) -> tuple[list[IndexEntry], int]:
 
 
 def write_index(link: Link, entries: Iterable[IndexEntry]) -> bytes:
-    """An index file.
+    """Encode an index file.
 
-    Raises `LengthError` for meta-data of another length, `RangeError` for a number that
-    does not fit, and `UnsupportedError`.
+    Raise `LengthError` for meta-data of another length, `RangeError` for a number out
+    of range, and `UnsupportedError`.
     """
     form, out = need(link.index_file, "index_file"), bytearray()
     for entry in entries:

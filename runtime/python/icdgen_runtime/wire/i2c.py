@@ -1,4 +1,4 @@
-"""I2C: the bytes that the master writes and reads."""
+"""I2C: bytes that the master writes and reads."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from .link import Link
 
 
 class I2cTransfer(NamedTuple):
-    """One transaction: bytes to write, then count of bytes to read."""
+    """One transaction: bytes to write, then number of bytes to read."""
 
     write: bytes
     read: int
 
 
 def i2c_write(link: Link, id: int, data: bytes = b"", crc: bool = False) -> bytes:
-    """What is written for a telecommand, or for a request, which has no data.
+    """Return the bytes of a telecommand, or of a request, which has no data.
 
-    A telecommand is the same on the UART. Raises `UnsupportedError`.
+    The UART uses these bytes, too. Raise `UnsupportedError`.
     """
     message = bytes((id,)) + data
     if crc:
@@ -29,15 +29,18 @@ def i2c_write(link: Link, id: int, data: bytes = b"", crc: bool = False) -> byte
 
 
 def i2c_read_length(link: Link, id: int, crc: bool = False) -> int:
-    """Bytes to read for a frame. Raises `UnknownIdError` and `UnsupportedError`."""
+    """Return the number of bytes to read for a frame.
+
+    Raise `UnknownIdError` and `UnsupportedError`.
+    """
     extra = need(link.checksum, "crc8").bytes if crc else 0
     return _length(link, id) + extra
 
 
 def i2c_reply(link: Link, id: int, data: bytes, crc: bool = False) -> bytes:
-    """The frame in what was read.
+    """Return the frame in the bytes read.
 
-    Raises `UnknownIdError`, `LengthError`, `ChecksumError` and `UnsupportedError`.
+    Raise `UnknownIdError`, `LengthError`, `ChecksumError` and `UnsupportedError`.
     """
     length, expected = _length(link, id), i2c_read_length(link, id, crc)
     if len(data) != expected:

@@ -1,4 +1,4 @@
-"""Whether a node is what this package was generated for."""
+"""Check that a node is the one that this package was generated for."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .link import Link
 
 
 class Identity(NamedTuple):
-    """What a node says of itself, and whether the ICD says the same."""
+    """Type and interface version of a node, and whether they match the ICD."""
 
     node_type: int
     interface_version: int
@@ -18,9 +18,9 @@ class Identity(NamedTuple):
 
 
 def identify(link: Link, data: Buffer) -> Identity:
-    """The identity in an identification frame.
+    """Decode an identification frame and compare it with the ICD.
 
-    Raises `LengthError` and `UnsupportedError`.
+    Raise `LengthError` and `UnsupportedError`.
     """
     step = need(link.identification, "identification")
     frame = link.TELEMETRY[need(step.telemetry, "identification")].from_bytes(data)

@@ -1,4 +1,4 @@
-"""The facts of a node's link, as the ICD has them. Sizes are bytes, times milliseconds.
+"""Protocol of a node, from the ICD. Sizes are in bytes, times in milliseconds.
 
 A part that the ICD does not describe is None.
 """
@@ -23,7 +23,7 @@ Number = Union[int, float]
 
 
 class Assumption(NamedTuple):
-    """Something that the manual leaves open, what the ICD holds of it, and why."""
+    """An assumption of the ICD where the manual is incomplete, and its reason."""
 
     section: str
     key: str
@@ -32,10 +32,10 @@ class Assumption(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """How a client waits and tries again, in milliseconds."""
+    """Timeouts and retries of a client, in milliseconds."""
 
     reply_timeout: Number
-    """Time-out of a reply, in milliseconds."""
+    """Timeout of a reply, in milliseconds."""
     retries: int
     """Number of retries of a request."""
     poll_interval: Number
@@ -45,7 +45,7 @@ class Settings(NamedTuple):
 
 
 class Sent(NamedTuple):
-    """A telecommand: its length, and whether it is acknowledged and is a setting."""
+    """A telecommand: its length, whether it is acknowledged, and whether it is a setting."""
 
     length: int
     acknowledged: bool = True
@@ -53,7 +53,7 @@ class Sent(NamedTuple):
 
 
 class Framing(NamedTuple):
-    """How messages are delimited on the UART: escape byte and one of the others."""
+    """Delimiters of messages on the UART: the escape byte and one of the other bytes."""
 
     escape: int
     """The escape byte."""
@@ -66,22 +66,22 @@ class Framing(NamedTuple):
     escapes_id: bool
     """Whether the id is escaped like the data."""
     ignores_other: bool
-    """Whether an escape byte before any other byte is skipped with it, or an error."""
+    """Whether an escape byte and an unknown byte are skipped; otherwise it is an error."""
 
 
 class Acknowledge(NamedTuple):
-    """The acknowledge on the UART, with its first byte."""
+    """The acknowledge on the UART. Offsets include the first byte of the message."""
 
     length: int
-    """Bytes of the message."""
+    """Length of the message."""
     id_at: int
-    """Where the id of the telecommand stands."""
+    """Offset of the id of the telecommand."""
     error_at: int
-    """Where the error code stands."""
+    """Offset of the error code."""
 
 
 class Polled(NamedTuple):
-    """The frame that tells what became of a telecommand, and its attributes."""
+    """The frame with the result of a telecommand, and its attributes by role."""
 
     telemetry: int
     id: str
@@ -94,17 +94,17 @@ class Checksum(NamedTuple):
     """The optional checksum of telecommands and frames."""
 
     covers_id: bool
-    """Whether the id byte is part of what the checksum covers."""
+    """Whether the checksum covers the id byte."""
     telecommand_buses: tuple[str, ...]
-    """Where telecommands have it."""
+    """Buses on which telecommands may have a checksum."""
     telemetry_buses: tuple[str, ...]
-    """Where telemetry has it."""
+    """Buses on which telemetry may have a checksum."""
     telecommand_always: tuple[str, ...]
-    """Where telecommands are not taken without it."""
+    """Buses on which telecommands must have a checksum."""
     telemetry_always: tuple[str, ...]
-    """Where telemetry never is without it."""
+    """Buses on which telemetry always has a checksum."""
     bytes: int
-    """Bytes that it adds to a message."""
+    """Length of the checksum."""
     crc: CrcForm
 
 
@@ -121,13 +121,13 @@ class Extended(NamedTuple):
     data_bytes: int
     """Data bytes of a packet."""
     left_at: int
-    """Index of the byte that counts the packets that follow."""
+    """Index of the byte with the number of packets that follow."""
     left_in_last: int
     """Value of that byte in the last packet."""
     packets: int
-    """Most packets of a message."""
+    """Maximum number of packets of a message."""
     bytes: int
-    """Most bytes of a message."""
+    """Maximum number of bytes of a message."""
     fill: int
     """Value of unused bytes of the last packet."""
     packet_timeout: int
@@ -140,7 +140,7 @@ class Can(NamedTuple):
     node_address: int
     """Address of the node."""
     data_bytes: int
-    """Most data bytes of one packet; CAN 2.0 allows 8."""
+    """Maximum number of data bytes of one packet; CAN 2.0 allows 8."""
     parts: dict[str, CanPart]
     types: dict[CanKind, int]
     extended_types: dict[CanKind, int]
@@ -148,7 +148,7 @@ class Can(NamedTuple):
 
 
 class LogBit(NamedTuple):
-    """A bit of the log mask and its frame; an unassigned bit has no id."""
+    """A bit of the log mask and its frame. An unassigned bit has no id."""
 
     bit: int
     id: Optional[int]
@@ -157,12 +157,12 @@ class LogBit(NamedTuple):
 
 
 class LogMask(NamedTuple):
-    """The mask of a log, and the slots of an entry."""
+    """The mask of a log, and the frame slots of an entry."""
 
     size: int
     """Length of the mask."""
     msb0: bool
-    """Whether bit 0 is the most significant one of a byte."""
+    """Whether bit 0 is the most significant bit of a byte."""
     slot_bytes: int
     """Length of each frame in a log."""
     fill: int
@@ -170,7 +170,7 @@ class LogMask(NamedTuple):
     bits: dict[int, LogBit]
 
     def selected(self, mask: bytes) -> list[LogBit]:
-        """The slots of an entry, in order."""
+        """Return the slots of an entry, in order."""
         found = []
         for bit in range(8 * self.size):
             if mask[bit >> 3] >> (bit & 7 ^ (7 if self.msb0 else 0)) & 1:
@@ -183,32 +183,32 @@ class LogFileForm(NamedTuple):
     """The file form of a log. Times are (offset in the entry, bytes)."""
 
     mask_at: int
-    """Where the mask stands in the header."""
+    """Offset of the mask in the header."""
     header_bytes: int
-    """Bytes of the header."""
+    """Length of the header."""
     seconds: tuple[int, int]
-    """Where the Unix time stands in an entry."""
+    """Offset and length of the Unix time in an entry."""
     milliseconds: tuple[int, int]
-    """Where the milliseconds stand in an entry."""
+    """Offset and length of the milliseconds in an entry."""
     frames_at: int
-    """Where in an entry the selected frames begin."""
+    """Offset of the selected frames in an entry."""
     file_type: Optional[int] = None
-    """Type of such a file."""
+    """Type of a log file."""
 
 
 class LogMessageForm(NamedTuple):
     """The unsolicited form of a log. Offsets count from the id."""
 
     id: int
-    """Id of such messages."""
+    """Id of the message."""
     mask_at: int
-    """Where the mask stands."""
+    """Offset of the mask."""
     frames_at: int
-    """Where the selected frames begin, counted from the id."""
+    """Offset of the selected frames."""
 
 
 class TimePart(NamedTuple):
-    """A part of a packed time: bits, and what one of them stands for."""
+    """A part of a packed time: bits, and scale and offset of their number."""
 
     at: int
     bits: int
@@ -217,24 +217,27 @@ class TimePart(NamedTuple):
 
 
 class Index(NamedTuple):
-    """Entries of the index file: by role, offset and bytes."""
+    """Entries of the index file. Each field has offset and bytes, by role."""
 
     entry_bytes: int
     """Length of an entry."""
     fields: dict[str, tuple[int, int]]
     file_type: Optional[int] = None
-    """Type of such a file."""
+    """Type of the index file."""
 
 
 class HoleMapForm(NamedTuple):
-    """A bit for each packet of a block, in messages that have a set and a get id."""
+    """Map with one bit for each packet of a block.
+
+    Its messages have one id to set and one id to get.
+    """
 
     bytes: int
     """Length of the map."""
     message_bytes: int
     """Bytes of the map in each message."""
     msb0: bool
-    """Whether bit 0 is the most significant one of a byte."""
+    """Whether bit 0 is the most significant bit of a byte."""
     received: bool
     """Value of the bit of a received packet."""
     beyond_end: bool
@@ -245,7 +248,7 @@ class HoleMapForm(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A message that plays a part in a procedure, and its attributes by role."""
+    """A message of a procedure, and its attributes by role."""
 
     fields: dict[str, str]
     telecommand: Optional[int] = None
@@ -253,27 +256,27 @@ class Step(NamedTuple):
 
 
 class ListForm(NamedTuple):
-    """How the list of files is read one by one."""
+    """Procedure that lists all files, one at a time."""
 
     reset: Step
     """Returns to the first file."""
     advance: Step
-    """Goes on to the next file."""
+    """Advances to the next file."""
     information: Step
     """Describes a file."""
     poll_interval: int
     """Time between two polls of the busy flag, in milliseconds."""
     timeout: int
-    """Longest time that the busy flag stays set, in milliseconds."""
+    """Longest time that the busy flag is set, in milliseconds."""
 
 
 class DownloadForm(NamedTuple):
-    """How a file is downloaded."""
+    """Procedure that downloads a file."""
 
     load: Step
     """Loads a block."""
     ready: Step
-    """Tells whether the block is loaded."""
+    """Reports that the block is loaded."""
     burst: Step
     """Starts the transfer of the block."""
     message_length: int
@@ -281,34 +284,34 @@ class DownloadForm(NamedTuple):
     checksum_covers_fill: bool
     """Whether the checksum of a block covers the padding of its last packet."""
     index_counter: int
-    """Counter that goes with the type of the index file."""
+    """Counter of the index file, in addition to its type."""
     poll_interval: int
     """Time between two polls of the ready flag, in milliseconds."""
     ready_timeout: int
     """Longest time to load a block, in milliseconds."""
     silence: int
-    """Time without a packet after which a burst is over, in milliseconds."""
+    """Time without a packet after which a burst has ended, in milliseconds."""
     rounds: int
-    """Most bursts for one block."""
+    """Maximum number of bursts for one block."""
 
 
 class UploadForm(NamedTuple):
-    """How a file is uploaded."""
+    """Procedure that uploads a file."""
 
     initiate: Step
     """Erases the destination."""
     initiated: Step
-    """Tells whether the destination is erased."""
+    """Reports that the destination is erased."""
     begin: Step
     """Begins a block."""
     packet: Step
-    """Carries a packet."""
+    """Contains a packet."""
     checksum: Step
-    """Tells the checksum of the block received."""
+    """Reports the checksum of the received block."""
     finalize: Step
     """Commits a block."""
     finalized: Step
-    """Tells whether the block is committed."""
+    """Reports that the block is committed."""
     block_size: int
     """Value of the block size in `initiate`."""
     checksum_covers_fill: bool
@@ -320,20 +323,20 @@ class UploadForm(NamedTuple):
     finalize_timeout: int
     """Longest time to commit a block, in milliseconds."""
     rounds: int
-    """Most rounds of packets for one block."""
+    """Maximum number of rounds of packets for one block."""
     destination_bytes: Optional[int] = None
-    """Size of a destination in bytes: no file may be larger."""
+    """Size of a destination in bytes, the maximum size of a file."""
     destinations: tuple[int, ...] = ()
-    """Supported destinations; none: all."""
+    """Supported destinations; empty if all are supported."""
 
 
 class ErasureForm(NamedTuple):
-    """How files are deleted, or their medium is formatted."""
+    """Procedure that deletes files or formats their medium."""
 
     request: Step
-    """Begins it."""
+    """Starts the procedure."""
     progress: Step
-    """Tells whether it is done."""
+    """Reports that it has ended."""
     poll_interval: int
     """Time between two polls of the busy flag, in milliseconds."""
     timeout: int
@@ -352,9 +355,9 @@ class Files(NamedTuple):
     fill: int
     """Value of the bytes of the last packet beyond the end of the file."""
     block_packets: int
-    """Most packets of a block."""
+    """Maximum number of packets of a block."""
     block_bytes: int
-    """Most bytes of a block."""
+    """Maximum number of bytes of a block."""
     packet_ids: dict[str, int]
     list: Optional[ListForm] = None
     download: Optional[DownloadForm] = None
@@ -363,40 +366,43 @@ class Files(NamedTuple):
     format: Optional[ErasureForm] = None
 
     def packets_of(self, size: int) -> int:
-        """Packets of a block of so many bytes."""
+        """Return the number of packets of a block of ``size`` bytes."""
         return -(-size // self.packet_bytes)
 
 
 class Operation(NamedTuple):
-    """What a telecommand starts, and a frame tells the end of. Times in milliseconds."""
+    """Operation that a telecommand starts and a frame reports the end of.
+
+    Times are in milliseconds.
+    """
 
     request: Step
-    """Starts it."""
+    """Starts the operation."""
     progress: Step
-    """Tells when it is done."""
+    """Reports that it has ended."""
     poll_interval: int
     """Time between two polls of that frame, in milliseconds."""
     timeout: int
     """Longest duration, in milliseconds."""
     programs: tuple[int, ...] = ()
-    """Supported programs; none: all."""
+    """Supported programs; empty if all are supported."""
 
 
 class Facts(NamedTuple):
-    """Everything that the wire layer has to know of a node."""
+    """All facts of a node that the wire layer uses."""
 
     node: str
     order: Literal["little", "big"]
     node_type: Optional[int]
     interface_version: Optional[int]
     longest: int
-    """Bytes of the longest message of either direction, with id and checksum."""
+    """Length of the longest message of either direction, with id and checksum."""
     longest_data: int
-    """Bytes of the longest message of either direction, without."""
+    """Length of the longest message of either direction, without id and checksum."""
     telemetry_ids: tuple[int, int]
-    """First and last."""
+    """First and last id."""
     settings: Settings
-    """How a client waits by default."""
+    """Default timeouts and retries of a client."""
     errors: dict[str, int]
     """Error codes by role."""
     commands: dict[int, Sent]
@@ -431,7 +437,10 @@ class Facts(NamedTuple):
 
 
 class Link(Facts, Generic[N]):
-    """The link of a node, which type checkers know the messages of that node by."""
+    """Protocol of a node.
+
+    Type checkers use ``N`` to check that the node has a message.
+    """
 
     __slots__ = ()
 

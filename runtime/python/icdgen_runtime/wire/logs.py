@@ -13,22 +13,25 @@ from .link import Link, LogBit, LogMask
 
 
 class LogFrame(NamedTuple):
-    """One frame of a log. Where the ICD assigns none to the bit, ``id`` is None and
-    ``data`` is the whole slot."""
+    """One frame of a log.
+
+    If the ICD does not assign a frame to the bit, ``id`` is None and ``data`` is the
+    whole slot.
+    """
 
     bit: int
     id: Optional[int]
     data: bytes
 
     def message(self, link: Link) -> Message:
-        """The frame as a message. Raises `UnsupportedError` for an unassigned bit."""
+        """Decode the frame. Raise `UnsupportedError` for an unassigned bit."""
         if self.id not in link.frames:
             raise UnsupportedError(f"the ICD has no frame for bit {self.bit} of a log")
         return link.TELEMETRY[self.id].from_bytes(self.data)
 
 
 class LogEntry(NamedTuple):
-    """An entry of a log file: Unix time, and the frames by rising bits of the mask."""
+    """An entry of a log file: Unix time, and frames in ascending order of the mask bits."""
 
     seconds: int
     milliseconds: int
@@ -36,16 +39,16 @@ class LogEntry(NamedTuple):
 
 
 class LogMessage(NamedTuple):
-    """What a node sends of its own accord: a log without time."""
+    """An unsolicited log, without time."""
 
     mask: bytes
     frames: tuple[LogFrame, ...]
 
     @classmethod
     def decode(cls, link: Link, message: bytes) -> LogMessage:
-        """The log in a message, which begins with its id.
+        """Decode a log message, which begins with its id.
 
-        Raises `LengthError` and `UnsupportedError`.
+        Raise `LengthError` and `UnsupportedError`.
         """
         form = need(link.log_message, "unsolicited_log")
         layout = need(link.mask, "log_mask")
@@ -61,7 +64,7 @@ class LogMessage(NamedTuple):
 
     @staticmethod
     def encode(link: Link, mask: bytes, frames: Iterable[bytes]) -> bytes:
-        """A log message with its id. Raises `LengthError` and `UnsupportedError`."""
+        """Encode a log message with its id. Raise `LengthError` and `UnsupportedError`."""
         form = need(link.log_message, "unsolicited_log")
         head = bytearray(form.frames_at)
         head[0] = form.id
@@ -71,7 +74,7 @@ class LogMessage(NamedTuple):
 
 
 class LogReader:
-    """Reads a log file in pieces of any size. Raises `UnsupportedError`."""
+    """Read a log file in pieces of any size. Raise `UnsupportedError`."""
 
     def __init__(self, link: Link) -> None:
         self._form = need(link.log_file, "telemetry_log")
@@ -81,15 +84,15 @@ class LogReader:
         self._pieces: list[tuple[int, Optional[int], int, int]] = []
         self._entry_bytes = 0
         self.mask: Optional[bytes] = None
-        """The mask of the file; None as long as its header is incomplete."""
+        """The mask of the file; None until its header is complete."""
 
     @property
     def truncated(self) -> int:
-        """At the end of the file: bytes that belong to no whole entry."""
+        """Number of bytes at the end of the file that are not a complete entry."""
         return len(self._rest)
 
     def feed(self, data: Buffer) -> list[LogEntry]:
-        """Takes the next bytes of the file; gives the entries that are whole now."""
+        """Process the next bytes of the file. Return the entries that are now complete."""
         form, data = self._form, self._rest + bytes(data)
         position = 0
         if self.mask is None:
@@ -119,9 +122,9 @@ class LogReader:
 
 
 class LogWriter:
-    """Makes a log file of the frames that ``mask`` selects.
+    """Create a log file with the frames that ``mask`` selects.
 
-    Raises `LengthError` for a mask of another length, and `UnsupportedError`.
+    Raise `LengthError` for a mask of another length, and `UnsupportedError`.
     """
 
     def __init__(self, link: Link, mask: bytes) -> None:
@@ -130,15 +133,15 @@ class LogWriter:
         self._mask = mask
 
     def header(self) -> bytes:
-        """What a file begins with."""
+        """Return the header of the file."""
         out = bytearray(self._form.header_bytes)
         out[self._form.mask_at : self._form.mask_at + len(self._mask)] = self._mask
         return bytes(out)
 
     def entry(self, seconds: int, milliseconds: int, frames: Iterable[bytes]) -> bytes:
-        """An entry: the data of each frame, in the order of the mask's bits.
+        """Encode an entry from the data of each frame, in the order of the mask bits.
 
-        Raises `LengthError`, and `RangeError` for a time that does not fit.
+        Raise `LengthError`, and `RangeError` for a time out of range.
         """
         head = bytearray(self._form.frames_at)
         places = {
@@ -162,7 +165,7 @@ def _selected(layout: LogMask, mask: bytes) -> list[LogBit]:
 def _pieces(
     slots: Sequence[LogBit], layout: LogMask, start: int
 ) -> list[tuple[int, Optional[int], int, int]]:
-    """Bit, id, begin and end of each frame."""
+    """Return bit, id, begin and end of each frame."""
     pieces = []
     for number, slot in enumerate(slots):
         begin = start + number * layout.slot_bytes

@@ -1,4 +1,4 @@
-"""What a `Session` needs, of ports that work otherwise."""
+"""Ports of a `Session`, and adapters for serial ports and sockets."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ import socket
 from collections.abc import Callable
 from typing import Any, Optional, Protocol, Union
 
-_PIECE = 65536  # bytes that are read at a time: a datagram has no more
+_PIECE = 65536  # maximum bytes of a read, and of a datagram
 
 Write = Callable[[bytes], object]
 Read = Callable[[float], bytes]
 
 
 class SerialPort(Protocol):
-    """What is asked of a serial port: what `serial.Serial` of pyserial has."""
+    """Required attributes of a serial port. `serial.Serial` of pyserial has them."""
 
     timeout: Optional[float]
-    """How long a read waits, in seconds."""
+    """Timeout of a read, in seconds."""
 
     @property
     def in_waiting(self) -> int:
-        """Bytes that have come."""
+        """Number of received bytes that can be read."""
         ...
 
     def read(self, size: int = ..., /) -> bytes: ...
@@ -29,7 +29,7 @@ class SerialPort(Protocol):
 
 
 class CanBus(Protocol):
-    """What is asked of a CAN bus: what `can.Bus` of python-can has."""
+    """Required methods of a CAN bus. `can.Bus` of python-can has them."""
 
     def send(self, msg: Any, /) -> None: ...
 
@@ -37,7 +37,7 @@ class CanBus(Protocol):
 
 
 class I2cBus(Protocol):
-    """What is asked of an I2C bus: what `smbus2.SMBus` has."""
+    """Required methods of an I2C bus. `smbus2.SMBus` has them."""
 
     def i2c_rdwr(self, *i2c_msgs: Any) -> None: ...
 
@@ -47,9 +47,9 @@ Port = Union[SerialPort, socket.socket, CanBus, I2cBus]
 
 
 def serial_port(port: SerialPort) -> tuple[Write, Read]:
-    """The ``write`` and ``read`` of a serial port of pyserial.
+    """Return the functions ``write`` and ``read`` for a serial port of pyserial.
 
-    The time-out of the port is set for each read. Errors are those of the port.
+    Each read sets the timeout of the port. Exceptions of the port pass through.
     """
 
     def read(seconds: float) -> bytes:
@@ -61,20 +61,20 @@ def serial_port(port: SerialPort) -> tuple[Write, Read]:
 
 
 def socket_port(port: socket.socket) -> tuple[Write, Read]:
-    """The ``write`` and ``read`` of a connected socket, be it of TCP or of UDP.
+    """Return the functions ``write`` and ``read`` for a connected TCP or UDP socket.
 
-    Errors are those of the socket; `ConnectionResetError` tells that the other side of a
-    TCP connection closed.
+    Exceptions of the socket pass through. `ConnectionResetError` reports that the other
+    side of a TCP connection closed it.
     """
     is_stream = port.type == socket.SOCK_STREAM
 
     def read(seconds: float) -> bytes:
         before = port.gettimeout()
-        # 0 would be an error where nothing is there.
+        # With 0, `recv` would raise an error if there are no bytes.
         port.settimeout(max(seconds, 0.001))
         try:
             data = port.recv(_PIECE)
-        except socket.timeout:  # which is `TimeoutError` only since 3.10
+        except socket.timeout:  # an alias of `TimeoutError` only since Python 3.10
             return b""
         finally:
             port.settimeout(before)

@@ -1,5 +1,4 @@
-"""What all procedures share: they say which request comes next, and are told what
-became of it."""
+"""Base class of procedures, which return the next request and process its outcome."""
 
 from __future__ import annotations
 
@@ -18,13 +17,13 @@ Result = Literal[
 
 
 class Wait(NamedTuple):
-    """Nothing to send until then, or until something comes."""
+    """Wait until this time in milliseconds, or until the next event."""
 
     until: float
 
 
 class Ended(Exception):
-    """The procedure cannot go on."""
+    """The procedure failed with this result."""
 
     def __init__(self, result: Result) -> None:
         super().__init__(result)
@@ -38,21 +37,21 @@ Steps = Generator[Wanted, Optional[Outcome], None]
 
 
 def one_of(numbers: Iterable[int]) -> str:
-    """Numbers that can be chosen, in words."""
+    """Return the valid numbers as text, such as ``one of 1, 2``."""
     return "one of " + ", ".join(map(str, numbers))
 
 
 class Procedure:
-    """A procedure over a client; it knows neither clock nor bus.
+    """A procedure over a client, independent of clock and bus.
 
-    `next` gives the request to start, `event` takes the events of the client. Requests
-    begin when `next` is called for the first time. Raises `UnsupportedError`.
+    `next` returns the request to start, `event` processes the events of the client. The
+    first call of `next` starts the procedure. Raise `UnsupportedError`.
     """
 
     def __init__(self, link: Link) -> None:
         self.link = link
         self.result: Optional[Result] = None
-        """None while it runs, then ``done`` or why it is not."""
+        """None while it runs, then ``done`` or the reason of the failure."""
         self._now: float = 0
         self._wanted: Optional[Wanted] = None
         self._is_asked = False
@@ -60,16 +59,16 @@ class Procedure:
 
     @property
     def progress(self) -> tuple[int, Optional[int]]:
-        """Bytes that are delivered, and bytes in all, if that is known."""
+        """Number of transferred bytes, and their total if known."""
         return 0, None
 
     @property
     def deadline(self) -> Optional[float]:
-        """When `next` wants to be called again; None while an outcome is awaited."""
+        """Time of the next call of `next`, in milliseconds; None while waiting for an outcome."""
         return self._wanted.until if isinstance(self._wanted, Wait) else None
 
     def next(self, now: float) -> Optional[Request]:
-        """The next request, once; None while there is nothing to send."""
+        """Return the next request, once; None if there is nothing to send."""
         self._now = now
         if self._steps is None:
             self._steps = self._run()
@@ -82,7 +81,7 @@ class Procedure:
         return None
 
     def event(self, now: float, event: Event) -> None:
-        """Takes an event of the client. Those that are of no concern are ignored."""
+        """Process an event of the client. Unrelated events are ignored."""
         self._now = now
         if isinstance(event, Packet):
             self._packet(event.number, event.data)
@@ -94,7 +93,7 @@ class Procedure:
         raise NotImplementedError
 
     def _packet(self, number: int, data: bytes) -> None:
-        """Takes a download packet."""
+        """Process a download packet."""
 
     def _go_on(self, outcome: Optional[Outcome]) -> None:
         if self._steps is None:
@@ -110,7 +109,7 @@ class Procedure:
     def _telecommand(
         self, step: Step, values: Optional[Values] = None, repeat: bool = True
     ) -> Request:
-        """The telecommand of a step: a fresh message with values by role."""
+        """Return the telecommand of a step: a default message with values by role."""
         id = need(step.telecommand, "telecommand")
         message = self.link.TELECOMMANDS[id]()
         for role, value in (values or {}).items():
@@ -118,14 +117,14 @@ class Procedure:
         return Request("telecommand", id, message.to_bytes(), repeat)
 
     def _ask(self, request: Request) -> Generator[Wanted, Optional[Outcome], Outcome]:
-        """The outcome of a request."""
+        """Send a request and return its outcome."""
         outcome = yield request
         if outcome is None:
             raise Ended("timeout")
         return outcome
 
     def _must(self, request: Request) -> Generator[Wanted, Optional[Outcome], AnyDone]:
-        """The outcome of a request without which there is no going on."""
+        """Send a request and return its outcome. The procedure fails unless it was executed."""
         outcome = yield from self._ask(request)
         if isinstance(outcome, Done):
             return outcome
@@ -134,13 +133,13 @@ class Procedure:
     def _order(
         self, step: Step, values: Optional[Values] = None, repeat: bool = True
     ) -> Generator[Wanted, Optional[Outcome], None]:
-        """Sends the telecommand of a step, which must be executed."""
+        """Send the telecommand of a step. The procedure fails unless it was executed."""
         yield from self._must(self._telecommand(step, values, repeat))
 
     def _frame(
         self, step: Step
     ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
-        """The frame of a step: its values by role, and its bytes."""
+        """Request the frame of a step. Return its values by role, and its bytes."""
         id = need(step.telemetry, "telemetry")
         done = yield from self._must(Request("telemetry", id, repeat=True))
         frame: Message = self.link.TELEMETRY[id].from_bytes(done.data)
@@ -156,9 +155,9 @@ class Procedure:
         timeout: float,
         program: Optional[int] = None,
     ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
-        """The frame of a step as soon as the flag is as wanted, or tells an error.
+        """Request the frame of a step until its flag has the value ``wanted``, or an error.
 
-        A frame that tells of which program it is must be of that one.
+        If the frame identifies a program, it must be ``program``.
         """
         end = self._now + timeout
         while True:

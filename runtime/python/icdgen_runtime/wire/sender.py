@@ -1,4 +1,4 @@
-"""Messages of one direction, one after the other, in the envelope that the ICD describes."""
+"""Encoder of consecutive messages of one direction, with header and trailer."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from .stream import GIVEN, stream_encode
 
 
 class Sender:
-    """Puts messages into their envelopes, and counts them where the link has sequence numbers.
+    """Add header, trailer and sequence numbers to messages.
 
-    ``values`` are those of ``source``, ``destination``, ``type``, ``flags``, ``time``, and of
-    the first ``sequence``; of what is not given, the ICD's. Raises `UnsupportedError` for a
-    field that the envelope does not have, `RangeError` for a value that does not fit it.
+    ``values`` are the values of ``source``, ``destination``, ``type``, ``flags``,
+    ``time``, and the first ``sequence``. Defaults are in the ICD. Raise
+    `UnsupportedError` for a field that the frame format does not have, and `RangeError`
+    for a value out of range.
     """
 
     def __init__(
@@ -43,7 +44,7 @@ class Sender:
         self._next: dict[Optional[int], int] = {}
 
     def encode(self, message: Union[Message, int], data: Buffer = b"") -> bytes:
-        """The message, or the data of that id, as it is sent; raises like `stream_encode`."""
+        """Encode a message, or the data of an id. Raise as `stream_encode`."""
         field = self._sequence
         if field is None:
             return stream_encode(

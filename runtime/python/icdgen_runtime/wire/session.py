@@ -33,7 +33,8 @@ class BusSession(Exchanges[N]):
     def get(self, message: KindOf[N, M]) -> M:
         """Request telemetry or read a configuration.
 
-        Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
+        Raise `RefusedError`, `ReplyTimeoutError` and the exceptions of
+        `Client.request`.
         """
         outcome = self._run(self._exchange(self.client.request, message))
         return class_of(message).from_bytes(
@@ -43,7 +44,7 @@ class BusSession(Exchanges[N]):
     def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
         """Request telemetry or read a configuration; return the outcome.
 
-        Raises what `Client.request` does.
+        Raise the exceptions of `Client.request`.
         """
         outcome = self._run(self._exchange(self.client.request, message))
         return outcome_of(outcome, class_of(message))
@@ -74,7 +75,7 @@ class BusSession(Exchanges[N]):
         )
 
     def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
-        """Send a telecommand or set a configuration; raises as `get`, `Client.send`."""
+        """Send a telecommand or set a configuration. Raise as `get` and `Client.send`."""
         outcome = self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 
@@ -83,7 +84,7 @@ class BusSession(Exchanges[N]):
     ) -> M:
         """Send a telecommand (with header and trailer) and return its reply.
 
-        Raises like `get` and `EnvelopeClient.send`.
+        Raise as `get` and `EnvelopeClient.send`.
         """
         outcome = self._run(self._answered(message, reply, repeat))
         name = message_of(message).NAME
@@ -104,31 +105,33 @@ class BusSession(Exchanges[N]):
     def messages(
         self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
     ) -> Iterator[Message]:
-        """Unsolicited messages, without end or for this number of seconds.
+        """Iterate over unsolicited messages, without end or for this number of seconds.
 
-        Without ``kinds`` all of them. What else happens is told to ``on_event``.
+        ``kinds`` selects message classes; without it, all are returned. Other events
+        are passed to ``on_event``.
         """
         end = None if seconds is None else self._now() + 1000 * seconds
         while end is None or self._now() < end:
             yield from self._messages_in(self.wait(end), kinds)
 
     def start(self, request: Request) -> Outcome:
-        """Send any request and return its outcome. Raises as `Client.start`."""
+        """Send any request and return its outcome. Raise as `Client.start`."""
         return self._run(self._exchange(self.client.start, request))
 
     def run(self, procedure: P, progress: Optional[Progress] = None) -> P:
-        """Run a procedure to its end; calls ``progress`` with bytes done and total.
+        """Run a procedure to its end. Call ``progress`` with bytes done and total.
 
-        A request that is refused with a code that the ICD does not have is sent again, if
-        it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
-        `FailedError`.
+        The acknowledge may be damaged if its error code is not defined in the ICD. The
+        request is then sent again if possible, and otherwise treated as a timeout.
+        Raise `FailedError`.
         """
         return self._run(self._procedure(procedure, progress))
 
     def wait(self, until: Optional[float] = None) -> list[Event]:
         """Return the next events, until ``until`` (milliseconds of the clock).
 
-        Without ``until`` it waits as long as the client wants to, and a second at most.
+        Without ``until``, wait until the deadline of the client, but at most one
+        second.
         """
         self._flush()
         events = self._receive(self._seconds(until))
@@ -162,16 +165,19 @@ class BusSession(Exchanges[N]):
 class Session(BusSession[N]):
     """Blocking client over a port.
 
-    The port is yours, open as you want it: a serial port (pyserial), a connected socket of
-    TCP or UDP, a CAN bus (python-can) or an I2C bus (smbus2). Of any other carrier of bytes
-    give two functions: ``write(data)`` sends, ``read(seconds)`` returns what has come, after
-    so many seconds at the latest, if need be nothing. What they raise ends the request.
-    ``address`` is ours, on CAN. ``clock`` gives seconds. ``on_event`` is told of what comes
-    unasked, such as logs, and by `run` of refusals with a code that the ICD does not have.
+    The application opens the port: a serial port (pyserial), a connected TCP or UDP
+    socket, a CAN bus (python-can) or an I2C bus (smbus2). For any other byte transport,
+    pass two functions. ``write(data)`` sends bytes. ``read(seconds)`` returns received
+    bytes, or no bytes after this time. Their exceptions end the request.
 
-    Where messages travel in envelopes, ``values`` are those of its fields that the sender
-    chooses, such as ``source``, and `messages` gives what comes. Each ``write`` is one message
-    then, and each ``read`` one packet where nothing but the packet delimits messages.
+    ``address`` is the address of the client on CAN. ``clock`` returns seconds.
+    ``on_event`` is called with unsolicited events such as logs. `run` also passes it
+    rejections with an error code that is not defined in the ICD.
+
+    ``values`` are the values of frame fields that the sender chooses, such as
+    ``source``. With header and trailer, `messages` returns received messages. Each
+    ``write`` is then one message. If only packets delimit messages, each ``read`` must
+    return one packet.
     """
 
     def __init__(

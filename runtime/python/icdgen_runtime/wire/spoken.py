@@ -1,4 +1,4 @@
-"""The ids by which a node speaks messages; what to do with one that it does not speak."""
+"""Ids of the messages of a node, and errors for messages that it does not have."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ N_contra = TypeVar("N_contra", contravariant=True)
 
 
 class SpokenBy(Protocol[N_contra]):
-    """A message that a node speaks, its own or one of a node that it includes."""
+    """A message of a node, or of a node that it includes."""
 
     def to_bytes(self) -> bytes: ...
 
@@ -26,7 +26,7 @@ class SpokenBy(Protocol[N_contra]):
 
 
 class KindOf(Protocol[N_contra, M_co]):
-    """The class of such a message."""
+    """The class of a message of a node."""
 
     def __call__(self) -> object: ...
 
@@ -36,19 +36,19 @@ class KindOf(Protocol[N_contra, M_co]):
 
 
 def class_of(message: KindOf[Any, M]) -> type[M]:
-    """The class that it is."""
+    """Return the argument with the type of a message class."""
     return cast("type[M]", message)
 
 
 def message_of(message: SpokenBy[Any]) -> Message:
-    """The message that it is."""
+    """Return the argument with the type of a message."""
     return cast("Message", message)
 
 
 def requested(link: Link[N], message: KindOf[N, Message]) -> int:
-    """The id of telemetry, or of a setting that is read.
+    """Return the id of telemetry, or of a setting to read.
 
-    Raises `UnknownIdError`, and `TypeError` for a message in the place of its class.
+    Raise `UnknownIdError`, and `TypeError` for a message instead of its class.
     """
     kind = class_of(message)
     if isinstance(kind, Message):
@@ -58,9 +58,9 @@ def requested(link: Link[N], message: KindOf[N, Message]) -> int:
 
 
 def sent(link: Link[N], message: SpokenBy[N]) -> int:
-    """The id of a telecommand, or of a setting.
+    """Return the id of a telecommand, or of a setting.
 
-    Raises `UnknownIdError`, and `TypeError` for a class in the place of a message of it.
+    Raise `UnknownIdError`, and `TypeError` for a class instead of a message.
     """
     one = message_of(message)
     if isinstance(one, type):
@@ -71,7 +71,7 @@ def sent(link: Link[N], message: SpokenBy[N]) -> int:
 
 
 def spoken(link: Link[N], direction: Direction, kind: type[Message]) -> int:
-    """The id of a message in that direction. Raises `UnknownIdError`."""
+    """Return the id of a message in a direction. Raise `UnknownIdError`."""
     ways = {"telecommand": link.TELECOMMANDS, "telemetry": link.TELEMETRY}
     for id in kind.IDS:
         if id in ways[direction] and kind in ways[direction].of(id):

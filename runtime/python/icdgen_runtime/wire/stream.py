@@ -1,4 +1,4 @@
-"""Messages in the envelope that the ICD describes, in a stream of bytes or in packets."""
+"""Messages with the frame format of the ICD, in a byte stream or in packets."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ Found = Literal[
     "message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"
 ]
 GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
-"""Roles of the fields whose values the sender chooses."""
+"""Roles of the frame fields whose values the sender chooses."""
 
 
 class StreamEvent(NamedTuple):
-    """A message, or what was dropped and why.
+    """A message, or the reason why bytes were dropped.
 
-    ``gap``: before this message ``missing`` others did not come; none: it came again.
-    ``checksum``: it is wrong. ``length``: no message, or not that one, has such a length.
+    ``gap``: ``missing`` messages were lost before this one; 0 if a message was
+    repeated. ``checksum``: the checksum is wrong. ``length``: length mismatch.
     ``unknown_id``: the node has no such message. ``overrun``: longer than the buffer.
-    ``framing``: a constant or a delimiter is not what it must be.
+    ``framing``: a constant or a delimiter is wrong.
     """
 
     event: Found
@@ -44,7 +44,7 @@ class StreamEvent(NamedTuple):
     """For a message: its class; None if no message of its id matches."""
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
-        """The message, if it is one of these."""
+        """Return the message if it has this class, otherwise None."""
         if self.kind is not message:
             return None
         return message.from_bytes(self.data)
@@ -57,11 +57,12 @@ def stream_encode(
     direction: Direction = "telecommand",
     **values: int,
 ) -> bytes:
-    """A message, or the data of that id, as it is sent.
+    """Encode a message, or the data of an id, with header and trailer.
 
-    ``values`` are those of ``sequence``, ``source``, ``destination``, ``type``, ``flags``
-    and ``time``; of what is not given, the ICD's. ``direction`` is that of the sender: a
-    device sends ``"telemetry"``. Raises `UnknownIdError`, `LengthError`, `RangeError`.
+    ``values`` are the values of ``sequence``, ``source``, ``destination``, ``type``,
+    ``flags`` and ``time``. Defaults are in the ICD. ``direction`` is the direction of
+    the message: a device sends ``"telemetry"``. Raise `UnknownIdError`, `LengthError`
+    and `RangeError`.
     """
     form = need(link.stream, "stream")
     if strange := [name for name in values if name not in GIVEN]:
@@ -121,11 +122,11 @@ def _checksum(form: Stream, row: Optional[StreamRow], frame: bytes) -> int:
 
 
 class StreamDecoder:
-    """Finds the messages of a direction, however the stream is cut into pieces.
+    """Decode the messages of one direction, from pieces of the stream of any size.
 
-    It keeps at most ``limit`` bytes: the longest message, unless less are wanted. Where the
-    packet delimits a message, each is fed by itself. Raises `LengthError` if header and
-    trailer are more than the limit.
+    The buffer has ``limit`` bytes, by default the length of the longest message. If
+    packets delimit messages, pass each packet separately. Raise `LengthError` if header
+    and trailer exceed the limit.
     """
 
     def __init__(
@@ -142,7 +143,7 @@ class StreamDecoder:
             raise LengthError("the buffer of header and trailer", around, self._limit)
         self._types = link.TELEMETRY if direction == "telemetry" else link.TELECOMMANDS
         self._rows = {row.id: row for row in form.rows(direction)}
-        self._only = min(self._rows, default=0)  # where messages have no id
+        self._only = min(self._rows, default=0)  # the message of a format without id
         self._constants = [
             (field, field.values[direction == "telemetry"])
             for field in form.fields
@@ -158,17 +159,17 @@ class StreamDecoder:
             if form.delimited_by in ("length", "none")
             else Unstuffer(form.delimited_by, self._limit)
         )
-        self._last: dict[Optional[int], int] = {}  # sequence numbers
+        self._last: dict[Optional[int], int] = {}  # last sequence numbers
         self.discarded = 0
-        """Bytes of the stream that became part of no message."""
+        """Number of received bytes that are not part of a message."""
 
     @property
     def pending(self) -> int:
-        """Bytes of the stream about which nothing is decided yet."""
+        """Number of received bytes that may still become part of a message."""
         return self._line.pending if self._line else len(self._buffer)
 
     def feed(self, data: Buffer) -> list[StreamEvent]:
-        """Takes the next bytes of the stream, or a packet."""
+        """Process the next bytes of the stream, or a packet."""
         data, events = bytes(data), list[StreamEvent]()
         if self._line:
             for frame in self._line.feed(data):
@@ -187,7 +188,7 @@ class StreamDecoder:
     def _frame(
         self, frame: bytes, size: int, fault: Optional[str], events: list[StreamEvent]
     ) -> None:
-        """Something that is delimited from both sides."""
+        """Process a frame that is delimited on both sides."""
         if fault:
             events.append(StreamEvent(cast(Found, fault)))
         elif self._judge(frame, events) == "message":
@@ -195,7 +196,10 @@ class StreamDecoder:
         self.discarded += size
 
     def _front(self, at: int, events: list[StreamEvent]) -> Optional[int]:
-        """What stands at a place of the buffer: bytes to go on, None while undecided."""
+        """Decode the bytes at an offset of the buffer.
+
+        Return the number of processed bytes, or None if more bytes are needed.
+        """
         form, left = self._form, len(self._buffer) - at
         if not left:
             return None
@@ -226,7 +230,11 @@ class StreamDecoder:
     def _judge(
         self, frame: bytes, events: list[StreamEvent]
     ) -> Literal["message", "proven", "doubtful"]:
-        """Tells of a frame; proven is what is one beyond doubt, though of no use."""
+        """Check and decode a frame, and add its events.
+
+        ``proven`` is a valid frame whose message cannot be used. After ``doubtful``,
+        the decoder searches the next frame from the next byte on.
+        """
         form, size = self._form, len(frame)
         count = size - form.header_bytes - form.trailer_bytes
         if count < 0:
@@ -259,7 +267,7 @@ class StreamDecoder:
         return "message"
 
     def _told(self, length: EnvelopeField, frame: Buffer) -> int:
-        """Bytes of the data, as the field of the length says."""
+        """Return the number of data bytes, from the length field."""
         form = self._form
         return _get(form, length, frame, len(frame)) - form.length_plus
 
@@ -272,7 +280,7 @@ class StreamDecoder:
     def _count(
         self, id: int, values: Mapping[str, int], events: list[StreamEvent]
     ) -> None:
-        """Tells of sequence numbers that did not come."""
+        """Check the sequence number, and report a gap."""
         if not self._sequence:
             return
         number, mask = values["sequence"], (1 << self._sequence.bits) - 1

@@ -1,4 +1,4 @@
-"""Frames between delimiters: SLIP (RFC 1055), HDLC as on asynchronous lines (RFC 1662), COBS."""
+"""Delimited frames: SLIP (RFC 1055), asynchronous HDLC (RFC 1662) and COBS."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _HDLC_FLIP = 0x20
 
 
 class Frame(NamedTuple):
-    """What stood between delimiters: a frame of so many bytes on the line, or its fault."""
+    """A frame between delimiters, its number of bytes on the line, and its error or None."""
 
     bytes: bytes
     size: int
@@ -19,7 +19,7 @@ class Frame(NamedTuple):
 
 
 def stuffed(delimited_by: Delimiter, frame: bytes) -> bytes:
-    """The frame between its delimiters; as it is where there are none."""
+    """Return the frame with its delimiters, or unchanged without delimiters."""
     if delimited_by == "slip":
         data = frame.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
         return b"\xc0" + data + b"\xc0"
@@ -41,14 +41,14 @@ def _cobs(frame: bytes) -> bytes:
         rest = part[at:]
         out.append(len(rest) + 1)
         out += rest
-    if is_whole:  # nothing follows the last block, which needs no zero
+    if is_whole:  # a full last block does not need a block for an implied zero
         del out[-1]
     out.append(0)
     return bytes(out)
 
 
 class Unstuffer:
-    """Takes frames out of a stream; keeps at most ``limit`` bytes of them."""
+    """Extract frames from a stream. The buffer has ``limit`` bytes."""
 
     def __init__(self, delimited_by: Delimiter, limit: int) -> None:
         self._limit = limit
@@ -63,11 +63,11 @@ class Unstuffer:
         self._buffer = bytearray()
         self._fault: Optional[str] = None
         self._is_escaped = False
-        self._left = 0  # bytes that the block of COBS still has
-        self._is_zero = False  # whether a zero follows that block
+        self._left = 0  # remaining bytes of the COBS block
+        self._is_zero = False  # whether a zero follows this block
 
     def feed(self, data: bytes) -> list[Frame]:
-        """Takes the next bytes; what ended in them."""
+        """Process the next bytes. Return the frames that end in them."""
         found = []
         for byte in data:
             self.pending += 1

@@ -1,4 +1,4 @@
-"""Files: list, download, upload, erase, format."""
+"""File transfer: list, download, upload, erase, format."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .times import DosTime, dos_time_unpack
 
 
 class FileEntry(NamedTuple):
-    """A file of the node; ``time`` is packed."""
+    """A file of the node. ``time`` is packed."""
 
     type: int = 0
     counter: int = 0
@@ -26,12 +26,12 @@ class FileEntry(NamedTuple):
     checksum: int = 0
 
     def modified(self, link: Link) -> DosTime:
-        """When it was made. Raises `UnsupportedError`."""
+        """Return the time of its modification. Raise `UnsupportedError`."""
         return dos_time_unpack(link, self.time)
 
 
 class FileProcedure(Procedure):
-    """What the procedures of file transfer share. Raises `UnsupportedError`."""
+    """Base class of the file transfer procedures. Raise `UnsupportedError`."""
 
     def __init__(self, link: Link) -> None:
         super().__init__(link)
@@ -39,7 +39,7 @@ class FileProcedure(Procedure):
 
 
 class FileList(FileProcedure):
-    """Finds the files of the node, which are in ``entries``."""
+    """List the files of the node in ``entries``."""
 
     def __init__(self, link: Link) -> None:
         super().__init__(link)
@@ -64,7 +64,7 @@ class FileList(FileProcedure):
             elif repeated > self.link.settings.retries:
                 raise Ended("timeout")
             last, repeated = frame, repeated + 1
-            # Once: if only its acknowledge is lost, the next frame tells.
+            # Send it once. If only the acknowledge is lost, the next frame shows it.
             advance = self._telecommand(form.advance, repeat=False)
             outcome = yield from self._ask(advance)
             if isinstance(outcome, Refused):
@@ -72,10 +72,10 @@ class FileList(FileProcedure):
 
 
 class Download(FileProcedure):
-    """Gets a file, block by block.
+    """Download a file, block by block.
 
-    ``size`` None: as much as there is, which the index file needs. ``block``: bytes of
-    a block, at most those of the ICD.
+    ``size`` None: up to the end of the file, as required for the index file. ``block``:
+    bytes of a block, limited by the ICD.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class Download(FileProcedure):
         self._form = need(self._files.download, "file_transfer.download")
         self.size = size
         self.blocks: list[tuple[int, bytes]] = []
-        """Offset and data of what was delivered."""
+        """Offset and data of each received block."""
         self._bus = bus
         self._file = {"type": type, "counter": counter}
         self._block_bytes = min(
@@ -100,11 +100,11 @@ class Download(FileProcedure):
         self._offset = 0
         self._got: dict[int, bytes] = {}
         self._count = 0  # packets of the block
-        self._last: float = 0  # when a packet came
+        self._last: float = 0  # time of the last packet
 
     @property
     def data(self) -> bytes:
-        """What was delivered up to now."""
+        """The data received so far."""
         return b"".join(data for _, data in self.blocks)
 
     @property
@@ -133,7 +133,7 @@ class Download(FileProcedure):
                 return
 
     def _block(self, length: int) -> Generator[Wanted, Optional[Outcome], bytes]:
-        """A block of so many bytes, or of less at the end of a file of unknown size."""
+        """Download a block. At the end of a file of unknown size, it may be shorter."""
         form, rounds = self._form, 0
         while True:
             ready = yield from self._load(length)
@@ -152,11 +152,11 @@ class Download(FileProcedure):
                 return packets[:size]
             if rounds == form.rounds:
                 raise Ended("checksum")
-            if not size:  # no packet, so that no round was made
+            if not size:  # an empty block has no packets and did not count a round
                 rounds += 1
 
     def _load(self, length: int) -> Generator[Wanted, Optional[Outcome], Values]:
-        """Has the node load a block; what its ready frame says."""
+        """Request to load a block. Return the values of the ready frame."""
         self._got, self._count = {}, 0
         place = {**self._file, "offset": self._offset, "length": length}
         form = self._form
@@ -169,7 +169,7 @@ class Download(FileProcedure):
         return ready
 
     def _round(self) -> Steps:
-        """One burst, of the packets that are missing."""
+        """Request and receive one burst of the missing packets."""
         missing = self._count - len(self._got)
         if self._got:
             yield from self._send_hole_map()
@@ -178,7 +178,7 @@ class Download(FileProcedure):
             "length": self._form.message_length,
             "ignore_hole_map": not self._got,
         }
-        # Once: the packets tell more than the acknowledge.
+        # Send it once. The packets show that it was received.
         burst = self._telecommand(self._form.burst, values, repeat=False)
         outcome = yield from self._ask(burst)
         if isinstance(outcome, Refused):
@@ -192,7 +192,7 @@ class Download(FileProcedure):
             yield Wait(self._last + silence)
 
     def _fetch(self, packets: int) -> Steps:
-        """Requests so many packets one by one."""
+        """Request this number of packets, one at a time."""
         id = need(
             self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}"
         )
@@ -218,10 +218,10 @@ class Download(FileProcedure):
 
 
 class Upload(FileProcedure):
-    """Sends a file, block by block. ``sent``: bytes that are committed.
+    """Upload a file, block by block. ``sent`` is the number of committed bytes.
 
-    Raises `RangeError` for a destination that is not supported, `TooLongError` if it
-    holds less, and `UnsupportedError`.
+    Raise `RangeError` for a destination that is not supported, `TooLongError` if it is
+    too small, and `UnsupportedError`.
     """
 
     def __init__(
@@ -287,7 +287,7 @@ class Upload(FileProcedure):
                 raise Ended("checksum")
 
     def _missing(self, count: int) -> Generator[Wanted, Optional[Outcome], list[int]]:
-        """Numbers of the packets that the node has not."""
+        """Return the numbers of the packets that the node has not received."""
         form = need(self.link.hole_map, "file_transfer.hole_map")
         data = b""
         for id in form.telemetry[: _maps(self.link, count)]:
@@ -298,7 +298,7 @@ class Upload(FileProcedure):
         return HoleMap.from_bytes(self.link, count, whole).missing()
 
     def _commit(self, length: int) -> Generator[Wanted, Optional[Outcome], bool]:
-        """Has the node keep the block; whether it could."""
+        """Commit the block. Return whether the node succeeded."""
         values = {
             "destination": self._destination,
             "offset": self.sent,
@@ -313,7 +313,7 @@ class Upload(FileProcedure):
 
 
 class Erase(FileProcedure):
-    """Deletes a file, or all files: then it is done when the node is no longer busy."""
+    """Delete a file, or all files. Deletion of all files ends when the node is not busy."""
 
     def __init__(
         self, link: Link, type: int = 0, counter: int = 0, all: bool = False
@@ -332,7 +332,7 @@ class Erase(FileProcedure):
 
 
 class Format(FileProcedure):
-    """Formats the medium of the node."""
+    """Format the medium of the node."""
 
     def __init__(self, link: Link) -> None:
         super().__init__(link)
@@ -347,6 +347,6 @@ class Format(FileProcedure):
 
 
 def _maps(link: Link, packets: int) -> int:
-    """Messages that carry the hole map of a block of so many packets."""
+    """Return the number of messages for the hole map of a block."""
     bits = 8 * need(link.hole_map, "file_transfer.hole_map").message_bytes
     return -(-packets // bits)

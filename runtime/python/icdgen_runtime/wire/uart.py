@@ -1,4 +1,4 @@
-"""UART: messages from and to a stream of bytes. A message is the id and the data."""
+"""UART: conversion between messages and a byte stream. A message is the id and the data."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ Kind = Literal["reply", "acknowledge", "packet", "log", "other"]
 
 
 class UartEvent(NamedTuple):
-    """A message, or what went wrong.
+    """A message, or an error.
 
     ``unexpected_start``: a message began within another one, which is dropped.
-    ``protocol_error``: the escape byte stood before a byte that has no meaning there.
-    ``overrun``: the message is longer than the buffer. ``empty``: it has no id.
+    ``protocol_error``: an invalid byte followed the escape byte. ``overrun``: the
+    message is longer than the buffer. ``empty``: it has no id.
     """
 
     event: Found
@@ -34,7 +34,7 @@ _EMPTY = UartEvent("empty")
 
 
 def uart_encode(link: Link, message: Buffer) -> bytes:
-    """A message, id first, as it goes on the line. Raises `LengthError` if empty."""
+    """Encode a message, which begins with its id. Raise `LengthError` if it is empty."""
     framing, message = need(link.framing, "uart"), bytes(message)
     if not message:
         raise LengthError("a message", 1, 0)
@@ -46,7 +46,7 @@ def uart_encode(link: Link, message: Buffer) -> bytes:
 
 
 def uart_kind(link: Link, message: bytes) -> Kind:
-    """What a message from the node is, as far as its id and its length tell."""
+    """Return the kind of a message from the node, by its id and length."""
     id, log, files = message[0], link.log_message, link.files
     if log and link.mask and id == log.id:
         mask = message[log.mask_at : log.mask_at + link.mask.size]
@@ -65,7 +65,10 @@ def uart_kind(link: Link, message: bytes) -> Kind:
 
 @cache
 def _whole(framing: Framing) -> re.Pattern[bytes]:
-    """Finds a message that is whole: its id if that is not escaped, and the rest."""
+    """Return a pattern for a complete message.
+
+    Its groups are the id, if that is not escaped, and the remaining bytes.
+    """
     escape, start, end, escaped = (
         re.escape(bytes((byte,)))
         for byte in (framing.escape, framing.start, framing.end, framing.escaped)
@@ -78,10 +81,10 @@ def _whole(framing: Framing) -> re.Pattern[bytes]:
 
 
 class UartDecoder:
-    """Finds the messages in a stream, however that is cut into pieces.
+    """Decode the messages in a byte stream, from pieces of any size.
 
-    It keeps at most ``limit`` bytes: the longest message of the node, unless less are
-    wanted.
+    The buffer has ``limit`` bytes, by default the length of the longest message of the
+    node.
     """
 
     def __init__(self, link: Link, limit: Optional[int] = None) -> None:
@@ -91,9 +94,9 @@ class UartDecoder:
         self._is_inside = False
         self._is_escaped = False
         self.discarded = 0
-        """Bytes of the stream that became part of no message."""
+        """Number of received bytes that are not part of a message."""
         self.pending = 0
-        """Bytes of the stream that may still become part of a message."""
+        """Number of received bytes that may still become part of a message."""
         escape = bytes((framing.escape,))
         self._escape = escape
         self._opening = escape + bytes((framing.start,))
@@ -102,7 +105,7 @@ class UartDecoder:
         self._most = 2 * self._limit + 4  # bytes of a message on the line
 
     def feed(self, data: Buffer) -> list[UartEvent]:
-        """Takes the next bytes of the stream."""
+        """Process the next bytes of the stream."""
         data = bytes(data)
         events: list[UartEvent] = []
         position = 0
@@ -112,7 +115,7 @@ class UartDecoder:
         return events
 
     def _between(self, data: bytes, position: int, events: list[UartEvent]) -> int:
-        """Outside of messages: goes on to the next start, and its message if whole."""
+        """Outside of a message: advance to the next start, and past a complete message."""
         if self._is_escaped:
             if data[position] == self._framing.start:
                 self._begin()
@@ -137,13 +140,13 @@ class UartDecoder:
         return start + 2
 
     def _within(self, data: bytes, position: int, events: list[UartEvent]) -> int:
-        """Inside a message: goes on to the next escape byte, or past it."""
+        """Inside a message: advance to the next escape byte, or past it."""
         if self._is_escaped:
             return self._meaning(data, position, events)
         if self._buffer or self._framing.escapes_id:
             end = data.find(self._escape, position)
             end = len(data) if end < 0 else end
-        else:  # the id, whatever it is
+        else:  # the id, which is not escaped
             end = position + 1
         room = self._limit - len(self._buffer)
         if end - position > room:
@@ -160,7 +163,7 @@ class UartDecoder:
         return end + 1
 
     def _meaning(self, data: bytes, position: int, events: list[UartEvent]) -> int:
-        """The byte after an escape byte inside a message."""
+        """Process the byte after an escape byte inside a message."""
         framing, byte = self._framing, data[position]
         self._is_escaped = False
         self.pending += 1
@@ -195,7 +198,7 @@ class UartDecoder:
         self._leave(is_escape)
 
     def _leave(self, is_escape: bool) -> None:
-        """Drops what is pending; an escape byte may still begin a message."""
+        """Discard the pending bytes. A last escape byte may still begin a message."""
         self.discarded += self.pending - is_escape
         self.pending, self._is_inside = int(is_escape), False
         self._is_escaped = is_escape
