@@ -99,7 +99,7 @@ class AsyncSession(Exchanges[N]):
 
         Raise as `get` and `EnvelopeClient.send`.
         """
-        outcome = await self._run(self._answered(message, reply, repeat))
+        outcome = await self._run(self._with_reply(message, reply, repeat))
         name = message_of(message).NAME
         return class_of(reply).from_bytes(executed(outcome, name).data)
 
@@ -113,7 +113,7 @@ class AsyncSession(Exchanges[N]):
         self,
         kind: KindOf[N, M],
         /,
-        *others: KindOf[N, M],
+        *more_kinds: KindOf[N, M],
         seconds: Optional[float] = None,
     ) -> AsyncIterator[M]: ...
 
@@ -180,7 +180,7 @@ class AsyncSession(Exchanges[N]):
             raise ConnectionResetError("the other side closed the connection")
         for box in self._boxes.values():
             box += events
-        self._tell_unasked(events)
+        self._report_unsolicited(events)
         await self._flush()
 
     @property

@@ -79,7 +79,7 @@ class CanCarrier:
     bus: Bus = "can"
 
     def __init__(self, port: CanBus) -> None:
-        self._port, self._message = port, _beside(port, "Message")
+        self._port, self._message = port, _library_class(port, "Message")
 
     def send(self, client: Any) -> None:
         for packet in client.packets():
@@ -91,20 +91,20 @@ class CanCarrier:
     def receive(
         self, client: Any, now: Callable[[], float], seconds: float
     ) -> list[Event]:
-        found = self._port.recv(seconds)
+        message = self._port.recv(seconds)
         events: list[Event]
-        if found is None or _is_foreign(found):
+        if message is None or _is_foreign(message):
             events = client.tick(now())
         else:
-            packet = CanPacket(found.arbitration_id, bytes(found.data))
+            packet = CanPacket(message.arbitration_id, bytes(message.data))
             events = client.packet(now(), packet)
         return events
 
 
-def _is_foreign(found: Any) -> bool:
+def _is_foreign(message: Any) -> bool:
     """Return whether a packet cannot belong to a link. All links have 29-bit identifiers."""
     return bool(
-        not found.is_extended_id or found.is_error_frame or found.is_remote_frame
+        not message.is_extended_id or message.is_error_frame or message.is_remote_frame
     )
 
 
@@ -115,7 +115,7 @@ class I2cCarrier:
 
     def __init__(self, port: I2cBus, address: int, joins: bool) -> None:
         self._port, self._address, self._joins = port, address, joins
-        self._message = _beside(port, "i2c_msg")
+        self._message = _library_class(port, "i2c_msg")
 
     def send(self, client: Any) -> None:
         """Do nothing. A transaction has an immediate result, so `receive` performs it."""
@@ -130,7 +130,7 @@ class I2cCarrier:
             events = client.tick(now())
         for done, transfer in enumerate(transfers):
             try:
-                data = self._transferred(*transfer)
+                data = self._transfer(*transfer)
             except BaseException:
                 # Report the others as failed. Otherwise the client waits for them.
                 for _ in transfers[done:]:
@@ -139,14 +139,14 @@ class I2cCarrier:
             events += client.transferred(now(), data)
         return events
 
-    def _transferred(self, write: bytes, count: int) -> Optional[bytes]:
+    def _transfer(self, write: bytes, count: int) -> Optional[bytes]:
         """Perform a transaction. Return the bytes read, or None without acknowledge."""
         parts = [self._message.write(self._address, write)]
         if count:
             parts.append(self._message.read(self._address, count))
         try:
-            for one in [parts] if self._joins else [[part] for part in parts]:
-                self._port.i2c_rdwr(*one)
+            for transaction in [parts] if self._joins else [[part] for part in parts]:
+                self._port.i2c_rdwr(*transaction)
         except OSError as error:
             if error.errno not in _NOT_ANSWERED:
                 raise
@@ -154,16 +154,16 @@ class I2cCarrier:
         return bytes(parts[1]) if count else b""
 
 
-def _beside(port: object, name: str) -> Any:
+def _library_class(port: object, name: str) -> Any:
     """Return a class of the library that defines the class of ``port`` or a base class.
 
     Raise `TypeError` if there is none.
     """
     for kind in type(port).__mro__:
         for module in (kind.__module__, kind.__module__.partition(".")[0]):
-            found = getattr(sys.modules.get(module), name, None)
-            if found is not None:
-                return found
+            value = getattr(sys.modules.get(module), name, None)
+            if value is not None:
+                return value
     raise TypeError(f"nothing beside {type(port).__name__} is called {name}")
 
 

@@ -16,14 +16,14 @@ def check(form: CheckForm, data: bytes) -> int:
     if form.kind == "crc":
         return Crc(crc).feed(data).result()
     if form.kind == "sum":
-        found = (crc.init + sum(data)) & ((1 << crc.width) - 1)
+        result = (crc.init + sum(data)) & ((1 << crc.width) - 1)
     elif form.kind == "xor":
-        found = reduce(xor, data, crc.init)
+        result = reduce(xor, data, crc.init)
     else:
         modulus = 255 if form.kind == "fletcher_255" else 256
         first, second = crc.init & 0xFF, crc.init >> 8
         for byte in data:
             first += byte
             second += first
-        found = second % modulus << 8 | first % modulus
-    return found ^ crc.xor_out
+        result = second % modulus << 8 | first % modulus
+    return result ^ crc.xor_out

@@ -19,14 +19,14 @@ from .sender import Sender
 from .spoken import KindOf, SpokenBy, class_of, message_of, requested, sent
 from .stream import StreamDecoder, StreamEvent
 
-_NOTHING = Request("telecommand", 0)
+_NO_REQUEST = Request("telecommand", 0)
 
 
 @dataclass(eq=False)
 class _Slot:
     """A request, and the previous request if its reply may still arrive."""
 
-    asked: Request = _NOTHING
+    request: Request = _NO_REQUEST
     state: Literal["idle", "hold", "wait"] = "idle"
     sent: int = 0  # id of the telecommand
     reply: Optional[int] = None  # id of the expected reply
@@ -65,11 +65,11 @@ class EnvelopeClient(Generic[N]):
         self._form = need(link.stream, "stream")
         self._sender = Sender(link, "telecommand", values)
         self._decoder = StreamDecoder(link)
-        self._most = requests
+        self._max_requests = requests
         self.begun: Optional[int] = None
         """Id of the reply to the last request; None if it has none."""
         self._slots: list[_Slot] = []
-        self._untaken: list[_Slot] = []
+        self._unsent: list[_Slot] = []
 
     @property
     def busy(self) -> bool:
@@ -123,11 +123,11 @@ class EnvelopeClient(Generic[N]):
 
     def output(self) -> bytes:
         """Return the next encoded message to send; empty if there is none."""
-        if not self._untaken:
+        if not self._unsent:
             return b""
-        slot = self._untaken.pop(0)
+        slot = self._unsent.pop(0)
         slot.was_taken = True
-        return self._sender.encode(slot.sent, slot.asked.data)
+        return self._sender.encode(slot.sent, slot.request.data)
 
     def cancel(
         self,
@@ -140,7 +140,10 @@ class EnvelopeClient(Generic[N]):
         ``reply``: only the request that waits for telemetry of that id.
         """
         for slot in self._slots:
-            is_meant = kind in (None, slot.asked.kind) and id in (None, slot.asked.id)
+            is_meant = kind in (None, slot.request.kind) and id in (
+                None,
+                slot.request.id,
+            )
             if is_meant and reply in (None, slot.reply):
                 self._drop(slot)
                 if slot.state != "idle":
@@ -153,34 +156,34 @@ class EnvelopeClient(Generic[N]):
         for slot in self._slots:
             if slot.state == "idle" or now < slot.until:
                 continue
-            is_left = slot.asked.repeat and slot.attempts <= self.settings.retries
+            is_left = slot.request.repeat and slot.attempts <= self.settings.retries
             if slot.state == "hold" or is_left:
                 events += self._transmit(now, slot)
             else:
                 self._end(now, slot, True)
-                events.append(Timeout(slot.asked.id, slot.attempts, slot.reply))
+                events.append(Timeout(slot.request.id, slot.attempts, slot.reply))
         return events
 
     def received(self, now: float, data: Buffer) -> list[Event]:
         """Process received bytes: a piece of the stream, or one packet."""
         events = self.tick(now)
-        for found in self._decoder.feed(data):
-            events.append(self._found(now, found))
+        for event in self._decoder.feed(data):
+            events.append(self._event_of(now, event))
         return events
 
-    def _found(self, now: float, found: StreamEvent) -> Event:
-        if found.event == "gap":
-            return Gap(found.id, found.missing)
-        if found.event != "message" or found.id is None:
-            return LineError(found.event, found.id)
+    def _event_of(self, now: float, event: StreamEvent) -> Event:
+        if event.event == "gap":
+            return Gap(event.id, event.missing)
+        if event.event != "message" or event.id is None:
+            return LineError(event.event, event.id)
         for slot in self._slots:
             is_asked = slot.state == "wait" and slot.was_taken
-            is_awaited = is_asked and slot.reply == found.id
-            if is_awaited and slot.kind in (None, found.kind):
+            is_awaited = is_asked and slot.reply == event.id
+            if is_awaited and slot.kind in (None, event.kind):
                 self._end(now, slot, slot.attempts > 1)
-                id, attempts = slot.asked.id, slot.attempts
-                return Done(id, attempts, found.data, found.kind, found.id)
-        return Arrived(found.id, found.data, found.values, found.kind)
+                id, attempts = slot.request.id, slot.attempts
+                return Done(id, attempts, event.data, event.kind, event.id)
+        return Arrived(event.id, event.data, event.values, event.kind)
 
     def _begin(
         self,
@@ -194,16 +197,20 @@ class EnvelopeClient(Generic[N]):
             reply, request = request.id, Request("telemetry", request.id, b"", True)
         elif reply is None:
             reply = row.reply
-        elif all(one.id != reply for one in self._form.telemetry):
+        elif all(entry.id != reply for entry in self._form.telemetry):
             raise UnknownIdError(self.link.node, "telemetry", reply)
-        slot = self._free(reply)
+        slot = self._free_slot(reply)
         if not row.least <= len(request.data) <= row.most:
             nearest = row.most if len(request.data) > row.most else row.least
             raise LengthError(f"telecommand {row.id}", nearest, len(request.data))
-        slot.asked, slot.sent, slot.reply, slot.kind = request, row.id, reply, kind
+        slot.request, slot.sent, slot.reply, slot.kind = request, row.id, reply, kind
         slot.attempts, slot.was_taken = 0, False
         self.begun = reply
-        late = [one.late[1] for one in self._slots if one.late and one.late[0] == reply]
+        late = [
+            entry.late[1]
+            for entry in self._slots
+            if entry.late and entry.late[0] == reply
+        ]
         if now < max(late, default=now):
             slot.state, slot.until = "hold", max(late)
             return []
@@ -226,15 +233,15 @@ class EnvelopeClient(Generic[N]):
             raise UnknownIdError(self.link.node, request.kind, id)
         return row
 
-    def _free(self, reply: Optional[int]) -> _Slot:
+    def _free_slot(self, reply: Optional[int]) -> _Slot:
         """Return a slot for a request whose reply no other request waits for."""
         waiting = (slot.reply for slot in self._slots if slot.state != "idle")
         if reply is not None and reply in waiting:
             raise BusyError(f"a request waits for telemetry {reply} already")
         for slot in self._slots:
-            if slot.state == "idle" and slot not in self._untaken:
+            if slot.state == "idle" and slot not in self._unsent:
                 return slot
-        if self._most is not None and len(self._slots) >= self._most:
+        if self._max_requests is not None and len(self._slots) >= self._max_requests:
             raise BusyError("as many requests are going on as there may be")
         self._slots.append(_Slot())
         return self._slots[-1]
@@ -242,11 +249,11 @@ class EnvelopeClient(Generic[N]):
     def _transmit(self, now: float, slot: _Slot) -> list[Event]:
         """Send the request, for the first time or again."""
         slot.attempts += 1
-        if slot not in self._untaken:
-            self._untaken.append(slot)
+        if slot not in self._unsent:
+            self._unsent.append(slot)
         if slot.reply is None:
             slot.state = "idle"
-            return [Done(slot.asked.id, slot.attempts)]
+            return [Done(slot.request.id, slot.attempts)]
         slot.state, slot.until = "wait", now + self.settings.reply_timeout
         return []
 
@@ -258,8 +265,8 @@ class EnvelopeClient(Generic[N]):
 
     def _drop(self, slot: _Slot) -> None:
         """Drop the remaining output."""
-        if slot in self._untaken:
-            self._untaken.remove(slot)
+        if slot in self._unsent:
+            self._unsent.remove(slot)
 
     def _remember(self, slot: _Slot, since: float) -> None:
         """Remember that the reply may still arrive, or arrive again."""

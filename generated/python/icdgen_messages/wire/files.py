@@ -24,7 +24,7 @@ class HoleMap:
         self.packets = packets
         if not 0 <= packets <= 8 * form.bytes:
             raise RangeError("packets", f"0 to {8 * form.bytes}", packets)
-        self._there = bytearray(packets)
+        self._received = bytearray(packets)
         for number in received:
             self.set(number)
 
@@ -34,28 +34,28 @@ class HoleMap:
         form = need(link.hole_map, "file_transfer.hole_map")
         if len(data) != form.bytes:
             raise LengthError("a hole map", form.bytes, len(data))
-        made = cls(link, packets)
+        result = cls(link, packets)
         for bit in range(packets):
-            state = data[bit >> 3] >> made._weight(bit) & 1
-            made._there[bit] = state == form.received
-        return made
+            state = data[bit >> 3] >> result._weight(bit) & 1
+            result._received[bit] = state == form.received
+        return result
 
     def set(self, number: int) -> None:
         """Mark a packet as received. Raise `RangeError`."""
-        self._there[self._position(number)] = 1
+        self._received[self._position(number)] = 1
 
     def get(self, number: int) -> bool:
         """Return whether a packet was received. Raise `RangeError`."""
-        return bool(self._there[self._position(number)])
+        return bool(self._received[self._position(number)])
 
     def count(self) -> int:
         """Return the number of received packets."""
-        return sum(self._there)
+        return sum(self._received)
 
     def missing(self) -> list[int]:
         """Return the numbers of the missing packets, in ascending order."""
-        there = enumerate(self._there, self._first)
-        return [number for number, is_there in there if not is_there]
+        received = enumerate(self._received, self._first)
+        return [number for number, is_there in received if not is_there]
 
     def to_bytes(self) -> bytes:
         """Encode the map."""
@@ -65,7 +65,7 @@ class HoleMap:
             if bit >= self.packets:
                 state = form.beyond_end
             else:
-                state = form.received == self._there[bit]
+                state = form.received == self._received[bit]
             out[bit >> 3] |= state << self._weight(bit)
         return bytes(out)
 

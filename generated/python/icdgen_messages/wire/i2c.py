@@ -49,7 +49,9 @@ def i2c_reply(link: Link, id: int, data: bytes, crc: bool = False) -> bytes:
     frame = data[:length]
     if crc and data[length:] != _checksum(link, id, frame):
         numbers = (_checksum(link, id, frame), data[length:])
-        raise ChecksumError(*(int.from_bytes(one, link.order) for one in numbers))
+        raise ChecksumError(
+            *(int.from_bytes(checksum, link.order) for checksum in numbers)
+        )
     return frame
 
 

@@ -23,14 +23,14 @@ class ProgramOperation(Procedure):
             raise RangeError("program", one_of(form.programs), program)
         self.program = program
         self._form = form
-        self._told: Values = {}
+        self._reported: Values = {}
 
     def _run(self) -> Steps:
         form = self._form
-        yield from self._order(form.request, {"program": self.program})
+        yield from self._execute(form.request, {"program": self.program})
         is_ready = "ready" in form.progress.fields
         role = "ready" if is_ready else "busy"
-        self._told, _ = yield from self._poll(
+        self._reported, _ = yield from self._poll(
             form.progress,
             role,
             is_ready,
@@ -38,12 +38,12 @@ class ProgramOperation(Procedure):
             form.timeout,
             self.program,
         )
-        if self._told.get("error"):
+        if self._reported.get("error"):
             raise Ended("error")
 
     def _value(self, role: str) -> Optional[int]:
-        found = self._told.get(role) if self.result == "done" else None
-        return None if found is None else int(found)
+        value = self._reported.get(role) if self.result == "done" else None
+        return None if value is None else int(value)
 
 
 class ProgramCopy(ProgramOperation):

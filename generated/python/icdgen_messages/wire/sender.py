@@ -12,7 +12,7 @@ from .._hints import Buffer
 from .envelope import Direction
 from .errors import UnsupportedError, need
 from .link import Link
-from .stream import GIVEN, stream_encode
+from .stream import CHOSEN_ROLES, stream_encode
 
 
 class Sender:
@@ -35,7 +35,7 @@ class Sender:
         self._direction: Direction = direction
         self._values = dict(values or {})
         for role, value in self._values.items():
-            field = form.of(role) if role in GIVEN else None
+            field = form.of(role) if role in CHOSEN_ROLES else None
             if field is None:
                 raise UnsupportedError(f"the envelope has no field `{role}` to choose")
             if not 0 <= value < 1 << field.bits:

@@ -52,12 +52,12 @@ class BusSession(Exchanges[N]):
 
     @overload
     def get_several(
-        self, one: KindOf[N, M], other: KindOf[N, M2], /
+        self, first: KindOf[N, M], second: KindOf[N, M2], /
     ) -> tuple[M, M2]: ...
 
     @overload
     def get_several(
-        self, one: KindOf[N, M], other: KindOf[N, M2], third: KindOf[N, M3], /
+        self, first: KindOf[N, M], second: KindOf[N, M2], third: KindOf[N, M3], /
     ) -> tuple[M, M2, M3]: ...
 
     @overload
@@ -68,8 +68,10 @@ class BusSession(Exchanges[N]):
 
         Raises as `get`; the other requests are then cancelled.
         """
-        asked = [self._exchange(self.client.request, message) for message in messages]
-        outcomes = self._run(self._together(asked))
+        exchanges = [
+            self._exchange(self.client.request, message) for message in messages
+        ]
+        outcomes = self._run(self._concurrently(exchanges))
         return tuple(
             class_of(message).from_bytes(executed(outcome, class_of(message).NAME).data)
             for message, outcome in zip(messages, outcomes)
@@ -87,7 +89,7 @@ class BusSession(Exchanges[N]):
 
         Raise as `get` and `EnvelopeClient.send`.
         """
-        outcome = self._run(self._answered(message, reply, repeat))
+        outcome = self._run(self._with_reply(message, reply, repeat))
         name = message_of(message).NAME
         return class_of(reply).from_bytes(executed(outcome, name).data)
 
@@ -99,7 +101,7 @@ class BusSession(Exchanges[N]):
         self,
         kind: KindOf[N, M],
         /,
-        *others: KindOf[N, M],
+        *more_kinds: KindOf[N, M],
         seconds: Optional[float] = None,
     ) -> Iterator[M]: ...
 
@@ -137,7 +139,7 @@ class BusSession(Exchanges[N]):
         self._flush()
         events = self._receive(self._seconds(until))
         self._flush()
-        return self._tell_unasked(events)
+        return self._report_unsolicited(events)
 
     def _run(self, exchange: Exchange[T]) -> T:
         try:

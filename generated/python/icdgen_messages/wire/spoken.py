@@ -63,12 +63,12 @@ def sent(link: Link[N], message: SpokenBy[N]) -> int:
 
     Raise `UnknownIdError`, and `TypeError` for a class instead of a message.
     """
-    one = message_of(message)
-    if isinstance(one, type):
+    instance = message_of(message)
+    if isinstance(instance, type):
         raise TypeError(
-            f"what is sent is a message: {one.__name__}(...), not the class"
+            f"what is sent is a message: {instance.__name__}(...), not the class"
         )
-    return spoken(link, "telecommand", type(one))
+    return spoken(link, "telecommand", type(instance))
 
 
 def spoken(link: Link[N], direction: Direction, kind: type[Message]) -> int:
@@ -82,7 +82,7 @@ def spoken(link: Link[N], direction: Direction, kind: type[Message]) -> int:
         "telecommand": "a telecommand: send it",
         "telemetry": "telemetry: request it",
     }
-    for way, known in ways.items():
-        if any(id in known and kind in known.of(id) for id in kind.IDS):
+    for way, messages in ways.items():
+        if any(id in messages and kind in messages.of(id) for id in kind.IDS):
             why = f"it is {uses[way]}"
     raise UnknownIdError(link.node, direction, kind.NAME, why)

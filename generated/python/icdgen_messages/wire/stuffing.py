@@ -7,7 +7,7 @@ from typing import NamedTuple, Optional
 
 from .envelope import Delimiter
 
-_SLIP_MEANT = {0xDC: 0xC0, 0xDD: 0xDB}
+_SLIP_ESCAPED = {0xDC: 0xC0, 0xDD: 0xDB}
 _HDLC_FLIP = 0x20
 
 
@@ -39,9 +39,9 @@ def _cobs(frame: bytes) -> bytes:
             out += part[at : at + 254]
             at += 254
         is_whole = 0 < len(part) == at
-        rest = part[at:]
-        out.append(len(rest) + 1)
-        out += rest
+        remainder = part[at:]
+        out.append(len(remainder) + 1)
+        out += remainder
     if is_whole:  # a full last block does not need a block for an implied zero
         del out[-1]
     out.append(0)
@@ -69,20 +69,20 @@ class Unstuffer:
 
     def feed(self, data: bytes) -> list[Frame]:
         """Process the next bytes. Return the frames that end in them."""
-        found = []
+        frames = []
         for byte in data:
             self.pending += 1
             if byte == self._end:
                 if self._is_escaped or self._left:
                     self._fault = self._fault or "framing"
                 if self._buffer or self._fault:
-                    whole = bytes(self._buffer)
-                    found.append(Frame(whole, self.pending, self._fault))
+                    frame = bytes(self._buffer)
+                    frames.append(Frame(frame, self.pending, self._fault))
                 self.pending = 0
                 self._clear()
             elif self._fault is None:
                 self._inside(byte)
-        return found
+        return frames
 
     def _inside(self, byte: int) -> None:
         if self._is_cobs:
@@ -95,7 +95,7 @@ class Unstuffer:
             self._left, self._is_zero = byte - 1, byte != 0xFF
         elif self._is_escaped:
             self._is_escaped = False
-            meant = _SLIP_MEANT.get(byte) if self._is_slip else byte ^ _HDLC_FLIP
+            meant = _SLIP_ESCAPED.get(byte) if self._is_slip else byte ^ _HDLC_FLIP
             if meant is None:
                 self._fault = "framing"
             else:

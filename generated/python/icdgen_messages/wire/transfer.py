@@ -13,7 +13,7 @@ from .errors import TooLongError, need
 from .events import Done, Outcome, Refused
 from .files import HoleMap
 from .link import Bus, Link
-from .procedures import Ended, Procedure, Steps, Values, Wait, Wanted, one_of
+from .procedures import Action, Ended, Procedure, Steps, Values, Wait, one_of
 from .times import DosTime, dos_time_unpack
 
 
@@ -49,7 +49,7 @@ class FileList(FileProcedure):
 
     def _run(self) -> Steps:
         form, last, repeated = self._form, b"", 0
-        yield from self._order(form.reset)
+        yield from self._execute(form.reset)
         while True:
             values, frame = yield from self._poll(
                 form.information, "busy", False, form.poll_interval, form.timeout
@@ -57,17 +57,19 @@ class FileList(FileProcedure):
             if not any(frame):
                 return
             if frame != last:
-                known = {
+                numbers = {
                     role: values[role] for role in FileEntry._fields if role in values
                 }
-                self.entries.append(FileEntry(**{r: int(v) for r, v in known.items()}))
+                self.entries.append(
+                    FileEntry(**{r: int(v) for r, v in numbers.items()})
+                )
                 repeated = 0
             elif repeated > self.link.settings.retries:
                 raise Ended("timeout")
             last, repeated = frame, repeated + 1
             # Send it once. If only the acknowledge is lost, the next frame shows it.
             advance = self._telecommand(form.advance, repeat=False)
-            outcome = yield from self._ask(advance)
+            outcome = yield from self._outcome_of(advance)
             if isinstance(outcome, Refused):
                 raise Ended("refused")
 
@@ -99,7 +101,7 @@ class Download(FileProcedure):
             block or self._files.block_bytes, self._files.block_bytes
         )
         self._offset = 0
-        self._got: dict[int, bytes] = {}
+        self._packets: dict[int, bytes] = {}
         self._count = 0  # packets of the block
         self._last: float = 0  # time of the last packet
 
@@ -116,10 +118,10 @@ class Download(FileProcedure):
         position = number - self._files.first_packet
         if not 0 <= position < self._count:
             return
-        self._got.setdefault(position, data)
+        self._packets.setdefault(position, data)
         self._last = self._now
-        if len(self._got) == self._count and isinstance(self._wanted, Wait):
-            self._wanted = Wait(self._now)
+        if len(self._packets) == self._count and isinstance(self._action, Wait):
+            self._action = Wait(self._now)
 
     def _run(self) -> Steps:
         while self.size is None or self._offset < self.size:
@@ -133,7 +135,7 @@ class Download(FileProcedure):
             if self.size is None and len(data) < length:
                 return
 
-    def _block(self, length: int) -> Generator[Wanted, Optional[Outcome], bytes]:
+    def _block(self, length: int) -> Generator[Action, Optional[Outcome], bytes]:
         """Download a block. At the end of a file of unknown size, it may be shorter."""
         form, rounds = self._form, 0
         while True:
@@ -142,12 +144,14 @@ class Download(FileProcedure):
             if size > length or (self.size is not None and size != length):
                 raise Ended("length")
             self._count = self._files.packets_of(size)
-            while len(self._got) < self._count:
+            while len(self._packets) < self._count:
                 if rounds == form.rounds:
                     raise Ended("rounds")
                 rounds += 1
                 yield from self._round()
-            packets = b"".join(self._got[position] for position in range(self._count))
+            packets = b"".join(
+                self._packets[position] for position in range(self._count)
+            )
             covered = packets if form.checksum_covers_fill else packets[:size]
             if crc16(self.link, covered) == ready["checksum"]:
                 return packets[:size]
@@ -156,12 +160,12 @@ class Download(FileProcedure):
             if not size:  # an empty block has no packets and did not count a round
                 rounds += 1
 
-    def _load(self, length: int) -> Generator[Wanted, Optional[Outcome], Values]:
+    def _load(self, length: int) -> Generator[Action, Optional[Outcome], Values]:
         """Request to load a block. Return the values of the ready frame."""
-        self._got, self._count = {}, 0
+        self._packets, self._count = {}, 0
         place = {**self._file, "offset": self._offset, "length": length}
         form = self._form
-        yield from self._order(form.load, place)
+        yield from self._execute(form.load, place)
         ready, _ = yield from self._poll(
             form.ready, "ready", True, form.poll_interval, form.ready_timeout
         )
@@ -171,17 +175,17 @@ class Download(FileProcedure):
 
     def _round(self) -> Steps:
         """Request and receive one burst of the missing packets."""
-        missing = self._count - len(self._got)
-        if self._got:
+        missing = self._count - len(self._packets)
+        if self._packets:
             yield from self._send_hole_map()
         self._last = self._now
         values = {
             "length": self._form.message_length,
-            "ignore_hole_map": not self._got,
+            "ignore_hole_map": not self._packets,
         }
         # Send it once. The packets show that it was received.
         burst = self._telecommand(self._form.burst, values, repeat=False)
-        outcome = yield from self._ask(burst)
+        outcome = yield from self._outcome_of(burst)
         if isinstance(outcome, Refused):
             raise Ended("refused")
         if self._bus != "uart":
@@ -189,7 +193,7 @@ class Download(FileProcedure):
             return
         silence = self._form.silence
         self._last = max(self._last, self._now)
-        while len(self._got) < self._count and self._now < self._last + silence:
+        while len(self._packets) < self._count and self._now < self._last + silence:
             yield Wait(self._last + silence)
 
     def _fetch(self, packets: int) -> Steps:
@@ -198,16 +202,16 @@ class Download(FileProcedure):
             self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}"
         )
         for _ in range(packets):
-            outcome = yield from self._ask(Request("telemetry", id, repeat=True))
+            outcome = yield from self._outcome_of(Request("telemetry", id, repeat=True))
             if isinstance(outcome, Done):
-                counter, rest = self._files.counter_bytes, outcome.data
-                number = int.from_bytes(rest[:counter], self.link.order)
-                self._packet(number, rest[counter:])
+                counter, data = self._files.counter_bytes, outcome.data
+                number = int.from_bytes(data[:counter], self.link.order)
+                self._packet(number, data[counter:])
 
     def _send_hole_map(self) -> Steps:
         form = need(self.link.hole_map, "file_transfer.hole_map")
         first = self._files.first_packet
-        received = [first + position for position in self._got]
+        received = [first + position for position in self._packets]
         pieces = HoleMap(self.link, self._count, received).messages()
         for id, piece in zip(
             form.telecommands, pieces[: _maps(self.link, self._count)]
@@ -215,7 +219,7 @@ class Download(FileProcedure):
             message = self.link.TELECOMMANDS[id]()
             setattr(message, form.attribute, piece)
             data = message.to_bytes()
-            yield from self._must(Request("telecommand", id, data, repeat=True))
+            yield from self._require(Request("telecommand", id, data, repeat=True))
 
 
 class Upload(FileProcedure):
@@ -230,9 +234,9 @@ class Upload(FileProcedure):
     ) -> None:
         super().__init__(link)
         form = self._form = need(self._files.upload, "file_transfer.upload")
-        known = form.destinations
-        if known and destination not in known:
-            raise RangeError("destination", one_of(known), destination)
+        supported = form.destinations
+        if supported and destination not in supported:
+            raise RangeError("destination", one_of(supported), destination)
         most = form.destination_bytes
         if most is not None and len(data) > most:
             raise TooLongError(most, len(data))
@@ -252,7 +256,7 @@ class Upload(FileProcedure):
             "block_size": self._form.block_size,
         }
         form = self._form
-        yield from self._order(form.initiate, values)
+        yield from self._execute(form.initiate, values)
         yield from self._poll(
             form.initiated, "busy", False, form.poll_interval, form.erase_timeout
         )
@@ -267,7 +271,7 @@ class Upload(FileProcedure):
         filled = data.ljust(count * files.packet_bytes, bytes((files.fill,)))
         covered = filled if form.checksum_covers_fill else data
         while True:
-            yield from self._order(form.begin)
+            yield from self._execute(form.begin)
             missing = [files.first_packet + position for position in range(count)]
             while missing:
                 if rounds == form.rounds:
@@ -277,28 +281,28 @@ class Upload(FileProcedure):
                     at = (number - files.first_packet) * files.packet_bytes
                     piece = filled[at : at + files.packet_bytes]
                     values = {"number": number, "bytes": piece}
-                    yield from self._order(form.packet, values, repeat=False)
+                    yield from self._execute(form.packet, values, repeat=False)
                 missing = yield from self._missing(count)
-            told, _ = yield from self._frame(form.checksum)
-            if told["checksum"] == crc16(self.link, covered):
+            reported, _ = yield from self._frame(form.checksum)
+            if reported["checksum"] == crc16(self.link, covered):
                 is_committed = yield from self._commit(len(data))
                 if is_committed:
                     return
             if rounds == form.rounds:
                 raise Ended("checksum")
 
-    def _missing(self, count: int) -> Generator[Wanted, Optional[Outcome], list[int]]:
+    def _missing(self, count: int) -> Generator[Action, Optional[Outcome], list[int]]:
         """Return the numbers of the packets that the node has not received."""
         form = need(self.link.hole_map, "file_transfer.hole_map")
         data = b""
         for id in form.telemetry[: _maps(self.link, count)]:
-            done = yield from self._must(Request("telemetry", id, repeat=True))
+            done = yield from self._require(Request("telemetry", id, repeat=True))
             frame = self.link.TELEMETRY[id].from_bytes(done.data)
             data += getattr(frame, form.attribute)
-        whole = data.ljust(form.bytes, b"\0")
-        return HoleMap.from_bytes(self.link, count, whole).missing()
+        padded = data.ljust(form.bytes, b"\0")
+        return HoleMap.from_bytes(self.link, count, padded).missing()
 
-    def _commit(self, length: int) -> Generator[Wanted, Optional[Outcome], bool]:
+    def _commit(self, length: int) -> Generator[Action, Optional[Outcome], bool]:
         """Commit the block. Return whether the node succeeded."""
         values = {
             "destination": self._destination,
@@ -306,11 +310,11 @@ class Upload(FileProcedure):
             "length": length,
         }
         form = self._form
-        yield from self._order(form.finalize, values)
-        told, _ = yield from self._poll(
+        yield from self._execute(form.finalize, values)
+        status, _ = yield from self._poll(
             form.finalized, "busy", False, form.poll_interval, form.finalize_timeout
         )
-        return not told["error"]
+        return not status["error"]
 
 
 class Erase(FileProcedure):
@@ -325,7 +329,7 @@ class Erase(FileProcedure):
 
     def _run(self) -> Steps:
         form = self._form
-        yield from self._order(form.request, self._values)
+        yield from self._execute(form.request, self._values)
         if self._values["all"]:
             yield from self._poll(
                 form.progress, "busy", False, form.poll_interval, form.timeout
@@ -341,7 +345,7 @@ class Format(FileProcedure):
 
     def _run(self) -> Steps:
         form = self._form
-        yield from self._order(form.request)
+        yield from self._execute(form.request)
         yield from self._poll(
             form.progress, "busy", False, form.poll_interval, form.timeout
         )

@@ -8,7 +8,7 @@ from .._errors import RangeError
 from .errors import TooLongError, need
 from .link import Can, CanKind, Extended, Link
 
-Found = Literal[
+EventName = Literal[
     "message", "duplicate", "incomplete", "malformed", "busy", "unknown_type"
 ]
 _WITH_DATA = ("telecommand", "reply")
@@ -40,7 +40,7 @@ class CanEvent(NamedTuple):
     message type.
     """
 
-    event: Found
+    event: EventName
     id: int
     source: int
     message: Optional[CanMessage] = None
@@ -89,7 +89,7 @@ def _identifier(can: Can, type: int, message: CanMessage) -> int:
     return identifier
 
 
-class _Joining:
+class _PartialMessage:
     """Received packets of one message.
 
     A complete message is kept, so that duplicate packets can be detected.
@@ -105,7 +105,7 @@ class _Joining:
         self.in_order = 0
         self.completed_by: Optional[int] = None
 
-    def came(self, position: int, now: float) -> None:
+    def record(self, position: int, now: float) -> None:
         """Record a packet, new or repeated."""
         self.last = now
         if position == self.in_order:
@@ -113,12 +113,12 @@ class _Joining:
         elif position != self.in_order - 1:
             self.in_order = 0 if position else 1
 
-    def again(self, position: int, piece: bytes) -> bool:
+    def is_duplicate(self, position: int, piece: bytes) -> bool:
         """Return whether the packet is a duplicate rather than part of another message."""
         expected = self.completed_by in (None, position)
         return expected and self.pieces.get(position) == piece
 
-    def is_over(self, position: int, count: int) -> bool:
+    def is_other_message(self, position: int, count: int) -> bool:
         """Return whether the packet belongs to another message."""
         if self.completed_by is not None or self.count != count:
             return True
@@ -137,7 +137,7 @@ class CanJoiner:
     ) -> None:
         self._link, self._can = link, need(link.can, "can")
         self._address, self._senders = address, senders
-        self._open: dict[tuple[int, int, int, int], _Joining] = {}
+        self._open: dict[tuple[int, int, int, int], _PartialMessage] = {}
         self._kinds: dict[int, CanKind] = {
             number: kind for kind, number in self._can.types.items()
         }
@@ -208,28 +208,28 @@ class CanJoiner:
         if not 0 <= left < count <= most:
             return [*self._give_up(key), malformed]
         position, events = count - 1 - left, []
-        kept: dict[int, bytes] = {}
-        if joining and joining.again(position, piece):
-            joining.came(position, now)
+        pieces: dict[int, bytes] = {}
+        if joining and joining.is_duplicate(position, piece):
+            joining.record(position, now)
             return [CanEvent("duplicate", head.id, head.source)]
-        if joining and joining.is_over(position, count):
+        if joining and joining.is_other_message(position, count):
             if joining.completed_by is None and position == joining.in_order:
                 # The sender started again. The repeated packets, which arrived in
                 # order, belong to the new message.
-                kept = {n: joining.pieces[n] for n in range(position)}
+                pieces = {n: joining.pieces[n] for n in range(position)}
             events = self._give_up(key)
             joining = None
         if joining is None:
             if not self._make_room():
                 return [*events, CanEvent("busy", head.id, head.source)]
-            joining = self._open[key] = _Joining(head, count, length, now)
-            joining.pieces, joining.in_order = kept, len(kept)
+            joining = self._open[key] = _PartialMessage(head, count, length, now)
+            joining.pieces, joining.in_order = pieces, len(pieces)
         joining.pieces[position] = piece
-        joining.came(position, now)
+        joining.record(position, now)
         if len(joining.pieces) == joining.count:
             joining.completed_by = position
-            whole = b"".join(joining.pieces[n] for n in range(joining.count))
-            message = head._replace(data=whole[: joining.length])
+            joined = b"".join(joining.pieces[n] for n in range(joining.count))
+            message = head._replace(data=joined[: joining.length])
             events.append(CanEvent("message", head.id, head.source, message))
         return events
 

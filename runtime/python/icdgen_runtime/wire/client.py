@@ -81,13 +81,14 @@ class Client(Generic[N]):
         self._stream: list[bytes] = []
         self._packets: list[CanPacket] = []
         self._transfers: list[I2cTransfer] = []
-        self._owed = 0  # I2C: transfers taken, but not yet passed to `transferred`
+        # I2C: number of transfers taken, but not yet passed to `transferred`
+        self._unreported = 0
         self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
-        self._asked = Request("telemetry", 0)
+        self._request = Request("telemetry", 0)
         self._attempts = 0
         self._until: float = 0
         self._is_written = False  # I2C: telecommand is sent, acknowledge is polled
-        self._give_up: float = 0  # when polling ends
+        self._poll_end: float = 0  # when polling ends
         # Id of an ended request whose reply may still arrive, and until when. A new
         # request of this id waits, so that it does not take the old reply for its own.
         self._late: Optional[tuple[int, float]] = None
@@ -135,7 +136,7 @@ class Client(Generic[N]):
                 name = f"telecommand {id}"
                 raise LengthError(name, command.length, len(request.data))
             request = request._replace(repeat=request.repeat or command.setting)
-        self._asked, self._attempts = request, 0
+        self._request, self._attempts = request, 0
         if self._late and self._late[0] == id and now < self._late[1]:
             self._state, self._until = "hold", self._late[1]
             return []
@@ -157,7 +158,7 @@ class Client(Generic[N]):
         Call `transferred` once for each transaction, in this order.
         """
         taken, self._transfers = self._transfers, []
-        self._owed += len(taken)
+        self._unreported += len(taken)
         return taken
 
     def cancel(self) -> None:
@@ -168,7 +169,7 @@ class Client(Generic[N]):
         """
         self._stream, self._packets, self._transfers = [], [], []
         if self.busy and self._attempts:
-            self._late = self._asked.id, self._until + self.settings.reply_timeout
+            self._late = self._request.id, self._until + self.settings.reply_timeout
         self._state = "idle"
 
     def tick(self, now: float) -> list[Event]:
@@ -183,21 +184,21 @@ class Client(Generic[N]):
     def received(self, now: float, data: Buffer) -> list[Event]:
         """UART: process received bytes, in pieces of any size."""
         events = self.tick(now)
-        for found in need(self._decoder, "uart").feed(data):
-            if found.event == "message":
-                events += self._uart_message(now, found.message)
+        for result in need(self._decoder, "uart").feed(data):
+            if result.event == "message":
+                events += self._uart_message(now, result.message)
             else:
-                events.append(LineError(found.event))
+                events.append(LineError(result.event))
         return events
 
     def packet(self, now: float, packet: CanPacket) -> list[Event]:
         """CAN: process a received packet."""
         events = self.tick(now)
-        for found in need(self._joiner, "can").feed(now, packet):
-            if found.message:
-                events += self._can_message(now, found.message)
+        for result in need(self._joiner, "can").feed(now, packet):
+            if result.message:
+                events += self._can_message(now, result.message)
             else:
-                events.append(_line_error(found))
+                events.append(_line_error(result))
         return events
 
     def transferred(self, now: float, data: Optional[Buffer]) -> list[Event]:
@@ -205,8 +206,8 @@ class Client(Generic[N]):
 
         The result of a request that has already ended is reported as `Stray`.
         """
-        is_awaited = self._owed == 1 and self._awaits_transfer
-        self._owed = max(0, self._owed - 1)
+        is_awaited = self._unreported == 1 and self._awaits_transfer
+        self._unreported = max(0, self._unreported - 1)
         events = self.tick(now)  # may end the request of this transaction
         read = None if data is None else bytes(data)
         if not (is_awaited and self._awaits_transfer):
@@ -215,17 +216,17 @@ class Client(Generic[N]):
             return events + self._polled(now, read)
         if read is None:
             return events + self._no_reply(now)
-        if self._asked.kind == "telemetry":
-            id = self._asked.id
+        if self._request.kind == "telemetry":
+            id = self._request.id
             try:
                 frame = i2c_reply(self.link, id, read, self._checks_frames)
             except IcdError:
                 return [*events, Malformed(id), *self._no_reply(now)]
             return events + self._done(now, frame)
-        if not self.link.commands[self._asked.id].acknowledged:
+        if not self.link.commands[self._request.id].acknowledged:
             return events + self._done(now)
         self._is_written = True
-        self._give_up = now + self.settings.poll_timeout
+        self._poll_end = now + self.settings.poll_timeout
         return events + self._pause(now)
 
     @property
@@ -235,7 +236,7 @@ class Client(Generic[N]):
 
     def _transmit(self, now: float) -> list[Event]:
         """Send the request, for the first time or again."""
-        request = self._asked
+        request = self._request
         is_telecommand = request.kind == "telecommand"
         self._attempts += 1
         self._is_written = False
@@ -272,7 +273,7 @@ class Client(Generic[N]):
         if self._state == "poll":
             return self._pause(now)
         if self._state == "pause":
-            if now >= self._give_up:
+            if now >= self._poll_end:
                 return self._timeout(now)
             if self._is_written:
                 self._poll(now)
@@ -281,17 +282,17 @@ class Client(Generic[N]):
 
     def _no_reply(self, now: float) -> list[Event]:
         """Process a missing or unusable reply: send again or end the request."""
-        if not self._asked.repeat or self._attempts > self.settings.retries:
+        if not self._request.repeat or self._attempts > self.settings.retries:
             return self._timeout(now)
         if self.bus == "i2c":  # a failure is immediate here: give the node some time
             self._state, self._until = "pause", now + self.settings.poll_interval
-            self._give_up = now + self.settings.poll_timeout
+            self._poll_end = now + self.settings.poll_timeout
             return []
         return self._transmit(now)
 
     def _pause(self, now: float) -> list[Event]:
         """Poll again after the poll interval, until the poll timeout."""
-        if now >= self._give_up:
+        if now >= self._poll_end:
             return self._timeout(now)
         self._state, self._until = "pause", now + self.settings.poll_interval
         return []
@@ -311,18 +312,18 @@ class Client(Generic[N]):
             frame = i2c_reply(self.link, form.telemetry, data, self._checks_frames)
         except IcdError:
             return [Malformed(form.telemetry), *self._pause(now)]
-        told = self.link.TELEMETRY[form.telemetry].from_bytes(frame)
-        if getattr(told, form.id) != self._asked.id or not getattr(
-            told, form.processed
+        acknowledge = self.link.TELEMETRY[form.telemetry].from_bytes(frame)
+        if getattr(acknowledge, form.id) != self._request.id or not getattr(
+            acknowledge, form.processed
         ):
             return self._pause(now)
-        code = int(getattr(told, form.error))
+        code = int(getattr(acknowledge, form.error))
         if code == self.link.errors.get("none", 0):
             return self._done(now)
-        return self._refused(now, code, int(getattr(told, form.parameter)))
+        return self._refused(now, code, int(getattr(acknowledge, form.parameter)))
 
     def _uart_message(self, now: float, message: bytes) -> list[Event]:
-        link, asked = self.link, self._asked
+        link, request = self.link, self._request
         kind, id = uart_kind(link, message), message[0]
         if kind == "log":
             return [Log(message, LogMessage.decode(link, message))]
@@ -330,12 +331,12 @@ class Client(Generic[N]):
             start = 1 + link.files.counter_bytes
             number = int.from_bytes(message[1:start], link.order)
             return [Packet(number, message[start:])]
-        if self._state == "wait" and asked.kind == "telemetry":
-            if kind == "reply" and id == asked.id:
+        if self._state == "wait" and request.kind == "telemetry":
+            if kind == "reply" and id == request.id:
                 return self._replied(now, message[1:])
         elif self._state == "wait" and kind == "acknowledge" and link.acknowledge:
             form = link.acknowledge
-            if message[form.id_at] == asked.id:
+            if message[form.id_at] == request.id:
                 code = message[form.error_at]
                 if code == link.errors.get("none", 0):
                     return self._done(now)
@@ -343,10 +344,10 @@ class Client(Generic[N]):
         return [Stray(message)]
 
     def _can_message(self, now: float, message: CanMessage) -> list[Event]:
-        asked, node = self._asked, need(self.link.can, "can").node_address
-        is_ours = message.id == asked.id and message.source == node
+        request, node = self._request, need(self.link.can, "can").node_address
+        is_ours = message.id == request.id and message.source == node
         if self._state == "wait" and is_ours:
-            if asked.kind == "telecommand":
+            if request.kind == "telecommand":
                 if message.kind == "acknowledge":
                     return self._done(now)
                 if message.kind == "refusal":
@@ -358,7 +359,7 @@ class Client(Generic[N]):
         return [Stray(bytes((message.id,)) + message.data)]
 
     def _replied(self, now: float, frame: bytes) -> list[Event]:
-        id, form = self._asked.id, self.link.checksum
+        id, form = self._request.id, self.link.checksum
         length = self.link.frames[id]
         may_be_checked = form is not None and self.bus in form.telemetry_buses
         if form and may_be_checked and len(frame) == length + form.bytes:
@@ -373,8 +374,8 @@ class Client(Generic[N]):
         return self._done(now, frame)
 
     def _done(self, now: float, frame: bytes = b"") -> list[Event]:
-        id, message = self._asked.id, None
-        if self._asked.kind == "telemetry":
+        id, message = self._request.id, None
+        if self._request.kind == "telemetry":
             message = self.link.TELEMETRY[id]
         self._end(now, self._attempts > 1)
         return [Done(id, self._attempts, frame, message)]
@@ -389,17 +390,17 @@ class Client(Generic[N]):
         if reason == "checksum" and self._checks_sent and is_left:
             return self._transmit(now)
         self._end(now, self._attempts > 1)
-        id = self._asked.id
+        id = self._request.id
         return [Refused(id, self._attempts, code, reason, parameter)]
 
     def _timeout(self, now: float) -> list[Event]:
         self._end(now, True)
-        return [Timeout(self._asked.id, self._attempts)]
+        return [Timeout(self._request.id, self._attempts)]
 
     def _end(self, now: float, may_be_answered_again: bool) -> None:
         self._state, self._late = "idle", None
         if may_be_answered_again:
-            self._late = self._asked.id, now + self.settings.reply_timeout
+            self._late = self._request.id, now + self.settings.reply_timeout
 
 
 def _line_error(event: CanEvent) -> LineError:

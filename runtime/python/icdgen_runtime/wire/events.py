@@ -32,13 +32,13 @@ class Done(Generic[R_co]):
     @property
     def message(self) -> R_co:
         """The frame as a message; None for a telecommand."""
-        found = self.type.from_bytes(self.data) if self.type else None
-        return cast(R_co, found)
+        message = self.type.from_bytes(self.data) if self.type else None
+        return cast(R_co, message)
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
         """Return the message if it has this class, otherwise None."""
-        found: Optional[Message] = self.message
-        return found if isinstance(found, message) else None
+        own: Optional[Message] = self.message
+        return own if isinstance(own, message) else None
 
 
 @dataclass(frozen=True)

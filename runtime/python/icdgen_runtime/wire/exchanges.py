@@ -83,17 +83,17 @@ class Exchanges(Generic[N]):
         times = [time for time in (until, self.client.deadline) if time is not None]
         return max(0.0, min([_LONGEST_WAIT, *(time - now for time in times)])) / 1000
 
-    def _tell(self, event: Event) -> None:
+    def _report(self, event: Event) -> None:
         if self._on_event:
             self._on_event(event)
 
-    def _tell_unasked(self, events: list[Event]) -> list[Event]:
+    def _report_unsolicited(self, events: list[Event]) -> list[Event]:
         for event in events:
             if not isinstance(event, (Done, Refused, Timeout)):
-                self._tell(event)
+                self._report(event)
         return events
 
-    def _answered(
+    def _with_reply(
         self, message: SpokenBy[N], reply: KindOf[N, Message], repeat: bool
     ) -> Exchange[Outcome]:
         """Send a telecommand and wait for its reply."""
@@ -112,7 +112,7 @@ class Exchanges(Generic[N]):
             try:
                 message = event.message
             except IcdError:  # a counter in the frame does not match its length
-                self._tell(Malformed(event.id))
+                self._report(Malformed(event.id))
                 continue
             if message is not None:
                 yield message
@@ -149,7 +149,7 @@ class Exchanges(Generic[N]):
             elif is_going_on:
                 client.cancel(reply=reply)
 
-    def _together(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
+    def _concurrently(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
         """Run several exchanges at once. If one fails, the others are closed."""
         ends: dict[int, T] = {}
         events: Optional[list[Event]] = None
@@ -179,40 +179,42 @@ class Exchanges(Generic[N]):
     ) -> Exchange[P]:
         """Run a procedure to its end. Raise `FailedError`."""
         try:
-            return (yield from self._driven(procedure, progress))
+            return (yield from self._drive(procedure, progress))
         finally:
             self.client.cancel()
 
-    def _driven(self, procedure: P, progress: Optional[Progress] = None) -> Exchange[P]:
+    def _drive(self, procedure: P, progress: Optional[Progress] = None) -> Exchange[P]:
         events: list[Event] = []
-        shown: Optional[tuple[int, Optional[int]]] = None
-        asked: Optional[Request] = None
+        reported: Optional[tuple[int, Optional[int]]] = None
+        request: Optional[Request] = None
         refused: Optional[Refused] = None
-        left = 0
+        attempts_left = 0
         while True:
             is_again = False
             for event in events:
                 if isinstance(event, Refused):
                     refused = event
                     if _may_be_damaged(event):
-                        self._tell(event)
-                        is_again = bool(asked and asked.repeat) and left > 0
+                        self._report(event)
+                        is_again = (
+                            bool(request and request.repeat) and attempts_left > 0
+                        )
                         if is_again:
                             continue
                         event = Timeout(event.id, event.attempts)
                 procedure.event(self._now(), event)
             events = []
             if is_again:
-                left -= 1
+                attempts_left -= 1
             elif not self.client.busy:
-                asked = procedure.next(self._now())
-                left = self.client.settings.retries
-            if asked and not self.client.busy:
-                events = self.client.start(self._now(), asked)
+                request = procedure.next(self._now())
+                attempts_left = self.client.settings.retries
+            if request and not self.client.busy:
+                events = self.client.start(self._now(), request)
             yield "send"
-            if progress and procedure.progress != shown:
-                shown = procedure.progress
-                progress(*shown)
+            if progress and procedure.progress != reported:
+                reported = procedure.progress
+                progress(*reported)
             if procedure.result == "done":
                 return procedure
             if procedure.result:

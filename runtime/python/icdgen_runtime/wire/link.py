@@ -171,12 +171,12 @@ class LogMask(NamedTuple):
 
     def selected(self, mask: bytes) -> list[LogBit]:
         """Return the slots of an entry, in order."""
-        found = []
+        slots = []
         for bit in range(8 * self.size):
             if mask[bit >> 3] >> (bit & 7 ^ (7 if self.msb0 else 0)) & 1:
                 unassigned = LogBit(bit, None, self.slot_bytes)
-                found.append(self.bits.get(bit, unassigned))
-        return found
+                slots.append(self.bits.get(bit, unassigned))
+        return slots
 
 
 class LogFileForm(NamedTuple):

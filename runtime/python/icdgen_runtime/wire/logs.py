@@ -104,10 +104,10 @@ class LogReader:
             self._pieces = _pieces(slots, self._layout, form.frames_at)
             self._entry_bytes = form.frames_at + len(slots) * self._layout.slot_bytes
             position = form.header_bytes
-        whole = (len(data) - position) // self._entry_bytes * self._entry_bytes
-        starts = range(position, position + whole, self._entry_bytes)
+        complete = (len(data) - position) // self._entry_bytes * self._entry_bytes
+        starts = range(position, position + complete, self._entry_bytes)
         entries = [self._entry(data, start) for start in starts]
-        self._rest = data[position + whole :]
+        self._rest = data[position + complete :]
         return entries
 
     def _entry(self, data: bytes, start: int) -> LogEntry:

@@ -30,10 +30,10 @@ class Ended(Exception):
         self.result: Result = result
 
 
-Wanted = Union[Request, Wait]
+Action = Union[Request, Wait]
 Values = dict[str, Any]
 
-Steps = Generator[Wanted, Optional[Outcome], None]
+Steps = Generator[Action, Optional[Outcome], None]
 
 
 def one_of(numbers: Iterable[int]) -> str:
@@ -53,8 +53,8 @@ class Procedure:
         self.result: Optional[Result] = None
         """None while it runs, then ``done`` or the reason of the failure."""
         self._now: float = 0
-        self._wanted: Optional[Wanted] = None
-        self._is_asked = False
+        self._action: Optional[Action] = None
+        self._is_requested = False
         self._steps: Optional[Steps] = None
 
     @property
@@ -65,19 +65,19 @@ class Procedure:
     @property
     def deadline(self) -> Optional[float]:
         """Time of the next call of `next`, in milliseconds; None while waiting for an outcome."""
-        return self._wanted.until if isinstance(self._wanted, Wait) else None
+        return self._action.until if isinstance(self._action, Wait) else None
 
     def next(self, now: float) -> Optional[Request]:
         """Return the next request, once; None if there is nothing to send."""
         self._now = now
         if self._steps is None:
             self._steps = self._run()
-            self._go_on(None)
-        while isinstance(self._wanted, Wait) and now >= self._wanted.until:
-            self._go_on(None)
-        if isinstance(self._wanted, Request) and not self._is_asked:
-            self._is_asked = True
-            return self._wanted
+            self._advance(None)
+        while isinstance(self._action, Wait) and now >= self._action.until:
+            self._advance(None)
+        if isinstance(self._action, Request) and not self._is_requested:
+            self._is_requested = True
+            return self._action
         return None
 
     def event(self, now: float, event: Event) -> None:
@@ -85,9 +85,9 @@ class Procedure:
         self._now = now
         if isinstance(event, Packet):
             self._packet(event.number, event.data)
-        elif isinstance(event, (Done, Refused, Timeout)) and self._is_asked:
-            self._is_asked = False
-            self._go_on(event)
+        elif isinstance(event, (Done, Refused, Timeout)) and self._is_requested:
+            self._is_requested = False
+            self._advance(event)
 
     def _run(self) -> Steps:
         raise NotImplementedError
@@ -95,12 +95,12 @@ class Procedure:
     def _packet(self, number: int, data: bytes) -> None:
         """Process a download packet."""
 
-    def _go_on(self, outcome: Optional[Outcome]) -> None:
+    def _advance(self, outcome: Optional[Outcome]) -> None:
         if self._steps is None:
             return
-        self._wanted = None
+        self._action = None
         try:
-            self._wanted = self._steps.send(outcome)
+            self._action = self._steps.send(outcome)
         except StopIteration:
             self.result = "done"
         except Ended as end:
@@ -116,32 +116,36 @@ class Procedure:
             setattr(message, step.fields[role], value)
         return Request("telecommand", id, message.to_bytes(), repeat)
 
-    def _ask(self, request: Request) -> Generator[Wanted, Optional[Outcome], Outcome]:
+    def _outcome_of(
+        self, request: Request
+    ) -> Generator[Action, Optional[Outcome], Outcome]:
         """Send a request and return its outcome."""
         outcome = yield request
         if outcome is None:
             raise Ended("timeout")
         return outcome
 
-    def _must(self, request: Request) -> Generator[Wanted, Optional[Outcome], AnyDone]:
+    def _require(
+        self, request: Request
+    ) -> Generator[Action, Optional[Outcome], AnyDone]:
         """Send a request and return its outcome. The procedure fails unless it was executed."""
-        outcome = yield from self._ask(request)
+        outcome = yield from self._outcome_of(request)
         if isinstance(outcome, Done):
             return outcome
         raise Ended("refused" if isinstance(outcome, Refused) else "timeout")
 
-    def _order(
+    def _execute(
         self, step: Step, values: Optional[Values] = None, repeat: bool = True
-    ) -> Generator[Wanted, Optional[Outcome], None]:
+    ) -> Generator[Action, Optional[Outcome], None]:
         """Send the telecommand of a step. The procedure fails unless it was executed."""
-        yield from self._must(self._telecommand(step, values, repeat))
+        yield from self._require(self._telecommand(step, values, repeat))
 
     def _frame(
         self, step: Step
-    ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
+    ) -> Generator[Action, Optional[Outcome], tuple[Values, bytes]]:
         """Request the frame of a step. Return its values by role, and its bytes."""
         id = need(step.telemetry, "telemetry")
-        done = yield from self._must(Request("telemetry", id, repeat=True))
+        done = yield from self._require(Request("telemetry", id, repeat=True))
         frame: Message = self.link.TELEMETRY[id].from_bytes(done.data)
         values = {role: getattr(frame, at) for role, at in step.fields.items()}
         return values, done.data
@@ -154,7 +158,7 @@ class Procedure:
         interval: float,
         timeout: float,
         program: Optional[int] = None,
-    ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
+    ) -> Generator[Action, Optional[Outcome], tuple[Values, bytes]]:
         """Request the frame of a step until its flag has the value ``wanted``, or an error.
 
         If the frame identifies a program, it must be ``program``.

@@ -18,10 +18,10 @@ from .stuffing import Unstuffer, stuffed
 M = TypeVar("M", bound=Message)
 MessageClass = type[Message]
 MessageClassOf = type[M]
-Found = Literal[
+EventName = Literal[
     "message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"
 ]
-GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
+CHOSEN_ROLES = ("sequence", "source", "destination", "type", "flags", "time")
 """Roles of the frame fields whose values the sender chooses."""
 
 
@@ -34,7 +34,7 @@ class StreamEvent(NamedTuple):
     ``framing``: a constant or a delimiter is wrong.
     """
 
-    event: Found
+    event: EventName
     id: Optional[int] = None
     data: bytes = b""
     values: Mapping[str, int] = {}
@@ -65,9 +65,9 @@ def stream_encode(
     and `RangeError`.
     """
     form = need(link.stream, "stream")
-    if strange := [name for name in values if name not in GIVEN]:
+    if unknown := [name for name in values if name not in CHOSEN_ROLES]:
         raise TypeError(
-            f"stream_encode() takes no {strange[0]!r}, but {', '.join(GIVEN)}"
+            f"stream_encode() takes no {unknown[0]!r}, but {', '.join(CHOSEN_ROLES)}"
         )
     if isinstance(message, Message):
         if data:
@@ -84,11 +84,11 @@ def stream_encode(
     if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
-    made = {"id": id, "length": len(data) + form.length_plus}
+    own_values = {"id": id, "length": len(data) + form.length_plus}
     for field in form.fields:
         if field.role != "checksum":
-            value = made.get(field.role, field.values[direction == "telemetry"])
-            if field.role in GIVEN:
+            value = own_values.get(field.role, field.values[direction == "telemetry"])
+            if field.role in CHOSEN_ROLES:
                 value = values.get(field.role, value)
             _put(field, tail if field.in_trailer else head, value)
     place = form.of("checksum")
@@ -115,10 +115,10 @@ def _get(form: Stream, field: EnvelopeField, frame: Buffer, size: int) -> int:
 
 
 def _checksum(form: Stream, row: Optional[StreamRow], frame: bytes) -> int:
-    given = need(form.check, "checksums")
-    end = len(frame) - form.trailer_bytes + given.covered_trailer
-    seed = bytes((row.seed,)) if given.is_seeded and row else b""
-    return check(given, frame[given.covered_from : end] + seed)
+    check_form = need(form.check, "checksums")
+    end = len(frame) - form.trailer_bytes + check_form.covered_trailer
+    seed = bytes((row.seed,)) if check_form.is_seeded and row else b""
+    return check(check_form, frame[check_form.covered_from : end] + seed)
 
 
 class StreamDecoder:
@@ -149,7 +149,7 @@ class StreamDecoder:
             for field in form.fields
             if field.role == "constant"
         ]
-        self._values = [field for field in form.fields if field.role in GIVEN]
+        self._values = [field for field in form.fields if field.role in CHOSEN_ROLES]
         self._id, self._length, self._sequence, self._checksum = map(
             form.of, ("id", "length", "sequence", "checksum")
         )
@@ -190,7 +190,7 @@ class StreamDecoder:
     ) -> None:
         """Process a frame that is delimited on both sides."""
         if fault:
-            events.append(StreamEvent(cast(Found, fault)))
+            events.append(StreamEvent(cast(EventName, fault)))
         elif self._judge(frame, events) == "message":
             return
         self.discarded += size
@@ -205,8 +205,8 @@ class StreamDecoder:
             return None
         front = self._buffer[at : at + form.header_bytes]
         for field, value in self._constants:
-            came = not field.in_trailer and field.at + field.size <= left
-            if came and _get(form, field, front, 0) != value:
+            is_received = not field.in_trailer and field.at + field.size <= left
+            if is_received and _get(form, field, front, 0) != value:
                 self.discarded += 1
                 return 1
         if left < form.header_bytes:
@@ -221,9 +221,9 @@ class StreamDecoder:
             return 1
         if left < size:
             return None
-        told = self._judge(bytes(self._buffer[at : at + size]), events)
-        if told != "message":
-            size = size if told == "proven" else 1
+        verdict = self._judge(bytes(self._buffer[at : at + size]), events)
+        if verdict != "message":
+            size = size if verdict == "proven" else 1
             self.discarded += size
         return size
 
@@ -242,8 +242,10 @@ class StreamDecoder:
         for field, value in self._constants:
             if _get(form, field, frame, size) != value:
                 return self._doubtful("framing", None, events)
-        told = count if self._length is None else self._told(self._length, frame)
-        if told != count:
+        stated = (
+            count if self._length is None else self._stated_length(self._length, frame)
+        )
+        if stated != count:
             return self._doubtful("length", None, events)
         id = _get(form, self._id, frame, size) if self._id else self._only
         row = self._rows.get(id)
@@ -260,24 +262,24 @@ class StreamDecoder:
             events.append(StreamEvent("length", id))
             return "proven"
         data = frame[form.header_bytes : form.header_bytes + count]
-        values = {one.role: _get(form, one, frame, size) for one in self._values}
-        self._count(id, values, events)
+        values = {entry.role: _get(form, entry, frame, size) for entry in self._values}
+        self._check_sequence(id, values, events)
         kind = self._types.which(id, bytes(data))
         events.append(StreamEvent("message", id, data, values, 0, kind))
         return "message"
 
-    def _told(self, length: EnvelopeField, frame: Buffer) -> int:
+    def _stated_length(self, length: EnvelopeField, frame: Buffer) -> int:
         """Return the number of data bytes, from the length field."""
         form = self._form
         return _get(form, length, frame, len(frame)) - form.length_plus
 
     def _doubtful(
-        self, why: Found, id: Optional[int], events: list[StreamEvent]
+        self, why: EventName, id: Optional[int], events: list[StreamEvent]
     ) -> Literal["doubtful"]:
         events.append(StreamEvent(why, id))
         return "doubtful"
 
-    def _count(
+    def _check_sequence(
         self, id: int, values: Mapping[str, int], events: list[StreamEvent]
     ) -> None:
         """Check the sequence number, and report a gap."""

@@ -11,7 +11,7 @@ from .._hints import Buffer
 from .errors import need
 from .link import Framing, Link
 
-Found = Literal["message", "unexpected_start", "protocol_error", "overrun", "empty"]
+EventName = Literal["message", "unexpected_start", "protocol_error", "overrun", "empty"]
 Kind = Literal["reply", "acknowledge", "packet", "log", "other"]
 
 
@@ -23,7 +23,7 @@ class UartEvent(NamedTuple):
     message is longer than the buffer. ``empty``: it has no id.
     """
 
-    event: Found
+    event: EventName
     message: bytes = b""
 
 
@@ -64,7 +64,7 @@ def uart_kind(link: Link, message: bytes) -> Kind:
 
 
 @cache
-def _whole(framing: Framing) -> re.Pattern[bytes]:
+def _complete_message(framing: Framing) -> re.Pattern[bytes]:
     """Return a pattern for a complete message.
 
     Its groups are the id, if that is not escaped, and the remaining bytes.
@@ -75,8 +75,8 @@ def _whole(framing: Framing) -> re.Pattern[bytes]:
     )
     id = b"()" if framing.escapes_id else b"(.)"
     plain = b"[^" + escape + b"]*"
-    rest = plain + b"(?:" + escape + escaped + plain + b")*"
-    pattern = escape + start + id + b"(" + rest + b")" + escape + end
+    data = plain + b"(?:" + escape + escaped + plain + b")*"
+    pattern = escape + start + id + b"(" + data + b")" + escape + end
     return re.compile(pattern, re.DOTALL)
 
 
@@ -101,7 +101,7 @@ class UartDecoder:
         self._escape = escape
         self._opening = escape + bytes((framing.start,))
         self._escaped_data = escape + bytes((framing.escaped,))
-        self._whole = _whole(framing)
+        self._complete_message = _complete_message(framing)
         self._most = 2 * self._limit + 4  # bytes of a message on the line
 
     def feed(self, data: Buffer) -> list[UartEvent]:
@@ -110,11 +110,11 @@ class UartDecoder:
         events: list[UartEvent] = []
         position = 0
         while position < len(data):
-            step = self._within if self._is_inside else self._between
+            step = self._inside if self._is_inside else self._outside
             position = step(data, position, events)
         return events
 
-    def _between(self, data: bytes, position: int, events: list[UartEvent]) -> int:
+    def _outside(self, data: bytes, position: int, events: list[UartEvent]) -> int:
         """Outside of a message: advance to the next start, and past a complete message."""
         if self._is_escaped:
             if data[position] == self._framing.start:
@@ -127,22 +127,22 @@ class UartDecoder:
             self._leave(data[-1] == self._framing.escape)
             return len(data)
         self.discarded += start - position
-        found = self._whole.match(data, start, start + self._most)
-        if found:
-            id, rest = found.groups()
-            if self._escape in rest:
-                rest = rest.replace(self._escaped_data, self._escape)
-            message = id + rest
+        match = self._complete_message.match(data, start, start + self._most)
+        if match:
+            id, escaped_data = match.groups()
+            if self._escape in escaped_data:
+                escaped_data = escaped_data.replace(self._escaped_data, self._escape)
+            message = id + escaped_data
             if 0 < len(message) <= self._limit:
                 events.append(UartEvent("message", message))
-                return found.end()
+                return match.end()
         self._begin()
         return start + 2
 
-    def _within(self, data: bytes, position: int, events: list[UartEvent]) -> int:
+    def _inside(self, data: bytes, position: int, events: list[UartEvent]) -> int:
         """Inside a message: advance to the next escape byte, or past it."""
         if self._is_escaped:
-            return self._meaning(data, position, events)
+            return self._after_escape(data, position, events)
         if self._buffer or self._framing.escapes_id:
             end = data.find(self._escape, position)
             end = len(data) if end < 0 else end
@@ -162,7 +162,7 @@ class UartDecoder:
         self.pending += 1
         return end + 1
 
-    def _meaning(self, data: bytes, position: int, events: list[UartEvent]) -> int:
+    def _after_escape(self, data: bytes, position: int, events: list[UartEvent]) -> int:
         """Process the byte after an escape byte inside a message."""
         framing, byte = self._framing, data[position]
         self._is_escaped = False
