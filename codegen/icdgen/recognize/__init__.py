@@ -1,6 +1,7 @@
-"""Frames as people paste them: spelling, node, message and direction are found, framing and checksums come off.
+"""Recognition of pasted frames: spelling, node, message and direction.
 
-Framing, CAN packets and checksums are those of the Python runtime, which importing this makes importable.
+It removes framing and checksums with the Python runtime. Importing this package makes
+the runtime importable.
 """
 
 from icdgen import shipped

@@ -1,4 +1,4 @@
-"""What a person says that a frame is."""
+"""Message and kind that the user has named for a frame."""
 
 from __future__ import annotations
 
@@ -13,35 +13,44 @@ from icdgen.values.find import find_message, find_sharing
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """One of the messages, and of the kind; none where nothing is said of it. Several are those that share an id."""
+    """Messages, one of which the frame must be, and their kind.
+
+    Several messages share an id. Without messages or kind, everything is accepted.
+    """
 
     messages: tuple[Message, ...] = ()
     kind: str | None = None
 
     @property
     def names(self) -> str:
-        """The messages, for people."""
+        """Names of the messages, for a report."""
         return " or ".join(f"`{message.name}`" for message in self.messages)
 
     def is_of(self, one: Reading) -> bool:
-        """Whether it is of one of the messages."""
+        """Return whether a reading has one of the messages."""
         return any(one.message is message for message in self.messages)
 
     def can_be(self, data: bytes) -> bool:
-        """Whether bytes are as many as one of the messages has."""
+        """Return whether one of the messages can have the length of ``data``."""
         return any(len(data) in message.layout.lengths for message in self.messages)
 
     def fits(self, one: Reading) -> bool:
-        """Whether it is what was said; a configuration message is of every kind that it is sent as."""
+        """Return whether a reading matches messages and kind.
+
+        A configuration message matches each kind that it is sent as.
+        """
         return (not self.messages or self.is_of(one)) and self.kind in (None, one.what, one.message.kind)
 
     def of(self, found: Sequence[Reading]) -> list[Reading]:
-        """Those that are what was said; all if none is."""
+        """Return the matching readings, or all readings if none matches."""
         return [one for one in found if self.fits(one)] or list(found)
 
 
 def asked_for(icd: Icd, node: Node | None, key: str | None, kind: str | None) -> Asked:
-    """What a message of the node, as `icdgen.values.find_message` takes it, and a kind say. Raises `NotFound` or `Ambiguous`."""
+    """Return the messages that ``key`` names, as for `icdgen.values.find_message`.
+
+    Raise `NotFound`, or `Ambiguous` unless the messages share an id.
+    """
     if node is None or key is None:
         return Asked(kind=kind)
     try:

@@ -1,4 +1,4 @@
-"""CAN packets -> what they are, by the identifiers that the ICD describes."""
+"""Recognition of CAN packets by the identifiers that the ICD describes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _WHAT = {
 
 
 def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
-    """The messages that the packets make, in their order. Raises `NotFound`, `BadLength` or `Ambiguous`."""
+    """Return the messages in the packets, in their order.
+
+    Raise `NotFound`, `BadLength` or `Ambiguous`.
+    """
     if not all(packet.extended for packet in packets):
         text = "a packet has an 11-bit identifier, but the identifiers of the ICD have 29 bits"
         raise NotFound(text, "candump prints them with 8 digits")
@@ -43,7 +46,10 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Ask
 
 
 def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
-    """The message of each packet where the identifier is the id. Raises `NotFound`, `BadLength` or `Ambiguous` if none is one."""
+    """Return the message of each packet whose CAN identifier is the id.
+
+    Raise `NotFound`, `BadLength` or `Ambiguous` if no packet is a message.
+    """
     found, wrong = match.each(packets, lambda packet: _by_identifier(speakers, packet, asked))
     left = [f"{error} ({count} CAN packet{'s' * (count > 1)})" for error, count in Counter(map(str, wrong)).items()]
     return [found[0].without(*left), *found[1:]]
@@ -71,7 +77,7 @@ def _of_speaker(speaker: Speaker, packets: list[CanPacket], times: list[str]) ->
         for event in joiner.feed(0, packet):
             reading = _reading(speaker, event.message) if event.message else None
             if reading is not None:
-                found.append(replace(reading, time=time))  # of several packets the one that completes the message
+                found.append(replace(reading, time=time))  # time of the packet that completes the message
     return found
 
 
@@ -85,19 +91,22 @@ def _reading(speaker: Speaker, told: CanMessage) -> Reading | None:
 
 
 def _left_out(speaker: Speaker, packets: list[CanPacket]) -> int:
-    """All messages that the packets begin, known or not."""
+    """Return the number of messages that the packets begin, known or unknown."""
     told, waiting = _told(speaker, packets)
     return len([event for event in told if event.event != "duplicate"]) + len(waiting)
 
 
 def _told(speaker: Speaker, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
-    """What the packets make, and which messages then wait for more of them."""
+    """Return the events of the packets, and those of messages that lack packets."""
     joiner = CanJoiner(speaker.link, senders=len(packets))
     return [event for packet in packets for event in joiner.feed(0, packet)], joiner.expire(math.inf)
 
 
 def _came(speaker: Speaker, packets: list[CanPacket]) -> int:
-    """Packets of the first message that waits for more; all of one have the same identifier."""
+    """Return the number of packets of the first incomplete message.
+
+    All packets of a message have one identifier.
+    """
     for id in dict.fromkeys(packet.id for packet in packets):
         own = list(dict.fromkeys(packet for packet in packets if packet.id == id))
         if _told(speaker, own)[1]:
@@ -111,6 +120,7 @@ def _chosen(found: list[Reading], asked: Asked) -> Reading:
 
 
 def _why_none(speaker: Speaker, packets: list[CanPacket]) -> BadLength | NotFound:
+    """Return the error for packets without a message of the node."""
     told, waiting = _told(speaker, packets)
     event = told[0] if told else None
     if waiting and not any(one.message for one in told):

@@ -1,4 +1,4 @@
-"""Hexadecimal dumps with an address before each line: xxd, hexdump, hexdump -C, od and packet analysers."""
+"""Hexadecimal dumps with addresses: xxd, hexdump, hexdump -C, od and packet analysers."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ _WORDS = 7  # digits of an address of hexdump and od
 class _Row(NamedTuple):
     at: str
     data: bytes
-    is_sure: bool  # that the first number is an address
+    is_sure: bool  # the first number is certainly an address
 
 
 def dump(text: str) -> bytes | None:
-    """The bytes of a dump; None if it is none, or if its addresses do not follow one another.
+    """Return the bytes of a dump. Return None if it is no dump, or its addresses have gaps.
 
-    Words of two bytes after an address of seven digits are those of a little-endian machine, as hexdump prints them.
+    hexdump and od print 16-bit words of a little-endian machine after a 7-digit
+    address.
     """
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     rows = [row for line in lines if (row := _row(line)) is not None]
@@ -39,6 +40,7 @@ def dump(text: str) -> bytes | None:
 
 
 def _row(line: str) -> _Row | None:
+    """Return address and bytes of a line, or None if it is not a line of a dump."""
     match = _LINE.fullmatch(line)
     if match is None or (match["data"] and not match["space"]):
         return None

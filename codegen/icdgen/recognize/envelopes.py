@@ -1,4 +1,4 @@
-"""Bytes in the envelopes that an ICD describes -> the messages in them."""
+"""Recognition of messages with header and trailer, as the ICD describes them."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 
 
 class Span(NamedTuple):
-    """Bytes of the line from ``at`` on, without ``end``."""
+    """Bytes of the input from ``at`` to before ``end``."""
 
     at: int
     end: int
 
     def mark(self, taken: bytearray) -> None:
-        """Marks its bytes in a map of the line."""
+        """Mark the bytes in a map of the input."""
         taken[self.at : self.end] = b"\1" * (self.end - self.at)
 
     def is_free(self, taken: bytearray) -> bool:
-        """Whether none of its bytes is marked."""
+        """Return whether no byte is marked."""
         return taken.find(1, self.at, self.end) < 0
 
 
 class _Listener(StreamDecoder):
-    """Decoder that also says where on the line each packet lies, and what it consists of."""
+    """Decoder that also records the position and the bytes of each packet."""
 
     def __init__(self, speaker: Speaker, direction: Direction) -> None:
         super().__init__(speaker.link, direction)
@@ -50,7 +50,7 @@ class _Listener(StreamDecoder):
     def _front(self, at: int, events: list[StreamEvent]) -> int | None:
         self._at, before = at, len(events)
         count = super()._front(at, events)
-        if len(events) > before and len(events) - 1 not in self.packets:  # its length cannot be
+        if len(events) > before and len(events) - 1 not in self.packets:  # the length field is invalid
             header = self._buffer[at : at + self._form.header_bytes]
             self.packets[len(events) - 1] = Span(at, at + 1), bytes(header)
         return count
@@ -64,22 +64,24 @@ class _Listener(StreamDecoder):
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """What one direction of a link makes of the bytes; ``lost`` of them belong to no message."""
+    """Messages and faults of one direction. ``lost`` is the number of unused bytes."""
 
     speaker: Speaker
     direction: Direction
     lost: int
     readings: list[Reading] = field(default_factory=list)
-    spans: list[Span] = field(default_factory=list)  # of the readings
+    spans: list[Span] = field(default_factory=list)  # one per reading
     faults: list[tuple[Span, Fault]] = field(default_factory=list)
 
 
 def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
-    """The messages, of the direction that leaves the least, of those that have what is asked for if any has.
+    """Return the messages in the data, including those of the other direction.
 
-    Packets of the other direction between them are read as well. There are none if nothing is in an envelope.
+    The direction with the fewest unused bytes is chosen, among those with a message
+    that the user has named. Return no messages if there are none.
 
-    Raises `BadLength` or `NotFound` if there is a packet which is cut off, damaged or of no message; `Ambiguous`.
+    Raise `BadLength` or `NotFound` for a packet that is cut off, damaged or unknown,
+    and `Ambiguous`.
     """
     heard = [
         _heard(speaker, direction, data) for speaker in speakers if speaker.facts.stream for direction in DIRECTIONS
@@ -112,7 +114,7 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
 
 
 def begun(speakers: Sequence[Speaker], data: bytes) -> Fault | None:
-    """What is wrong with bytes that begin as a packet of a link does; None if they do not."""
+    """Return the fault of bytes that begin like a packet, otherwise None."""
     every = []
     for speaker in speakers:
         form = speaker.link.stream
@@ -124,27 +126,30 @@ def begun(speakers: Sequence[Speaker], data: bytes) -> Fault | None:
 
 
 def _left_out(heard: Sequence[Heard], taken: bytearray) -> list[str]:
-    """Packets beside those that were read, each as the direction explains it whose header fits best."""
+    """Return the faults of all other packets.
+
+    If both directions explain a packet, the better match of its header is used.
+    """
     likeliest: dict[int, tuple[Span, Fault]] = {}
     for span, fault in (both for one in heard for both in one.faults):
         if span.is_free(taken) and (span.at not in likeliest or fault.rank > likeliest[span.at][1].rank):
             likeliest[span.at] = span, fault
     found, end = [], 0
     for at, (span, fault) in sorted(likeliest.items()):
-        if at >= end:  # what seems to begin within a damaged packet is no packet of its own
+        if at >= end:  # bytes within a damaged packet only look like another packet
             found.append(fault.text)
         end = max(end, span.end)
     return found
 
 
 def sync_of(speaker: Speaker) -> str:
-    """Bytes that the packets of a node begin with, for people."""
+    """Return the first bytes of the packets of a node, for a report."""
     form = speaker.link.stream
     return " or ".join(filter(None, dict.fromkeys(faults.sync_text(form, one) for one in DIRECTIONS))) if form else ""
 
 
 def _likeliest(heard: Sequence[Heard]) -> Fault | None:
-    """The first fault, as the direction explains it whose header fits best."""
+    """Return the fault of the first packet, for the direction whose header matches best."""
     firsts = [one.faults[0] for one in heard if one.faults and _is_marked(one.speaker)]
     at = min((span.at for span, _ in firsts), default=0)
     fitting = [fault for span, fault in firsts if span.at == at]
@@ -152,12 +157,13 @@ def _likeliest(heard: Sequence[Heard]) -> Fault | None:
 
 
 def _is_marked(speaker: Speaker) -> bool:
-    """Whether a message shows that it is one, by a constant or a checksum."""
+    """Return whether messages have a constant or a checksum."""
     form = speaker.facts.stream
     return form is not None and (form.check is not None or form.of("constant") is not None)
 
 
 def _heard(speaker: Speaker, direction: Direction, data: bytes) -> Heard:
+    """Decode the data as messages of one direction."""
     decoder = _Listener(speaker, direction)
     events = decoder.feed(data)
     heard = Heard(speaker, direction, decoder.discarded + decoder.pending)
@@ -182,7 +188,7 @@ def _heard(speaker: Speaker, direction: Direction, data: bytes) -> Heard:
 
 
 def _fault(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
-    """The fault of what seems to be a packet; None if noise is as likely."""
+    """Return the fault of a packet, or None if the bytes may as well be noise."""
     fault = faults.fault_of(speaker, direction, packet, is_whole)
     form = speaker.link.stream
     return fault if fault and form and (fault.is_of_message or faults.has_sync(form)) else None

@@ -1,4 +1,4 @@
-"""Packets that begin but cannot be decoded: cut off, damaged, or of no message that the ICD has."""
+"""Errors of packets that cannot be decoded: cut off, damaged, or not a message of the ICD."""
 
 from __future__ import annotations
 
@@ -20,10 +20,12 @@ _BITS_OF_SYNC = 8  # constants of fewer bits occur in any data
 
 
 class Fault(NamedTuple):
-    """Why a packet cannot be decoded. ``rank``: how much of the header fits; of several explanations the highest holds.
+    """The reason why a packet cannot be decoded.
 
-    ``is_of_message``: its id is that of a message.
-    ``is_certain``: header, id and length are those of a message, which the bytes cannot be by chance.
+    ``rank``: how much of the header matches. The explanation with the highest rank is
+    used. ``is_unknown``: no message has the id. ``is_of_message``: a message has the
+    id. ``is_certain``: header, id and length match a message, which is unlikely by
+    chance.
     """
 
     rank: int
@@ -37,27 +39,27 @@ class Fault(NamedTuple):
 
     @property
     def error(self) -> BadLength | NotFound:
-        """The fault as the error of a whole input."""
+        """The exception for an input that consists of this packet."""
         if self.is_unknown:
             return NotFound(self.text, self.help)
         return BadLength(self.text, self.needed, self.given, self.help)
 
 
 def has_sync(form: Stream) -> bool:
-    """Whether packets begin with bytes by which they are recognized."""
+    """Return whether packets begin with a delimiter or with at least 8 constant bits."""
     constants = [field for field in form.fields if field.role == "constant" and not field.in_trailer]
     return form.delimited_by in (SLIP, HDLC) or sum(field.bits for field in constants) >= _BITS_OF_SYNC
 
 
 def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
-    """Whether bytes begin as packets of a direction do: with the delimiter, or with the constants of the header."""
+    """Return whether bytes begin with the delimiter or the constants of a direction."""
     if form.delimited_by in (SLIP, HDLC):
         return data[:1].hex().upper() == _ENDS[form.delimited_by]
     return bool(data) and has_sync(form) and _bits_of_constants(form, direction, data) > 0
 
 
 def sync_text(form: Stream, direction: Direction) -> str:
-    """``A5 5A``: bytes that packets of a direction begin with; empty if their first byte is not constant."""
+    """Return the constant first bytes of packets, such as ``A5 5A``. It may be empty."""
     if form.delimited_by in (SLIP, HDLC):
         return _ENDS[form.delimited_by]
     constants = {field.at: field for field in form.fields if field.role == "constant" and not field.in_trailer}
@@ -69,12 +71,15 @@ def sync_text(form: Stream, direction: Direction) -> str:
 
 
 def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int:
-    """Bits of the header's constants that the packet has; -1 if one has another value. A field may be cut off."""
+    """Return the number of matching constant bits in the header of a packet.
+
+    Return -1 if a constant is wrong. The packet may be cut off.
+    """
     found = 0
     for field in form.fields:
         if field.role != "constant" or field.in_trailer or field.at >= len(packet):
             continue
-        # Only the bits of the bytes that came are compared.
+        # Compare only the bytes that were received.
         came = packet[field.at : field.at + field.size]
         order: Literal["little", "big"] = "little" if field.little else "big"
         mask = ((1 << field.bits) - 1 << field.shift).to_bytes(field.size, order)[: len(came)]
@@ -87,9 +92,10 @@ def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int
 
 
 def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
-    """Why a packet without its stuffing is no message of a direction; None if it is not even the beginning of a packet.
+    """Return the reason why a packet without stuffing is not a message of a direction.
 
-    ``is_whole``: the end of the packet came, as far as that shows.
+    Return None if it does not begin like a packet. ``is_whole``: its end was received,
+    as far as this can be detected.
     """
     form, declared = speaker.link.stream, speaker.facts.stream
     assert form
@@ -100,7 +106,7 @@ def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bo
         return None
     field = form.of("id")
     rows = form.rows(direction)
-    if field is None:  # then there is one message
+    if field is None:  # a format without id has one message
         id = rows[0].id if rows else None
     else:
         id = _value(form, field, packet, is_whole)
@@ -146,6 +152,7 @@ def _fault_of_whole(
     rank: int,
     is_certain: bool,
 ) -> Fault:
+    """Return the fault of a packet that is not cut off."""
     form, node = speaker.link.stream, speaker.node.name
     assert form
     size, count = len(packet) - form.header_bytes - form.trailer_bytes, len(packet)
@@ -187,7 +194,7 @@ def _fault_of_whole(
 
 
 def packet_begun(speaker: Speaker, direction: Direction, data: bytes) -> tuple[bytes, bool]:
-    """The packet that bytes begin with, without stuffing, and whether its end came."""
+    """Return the first packet without stuffing, and whether its end was received."""
     form = speaker.link.stream
     assert form
     if form.delimited_by == PACKET:
@@ -205,7 +212,7 @@ def packet_begun(speaker: Speaker, direction: Direction, data: bytes) -> tuple[b
 
 
 def _size(form: Stream, packet: bytes) -> int | None:
-    """Bytes of the packet as its header says; None if it does not, or has not come."""
+    """Return the length of the packet in its header, or None if it is missing."""
     field = form.of("length")
     if field is None or len(packet) < form.header_bytes:
         return None
@@ -213,6 +220,7 @@ def _size(form: Stream, packet: bytes) -> int | None:
 
 
 def _value(form: Stream, field: EnvelopeField, packet: bytes, is_whole: bool) -> int | None:
+    """Return the value of a field, or None if the packet is too short."""
     if field.in_trailer and not is_whole:
         return None
     if field.at + field.size > len(packet) or (field.in_trailer and len(packet) < form.trailer_bytes):
@@ -221,7 +229,7 @@ def _value(form: Stream, field: EnvelopeField, packet: bytes, is_whole: bool) ->
 
 
 def _bytes_text(field: EnvelopeField, value: int) -> str:
-    """A checksum as its bytes are sent; where they are shared with other fields, as a number."""
+    """Return a value as transmitted bytes, or as a number if other fields share its bytes."""
     if field.shift or field.bits != 8 * field.size:
         return f"0x{value:X}"
     return value.to_bytes(field.size, "little" if field.little else "big").hex(" ").upper()

@@ -1,4 +1,4 @@
-"""What the frames in a text are: framing and checksums come off, node and message are found."""
+"""Recognition of all frames in a text or in received bytes."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ from icdgen.values.frame import frame
 def recognize(
     icd: Icd, text: str | bytes, node: str | None = None, key: str | None = None, kind: str | None = None
 ) -> list[Reading]:
-    """What the frames in a text are, or in bytes as they came over a line.
+    """Return the frames in a text, or in bytes as received.
 
-    ``node`` and ``key`` say whose they are and which message, as `icdgen.values.find_message` takes them. Lines of which
-    each is a frame of its own are read one by one. Raises `BadHex`, `BadLength`, `NotFound` or `Ambiguous`.
+    ``node``, ``key`` and ``kind`` restrict the messages, as for
+    `icdgen.values.find_message`. If each line is a complete frame, the lines are
+    recognized separately. Raise `BadHex`, `BadLength`, `NotFound` or `Ambiguous`.
     """
     owner = find_node(icd, node) if node is not None else None
     asked = asked_for(icd, owner, key, kind)
@@ -47,7 +48,7 @@ def recognize(
 
 
 def _line_by_line(icd: Icd, speakers: Sequence[Speaker], lines: Sequence[str], asked: Asked) -> list[Reading]:
-    """The frames, if there are several lines and each is one."""
+    """Return the frames if there are several lines and each is a complete frame."""
     if len(lines) < 2:
         return []
     with suppress(Ambiguous, BadHex, BadLength, NotFound):
@@ -69,14 +70,19 @@ def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Aske
         raise NotFound(text, "leave the message out, or name that one")
     if asked.messages:
         found = [one for one in found if asked.is_of(one)]
-    if not found[0].left_out:  # the reading that had the reports is not of the message or kind
+    # The first reading has the reports. Restore them if the selection dropped it.
+    if not found[0].left_out:
         found[0] = found[0].without(*left_out)
     note = (f"read as {pasted.form}",) if pasted.form else ()
     return [_decoded(icd, one.noted(*note)) for one in found]
 
 
 def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
-    """The messages in a stream with framing; none if it has none, or its bytes are just those of the message asked for."""
+    """Return the messages in a stream with framing.
+
+    Return no messages if there is no framing, or if a named message has exactly these
+    bytes.
+    """
     if asked.can_be(data):
         if enveloped := _surely_enveloped(speakers, data, asked):
             return enveloped
@@ -107,7 +113,7 @@ def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Read
 
 
 def _refuse_pieces(speakers: Sequence[Speaker], data: bytes) -> None:
-    """Raises `BadLength` for bytes that are a piece of a frame with framing: its first byte, or all but its beginning."""
+    """Raise `BadLength` for a frame that is cut off: its first byte, or its end only."""
     for framing in dict.fromkeys(speaker.link.framing for speaker in speakers if speaker.link.framing):
         if data == bytes((framing.escape,)):
             raise BadLength(_broken([]), 0, len(data), "the frame is cut off")
@@ -118,7 +124,11 @@ def _refuse_pieces(speakers: Sequence[Speaker], data: bytes) -> None:
 
 
 def _surely_enveloped(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
-    """Of messages whose frames differ in length one in its envelope can be as long as another without: a checksum tells."""
+    """Return messages with header and trailer whose checksum is right.
+
+    A message of variable length can be as long as another one with header and trailer.
+    The checksum distinguishes them.
+    """
     with suppress(Ambiguous, BadLength):
         return [
             reading for reading in envelopes.readings(speakers, data, asked) if reading.checked and asked.is_of(reading)
@@ -127,6 +137,7 @@ def _surely_enveloped(speakers: Sequence[Speaker], data: bytes, asked: Asked) ->
 
 
 def _broken(events: list[UartEvent]) -> str:
+    """Return the error of a stream with framing but without a message."""
     if any(event.event == "protocol_error" for event in events):
         return "the framing is broken: the escape byte is followed by neither itself nor an end of message"
     return "the framing is empty" if events else "the framing begins, but the end of the message is missing"
@@ -141,7 +152,10 @@ def _of_body(speakers: Sequence[Speaker], body: bytes, asked: Asked) -> Reading:
 
 
 def _unframed(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Asked) -> list[Reading]:
-    """Packets of CAN by their identifiers; of a message that is asked for, whatever the identifier, if none has it."""
+    """Return the messages of CAN packets by their identifiers, or the message of bytes.
+
+    If no identifier matches, the bytes are those of a message that the user has named.
+    """
     if not pasted.packets:
         return [_bare(icd, speakers, pasted.data, asked)]
     try:
@@ -153,6 +167,7 @@ def _unframed(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Aske
 
 
 def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
+    """Return the message of bytes without framing. Raise `BadLength`, `NotFound` or `Ambiguous`."""
     if not data and not asked.messages:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
     fault = envelopes.begun(speakers, data)
@@ -162,7 +177,7 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> R
     if fault:
         raise fault.error
     _refuse_pieces(speakers, data)
-    # Where packets are not recognized by their first bytes, any bytes may be a piece of one.
+    # Without constant first bytes, any data may be a piece of a packet.
     plainly = [
         speaker
         for speaker in speakers
@@ -174,7 +189,7 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> R
 
 
 def _no_packet(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Ambiguous | NotFound:
-    """Bytes without the framing that their node has: what they can be shows only if the message is named."""
+    """Return the error for bytes without the framing that all messages of the node have."""
     nodes, syncs = match.nodes_of(speakers), dict.fromkeys(map(envelopes.sync_of, speakers))
     begin = f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""
     text = f"{byte_count(len(data))} are no packet of {nodes}{begin}"
@@ -185,7 +200,10 @@ def _no_packet(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Ambigu
 
 
 def _guessed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
-    """A message without framing, by its id or its length. Raises `Ambiguous`, `BadLength` or `NotFound`."""
+    """Return a message without framing, by its id or its length.
+
+    Raise `Ambiguous`, `BadLength` or `NotFound`.
+    """
     given = byte_count(len(data))
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
     if any(map(asked.fits, plain)) and not any(map(asked.fits, with_id)):
@@ -202,6 +220,7 @@ def _guessed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
 
 
 def _decoded(icd: Icd, one: Reading) -> Reading:
+    """Return a reading with its decoded frame, if it has data."""
     if one.what not in KINDS:
         return one
     made = frame(icd, one.speaker.node, one.message, one.data)

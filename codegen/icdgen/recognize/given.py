@@ -1,4 +1,4 @@
-"""Bytes without framing of a message that is known."""
+"""Bytes without framing of a message that the user has named."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from icdgen.values.errors import BadLength
 
 
 def of_asked(icd: Icd, speaker: Speaker, messages: Sequence[Message], data: bytes) -> Reading:
-    """The message; of those that share an id the one that the data are of, which may have the id in front.
+    """Return the message of the data, which may begin with the id.
 
-    Raises `BadLength` or `NotFound`.
+    If several messages share the id, length and constants of the data distinguish them.
+    Raise `BadLength` or `NotFound`.
     """
     if len(messages) == 1:
         return of_message(icd, speaker, messages[0], data)
@@ -29,7 +30,7 @@ def of_asked(icd: Icd, speaker: Speaker, messages: Sequence[Message], data: byte
 
 
 def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Reading:
-    """The message, with its id before and a checksum after it if they are there. Raises `BadLength`."""
+    """Return the message, without its id and checksum if present. Raise `BadLength`."""
     plain = message.telecommand_id if message.telecommand_id is not None else message.telemetry_id
     assert plain is not None
     if len(data) in message.layout.lengths:
@@ -60,6 +61,6 @@ def _reading(speaker: Speaker, message: Message, id: int | None, data: bytes, *r
 
 
 def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[Speaker]:
-    """How all talk that have the message: those that include it may add a checksum."""
+    """Return the node and all nodes that include the message, which may add a checksum."""
     others = (one for one in all_speakers(icd) if one.node is not speaker.node)
     return [speaker, *(other for other in others if message in icd.messages_of(other.node))]

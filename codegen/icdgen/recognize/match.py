@@ -1,4 +1,4 @@
-"""Which message an id and bytes can be, and what is wrong where they can be none."""
+"""Candidate messages of an id and bytes, and the error if there are none."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ HELP = "name the node and the message: `icdgen decode NODE MESSAGE FRAME`"
 
 
 def each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Reading], list[UserError]]:
-    """What the items are, and what is wrong with the others. Raises the first error if it is wrong with all."""
+    """Return the readings of all items, and the errors of the others.
+
+    Raise the first error if there are no readings.
+    """
     found: list[Reading] = []
     wrong: list[UserError] = []
     for item in items:
@@ -40,23 +43,23 @@ def each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Reading
 
 
 def around(lost: int, errors: Iterable[str]) -> list[str]:
-    """Remarks about what else is in a stream: bytes that are lost, and errors of its decoder."""
+    """Return remarks about unused bytes of a stream, and about errors of its decoder."""
     remarks = [f"{byte_count(lost)} around the frame belong to none"] if lost else []
     return remarks + [f"the stream has an error: {error.replace('_', ' ')}" for error in errors]
 
 
 def by_id(speakers: Sequence[Speaker], body: bytes) -> list[Reading]:
-    """What an id and the bytes after it can be, each but once."""
+    """Return all candidates for an id and the bytes after it."""
     return _each_once(found for speaker in speakers for found in _of_speaker(speaker, body))
 
 
 def of_ids(known: Sequence[tuple[Speaker, int]], data: bytes) -> list[Reading]:
-    """What data can be that came with an id, but not behind it; of each speaker the id as it would be there."""
+    """Return all candidates for data whose ids are not in front of it. Each speaker has its id."""
     return _each_once(found for speaker, id in known for found in _with_id(speaker, id, data))
 
 
 def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
-    """What bytes without an id can be, by their number alone, and with a checksum if one is right."""
+    """Return all candidates for bytes without an id, by length and by a matching checksum."""
     return _each_once(
         found
         for speaker in speakers
@@ -67,6 +70,7 @@ def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
 
 
 def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
+    """Return the candidates of a node for an id and the bytes after it."""
     apart, facts = speaker.taken_apart(body), speaker.facts
     if apart is None:
         return
@@ -79,6 +83,7 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
 
 
 def _with_id(speaker: Speaker, id: int, data: bytes) -> Iterator[Reading]:
+    """Return the candidates of a node for an id and separate data."""
     for what, known in _directions(speaker):
         message = _message(speaker, known, id, data)
         yield from _with_checksum(speaker, what, id, message, data)
@@ -87,7 +92,10 @@ def _with_id(speaker: Speaker, id: int, data: bytes) -> Iterator[Reading]:
 
 
 def message_of(icd: Icd, known: Sequence[Message], data: bytes) -> Message | None:
-    """The message of an id; of those that share it the one that the data are of, if there is one."""
+    """Return the message of an id.
+
+    If several messages share the id, the data selects one. Return None if none matches.
+    """
     if len(known) < 2:
         return known[0] if known else None
     try:
@@ -105,7 +113,7 @@ def _message(speaker: Speaker, known: Mapping[int, Sequence[Variant]], id: int, 
 
 
 def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None, data: bytes) -> Iterator[Reading]:
-    """The message, if the bytes are as many as it has, or the right checksum follows them."""
+    """Return the message if the data has its length, or is followed by the right checksum."""
     if message is None:
         return
     if len(data) in message.layout.lengths and miscounted(speaker, message, data) is None:
@@ -117,7 +125,7 @@ def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None
 
 
 def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes | None:
-    """The checksum that must follow the message's data; None if there is none, or no room for it."""
+    """Return the checksum of the data, or None if there is no room for one after it."""
     form = speaker.facts.checksum
     if form is None or message.layout.parts or len(data) != message.length + form.bytes:
         return None
@@ -125,10 +133,11 @@ def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes 
 
 
 def decided(found: Sequence[Reading], of: str, asked: Asked) -> Reading:
-    """The most likely one, with a remark about what else it can be. Raises `Ambiguous` if several are as likely.
+    """Return the most likely reading, with a remark about others. Raise `Ambiguous`.
 
-    What was asked for decides; a checksum that is right is no accident; and who sends more than an acknowledge rarely
-    looks like one. Nothing tells the direction of a message that is asked for and has the same frame in both.
+    The message that the user has named has precedence, then a right checksum. An
+    acknowledge is less likely than other messages. If the named message has equal
+    frames in both directions, the direction remains open.
     """
     found = asked.of(found)
     likely = [one for one in found if one.checked] or [one for one in found if one.what != ACKNOWLEDGE] or list(found)
@@ -144,7 +153,7 @@ def decided(found: Sequence[Reading], of: str, asked: Asked) -> Reading:
 
 
 def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
-    """What is wrong with bytes that begin with an id and that no message has."""
+    """Return the error for bytes whose id or length matches no message."""
     apart: list[Apart] = [(speaker, both) for speaker in speakers if (both := speaker.taken_apart(body)) is not None]
     if not apart:
         size = min(wire_ids.size(speaker.node.id_bits) for speaker in speakers)
@@ -156,12 +165,12 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
 
 
 def nodes_of(speakers: Sequence[Speaker]) -> str:
-    """The nodes by name."""
+    """Return the names of the nodes."""
     return ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
 
 
 def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
-    """What is wrong with data of these ids; ``unknown`` if no message has them."""
+    """Return the error for the data of these ids, or ``unknown`` if no message has them."""
     known = {
         (what, message.node, message.name): (speaker, message, id, data)
         for speaker, (id, data) in apart
@@ -188,14 +197,14 @@ def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
 
 
 def none_of(messages: Sequence[Message], data: str) -> NotFound:
-    """Data that are of none of the messages that share an id."""
+    """Return the error for data that matches none of several messages that share an id."""
     told = ", ".join(f"`{message.name}` ({describe(message)}, {length_text(message)})" for message in messages)
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"
     return NotFound(f"{data} are like none of {told}, by length and constants", help)
 
 
 def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | None:
-    """What is wrong with data that do not have as many elements as they say; None if they have."""
+    """Return the error for data whose counters do not match its length, or None."""
     try:
         codec.decode(speaker.icd.node(message.node), message, data)
     except codec.LengthError as error:
@@ -207,14 +216,17 @@ def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | N
 
 
 def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:
-    """Data followed by what is no checksum of them."""
+    """Return the error for data with a wrong checksum."""
     text = f"`{message.name}` has {message.length} bytes; as CRC after them {right.hex().upper()} would be right, "
     help = "a byte was damaged, or there are too many"
     return BadLength(f"{text}not {data[message.length :].hex().upper()}", message.length, len(data), help)
 
 
 def _each_once(found: Iterable[Reading]) -> list[Reading]:
-    """Of the same reading by several nodes the one with a checksum, else that of the node that declares the message."""
+    """Return one reading per message and direction, if several nodes have the message.
+
+    A reading with a checksum has precedence, then the node that declares the message.
+    """
     alike: dict[tuple[str, str, str], list[Reading]] = {}
     for one in found:
         alike.setdefault(one.key, []).append(one)
@@ -222,7 +234,7 @@ def _each_once(found: Iterable[Reading]) -> list[Reading]:
 
 
 def named(found: Sequence[Reading]) -> str:
-    """The readings by name, the first few of them; one that has two directions once."""
+    """Return the titles of the first readings, for a report. Each title is given once."""
     every = list(dict.fromkeys(one.title for one in found))
     titles, rest = every[:MOST_LISTED], len(every) - MOST_LISTED
     return ", or ".join(titles) + (f", or one of {rest} others" if rest > 0 else "")

@@ -1,4 +1,4 @@
-"""CAN packets as tools print them: candump, its log files, and the lines of slcan adapters."""
+"""Printed CAN packets: candump, its log files, and the lines of slcan adapters."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ _STAMP = 2  # bytes of the time that an slcan adapter may append: milliseconds o
 
 
 class Printed(NamedTuple):
-    """A packet. ``extended``: the identifier has 29 bits, not 11.
+    """A packet. ``extended``: the identifier has 29 bits instead of 11.
 
-    ``time`` is what candump printed, or the seconds of the minute of an slcan adapter; empty without one.
+    ``time`` is the text of candump, or the seconds of an slcan adapter within the
+    minute. It may be empty.
     """
 
     id: int
@@ -33,12 +34,15 @@ class Printed(NamedTuple):
 
     @property
     def identifier(self) -> str:
-        """As many digits as tools print."""
+        """The identifier with 3 or 8 hexadecimal digits."""
         return f"0x{self.id:0{8 if self.extended else 3}X}"
 
 
 def packets(text: str) -> list[Printed] | None:
-    """The packets, one a line; None if any line is something else, or has not as many bytes as it says."""
+    """Return one packet per line.
+
+    Return None if a line is not a packet, or if its number of bytes is wrong.
+    """
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     found = [packet for line in lines for packet in _packet(line)]
     return found if found and len(found) == len(lines) else None

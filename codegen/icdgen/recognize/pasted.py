@@ -1,4 +1,4 @@
-"""What a person copied -> bytes or CAN packets: which of the many spellings it is, is decided here."""
+"""Conversion of pasted text to bytes or CAN packets. The spelling is detected."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ _LABEL = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Pasted:
-    """Bytes, or packets if it was lines of a CAN tool. ``form`` names the spelling where it was not plain hexadecimal."""
+    """Bytes, or packets if the text is the output of a CAN tool.
+
+    ``form`` is the name of the spelling; empty for hexadecimal digits.
+    """
 
     data: bytes = b""
     packets: tuple[Printed, ...] = ()
@@ -44,12 +47,12 @@ class Pasted:
 
     @property
     def whole(self) -> bytes:
-        """The bytes, those of packets one after the other."""
+        """All bytes, with the data of the packets joined."""
         return b"".join(packet.data for packet in self.packets) or self.data
 
 
 def read(text: str) -> Pasted:
-    """What was pasted, in any spelling. Raises `BadHex`, with the place in it, for what is no bytes at all."""
+    """Return the bytes or packets of a text. Raise `BadHex`, with the position of the error."""
     if found := packets(text):
         return Pasted(packets=tuple(found))
     if (data := dump(text)) is not None:
@@ -82,7 +85,7 @@ def _unescaped(text: str) -> bytes | None:
 
 
 def _of_code(text: str) -> Pasted | None:
-    """An array or a string of a program: what stands in its brackets or quotes."""
+    """Return the bytes of an array or string in the source text of a program."""
     text = text.strip().rstrip(";").strip()
     strings = _STRING.findall(text)
     if len(strings) == 1:
@@ -97,17 +100,19 @@ def _of_code(text: str) -> Pasted | None:
 
 
 def _labelled(text: str) -> Pasted | None:
+    """Return the bytes of a log whose lines begin with a time or a direction."""
     bare = _LABEL.sub("", text)
     return _hex(bare) if bare != text else None
 
 
 def _marked(text: str) -> Pasted | None:
-    """Each byte in quotes or angles, or followed by ``h``."""
+    """Return the bytes if each is in quotes or angle brackets, or followed by ``h``."""
     bare = _MARKED.sub(lambda found: f" {found[2] or found[3] or found[4]} ", text)
     return _hex(bare) if bare != text else None
 
 
 def _decimal(text: str) -> Pasted | None:
+    """Return the bytes of decimal numbers."""
     words = re.findall("[0-9]+", text) if _DECIMALS.fullmatch(text.strip()) else []
     if not words or max(map(int, words)) > 255:
         return None
@@ -115,8 +120,9 @@ def _decimal(text: str) -> Pasted | None:
 
 
 def _base64(text: str) -> Pasted | None:
+    """Return the bytes of a base64 text."""
     joined = "".join(text.split())
-    # As many a mistyped word would be base64, too.
+    # Many mistyped words are valid base64, too.
     is_word = len(joined) < 8 or joined in (joined.lower(), joined.upper())
     if not _BASE64.fullmatch(joined) or (is_word and not joined.endswith("=")):
         return None

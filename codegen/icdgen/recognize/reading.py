@@ -1,4 +1,4 @@
-"""What a frame turned out to be."""
+"""Results of the recognition: a message, its direction and its node."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = "telecommand", "telemetr
 
 @dataclass(frozen=True)
 class Speaker:
-    """A node of a set, and how it talks."""
+    """A node of an ICD set, and its protocol."""
 
     icd: Icd = field(repr=False, compare=False)
     node: Node
@@ -30,38 +30,42 @@ class Speaker:
 
     @cached_property
     def link(self) -> Link:
-        """What the wire layer has to know of it."""
+        """Protocol of the node, for the wire layer."""
         return link_of(self.icd, self.facts)
 
     @cached_property
     def ids(self) -> Ids:
-        """The messages that it speaks, by their ids."""
+        """Messages of the node by their ids."""
         return ids_of(self.icd, self.node)
 
     def taken_apart(self, body: bytes) -> tuple[int, bytes] | None:
-        """The id that bytes begin with, and the rest; None if there are too few."""
+        """Split bytes into the id and the bytes after it. Return None if there are too few."""
         size = wire_ids.size(self.node.id_bits)
         return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
 
 
 @cached_by_node
 def speaker_of(icd: Icd, node: Node) -> Speaker:
-    """That node of the set."""
+    """Return the node with its protocol."""
     return Speaker(icd, node, facts.of(icd, node))
 
 
 def all_speakers(icd: Icd) -> list[Speaker]:
-    """Every node of the set."""
+    """Return all nodes of the set with their protocols."""
     return [speaker_of(icd, node) for node in icd.nodes]
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a frame is. ``what``: telecommand, telemetry, or a message about ``message``: request, acknowledge, refusal;
-    configuration, where a configuration message came without an id, which would tell its direction.
+    """An interpretation of a frame.
 
-    ``id`` is the one that the frame was sent with, None where it came without. ``data`` are the bytes of ``frame``,
-    without id, framing and checksum. ``error`` is the code of an acknowledge. ``checked``: a checksum was there, and right.
+    ``what`` is ``telecommand`` or ``telemetry``, or ``request``, ``acknowledge`` or
+    ``refusal`` of ``message``. It is ``configuration`` for a configuration message
+    without an id, whose direction is unknown.
+
+    ``id`` is the transmitted id, or None. ``data`` are the bytes of ``frame``, without
+    id, framing and checksum. ``error`` is the code of an acknowledge. ``checked``:
+    there was a checksum, and it was right.
     """
 
     speaker: Speaker
@@ -73,22 +77,22 @@ class Reading:
     error: int | None = None
     checked: bool = False
     remarks: tuple[str, ...] = ()
-    left_out: tuple[str, ...] = ()  # of the first reading of an input: its packets that cannot be decoded, and why
-    time: str = ""  # when the frame was received, as the tool that recorded it printed that
+    left_out: tuple[str, ...] = ()  # first reading only: packets of the input that cannot be decoded, with reason
+    time: str = ""  # time of reception, as printed by the recording tool
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """Readings of the same key say the same."""
+        """Direction, node and message, which are equal for equivalent readings."""
         return self.what, self.message.node, self.message.name
 
     @property
     def is_own(self) -> bool:
-        """Whether it is of the node that declares the message."""
+        """Whether the node declares the message, instead of including it."""
         return self.speaker.node.name == self.message.node
 
     @property
     def title(self) -> str:
-        """``request for Attitude (telemetry 146)``, for people."""
+        """Description for a report, such as ``request for Attitude (telemetry 146)``."""
         told = (
             f"`{self.message.name}` ({describe(self.message, self.speaker.facts.stream)}) of {self.speaker.node.name}"
         )
@@ -101,21 +105,24 @@ class Reading:
 
     @property
     def has_wrong_constant(self) -> bool:
-        """Whether a field that has a constant holds something else."""
+        """Whether a field with a constant has another value."""
         return self.frame is not None and bool(self.frame.wrong_constants)
 
     def noted(self, *remarks: str) -> Reading:
-        """The same, with further remarks."""
+        """Return a copy with further remarks."""
         shown = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
         return replace(self, frame=shown, remarks=(*self.remarks, *remarks))
 
     def without(self, *left_out: str) -> Reading:
-        """The same, with reports about other packets of the input, which cannot be decoded."""
+        """Return a copy with reports about packets of the input that cannot be decoded."""
         notes = [f"left out: {one}" for one in left_out]
         return replace(self.noted(*notes), left_out=(*self.left_out, *left_out))
 
     def to_json(self) -> dict[str, object]:
-        """The frame as `Frame.to_json` has it, with ``direction``; what has no data of its own as a short form of it."""
+        """Return the frame as `Frame.to_json` does, with ``direction``.
+
+        A message without data has a short form.
+        """
         time: dict[str, object] = {"time": self.time} if self.time else {}
         if self.frame is not None:
             return {**self.frame.to_json(), "direction": self.what, **time}
