@@ -26,24 +26,24 @@ class Asked:
         """Names of the messages, for a report."""
         return " or ".join(f"`{message.name}`" for message in self.messages)
 
-    def is_of(self, one: Reading) -> bool:
+    def is_of(self, reading: Reading) -> bool:
         """Return whether a reading has one of the messages."""
-        return any(one.message is message for message in self.messages)
+        return any(reading.message is message for message in self.messages)
 
     def can_be(self, data: bytes) -> bool:
         """Return whether one of the messages can have the length of ``data``."""
         return any(len(data) in message.layout.lengths for message in self.messages)
 
-    def fits(self, one: Reading) -> bool:
+    def fits(self, reading: Reading) -> bool:
         """Return whether a reading matches messages and kind.
 
         A configuration message matches each kind that it is sent as.
         """
-        return (not self.messages or self.is_of(one)) and self.kind in (None, one.what, one.message.kind)
+        return (not self.messages or self.is_of(reading)) and self.kind in (None, reading.what, reading.message.kind)
 
-    def of(self, found: Sequence[Reading]) -> list[Reading]:
+    def of(self, candidates: Sequence[Reading]) -> list[Reading]:
         """Return the matching readings, or all readings if none matches."""
-        return [one for one in found if self.fits(one)] or list(found)
+        return [reading for reading in candidates if self.fits(reading)] or list(candidates)
 
 
 def asked_for(icd: Icd, node: Node | None, key: str | None, kind: str | None) -> Asked:

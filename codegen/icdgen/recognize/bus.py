@@ -33,13 +33,13 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Ask
         raise NotFound(text, "candump prints them with 8 digits")
     sent = [CanPacket(packet.id, packet.data) for packet in packets]
     times = [packet.time for packet in packets]
-    able = [speaker for speaker in speakers if speaker.facts.can]
-    found = [_of_speaker(speaker, sent, times) for speaker in able]
-    most = max(len(one) for one in found)
+    can_speakers = [speaker for speaker in speakers if speaker.facts.can]
+    per_speaker = [_of_speaker(speaker, sent, times) for speaker in can_speakers]
+    most = max(len(result) for result in per_speaker)
     if most == 0:
-        raise _why_none(able[0], sent)
-    complete = [one for one in found if len(one) == most]
-    chosen = [_chosen([one[number] for one in complete], asked) for number in range(most)]
+        raise _why_none(can_speakers[0], sent)
+    complete = [result for result in per_speaker if len(result) == most]
+    chosen = [_chosen([result[number] for result in complete], asked) for number in range(most)]
     left = _left_out(complete[0][0].speaker, sent) - most
     note = [f"{left} of the CAN messages are no message of the ICD, or not complete"] if left else []
     return [chosen[0].without(*note), *chosen[1:]]
@@ -50,50 +50,50 @@ def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked
 
     Raise `NotFound`, `BadLength` or `Ambiguous` if no packet is a message.
     """
-    found, wrong = match.each(packets, lambda packet: _by_identifier(speakers, packet, asked))
-    left = [f"{error} ({count} CAN packet{'s' * (count > 1)})" for error, count in Counter(map(str, wrong)).items()]
-    return [found[0].without(*left), *found[1:]]
+    matches, errors = match.each(packets, lambda packet: _by_identifier(speakers, packet, asked))
+    reports = [f"{error} ({count} CAN packet{'s' * (count > 1)})" for error, count in Counter(map(str, errors)).items()]
+    return [matches[0].without(*reports), *matches[1:]]
 
 
 def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -> Reading:
-    known = [
+    ids = [
         (speaker, id)
         for speaker in speakers
         if (id := wire_ids.of_can(packet.id, packet.extended, speaker.node.id_bits)) is not None
     ]
-    found = match.of_ids(known, packet.data)
-    if not found:
+    candidates = match.of_ids(ids, packet.data)
+    if not candidates:
         text = f"no message of {match.nodes_of(speakers)} has the CAN identifier {packet.identifier}"
         help = "`icdgen show NODE` lists what there is; name the message to have the bytes read all the same"
-        raise match.why_not([(speaker, (id, packet.data)) for speaker, id in known], NotFound(text, help))
-    one = match.decided(found, f"a packet with the CAN identifier {packet.identifier}", asked)
-    return replace(one, time=packet.time).noted(f"CAN identifier {packet.identifier} removed")
+        raise match.why_not([(speaker, (id, packet.data)) for speaker, id in ids], NotFound(text, help))
+    reading = match.decided(candidates, f"a packet with the CAN identifier {packet.identifier}", asked)
+    return replace(reading, time=packet.time).noted(f"CAN identifier {packet.identifier} removed")
 
 
 def _of_speaker(speaker: Speaker, packets: list[CanPacket], times: list[str]) -> list[Reading]:
     joiner = CanJoiner(speaker.link, senders=len(packets))
-    found = []
+    result = []
     for packet, time in zip(packets, times, strict=True):
         for event in joiner.feed(0, packet):
             reading = _reading(speaker, event.message) if event.message else None
             if reading is not None:
-                found.append(replace(reading, time=time))  # time of the packet that completes the message
-    return found
+                result.append(replace(reading, time=time))  # time of the packet that completes the message
+    return result
 
 
-def _reading(speaker: Speaker, told: CanMessage) -> Reading | None:
-    sends = told.kind in ("telecommand", "acknowledge", "refusal")
-    message = (speaker.facts.telecommands if sends else speaker.facts.telemetry).get(told.id)
-    if message is None or (told.kind in CAN_WITH_DATA and len(told.data) != message.length):
+def _reading(speaker: Speaker, can_message: CanMessage) -> Reading | None:
+    sends = can_message.kind in ("telecommand", "acknowledge", "refusal")
+    message = (speaker.facts.telecommands if sends else speaker.facts.telemetry).get(can_message.id)
+    if message is None or (can_message.kind in CAN_WITH_DATA and len(can_message.data) != message.length):
         return None
-    way = f"CAN, from address {told.source} to {told.destination}"
-    return Reading(speaker, _WHAT[told.kind], message, told.id, told.data, remarks=(way,))
+    way = f"CAN, from address {can_message.source} to {can_message.destination}"
+    return Reading(speaker, _WHAT[can_message.kind], message, can_message.id, can_message.data, remarks=(way,))
 
 
 def _left_out(speaker: Speaker, packets: list[CanPacket]) -> int:
     """Return the number of messages that the packets begin, known or unknown."""
-    told, waiting = _told(speaker, packets)
-    return len([event for event in told if event.event != "duplicate"]) + len(waiting)
+    events, waiting = _told(speaker, packets)
+    return len([event for event in events if event.event != "duplicate"]) + len(waiting)
 
 
 def _told(speaker: Speaker, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
@@ -114,19 +114,21 @@ def _came(speaker: Speaker, packets: list[CanPacket]) -> int:
     return 0
 
 
-def _chosen(found: list[Reading], asked: Asked) -> Reading:
-    different = {one.key: one for one in (*found, *(one for one in found if one.is_own))}
-    return match.decided(list(different.values()), f"a CAN message with id {found[0].id}", asked)
+def _chosen(candidates: list[Reading], asked: Asked) -> Reading:
+    different = {
+        reading.key: reading for reading in (*candidates, *(reading for reading in candidates if reading.is_own))
+    }
+    return match.decided(list(different.values()), f"a CAN message with id {candidates[0].id}", asked)
 
 
 def _why_none(speaker: Speaker, packets: list[CanPacket]) -> BadLength | NotFound:
     """Return the error for packets without a message of the node."""
-    told, waiting = _told(speaker, packets)
-    event = told[0] if told else None
-    if waiting and not any(one.message for one in told):
-        came, missing = _came(speaker, packets), waiting[0].missing
-        text = f"{missing} of {came + missing} packets of the message with id {waiting[0].id} are missing"
-        return BadLength(text, came + missing, came, "give all packets of the message")
+    events, waiting = _told(speaker, packets)
+    event = events[0] if events else None
+    if waiting and not any(candidate.message for candidate in events):
+        received, missing = _came(speaker, packets), waiting[0].missing
+        text = f"{missing} of {received + missing} packets of the message with id {waiting[0].id} are missing"
+        return BadLength(text, received + missing, received, "give all packets of the message")
     if event and event.message:
         return match.why_none([speaker], bytes([event.message.id]) + event.message.data)
     text = event.event.replace("_", " ") if event else "no message"

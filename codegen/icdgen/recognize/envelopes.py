@@ -83,77 +83,85 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
     Raise `BadLength` or `NotFound` for a packet that is cut off, damaged or unknown,
     and `Ambiguous`.
     """
-    heard = [
+    results = [
         _heard(speaker, direction, data) for speaker in speakers if speaker.facts.stream for direction in DIRECTIONS
     ]
-    found = [one for one in heard if one.readings and (one.lost == 0 or _is_marked(one.speaker))]
-    if not found:
-        if fault := _likeliest(heard):
+    usable = [result for result in results if result.readings and (result.lost == 0 or _is_marked(result.speaker))]
+    if not usable:
+        if fault := _likeliest(results):
             raise fault.error
         return []
-    found = [one for one in found if any(map(asked.fits, one.readings))] or found
-    least, fewer = min((one.lost, -len(one.readings)) for one in found)
-    best = [one for one in found if (one.lost, -len(one.readings)) == (least, fewer)]
+    usable = [result for result in usable if any(map(asked.fits, result.readings))] or usable
+    least, fewer = min((result.lost, -len(result.readings)) for result in usable)
+    best = [result for result in usable if (result.lost, -len(result.readings)) == (least, fewer)]
     chosen = {
-        best[0].spans[at]: match.decided([one.readings[at] for one in best], "a frame in an envelope", asked)
+        best[0].spans[at]: match.decided([result.readings[at] for result in best], "a frame in an envelope", asked)
         for at in range(-fewer)
     }
     taken = bytearray(len(data))
     for span in chosen:
         span.mark(taken)
-    others = [one for one in found if one not in best and any(one.speaker is other.speaker for other in best)]
-    for other in others:
-        for span, reading in zip(other.spans, other.readings, strict=True):
+    opposite = [
+        result
+        for result in usable
+        if result not in best and any(result.speaker is candidate.speaker for candidate in best)
+    ]
+    for candidate in opposite:
+        for span, reading in zip(candidate.spans, candidate.readings, strict=True):
             if span.is_free(taken):
                 chosen[span] = reading
                 span.mark(taken)
                 least -= span.end - span.at
-    left = _left_out([one for one in heard if one.speaker is best[0].speaker], taken)
-    first, *rest = [chosen[span] for span in sorted(chosen)]
-    return [first.without(*left).noted(*match.around(least, ())), *rest]
+    reports = _left_out([result for result in results if result.speaker is best[0].speaker], taken)
+    first, *remaining = [chosen[span] for span in sorted(chosen)]
+    return [first.without(*reports).noted(*match.around(least, ())), *remaining]
 
 
 def begun(speakers: Sequence[Speaker], data: bytes) -> Fault | None:
     """Return the fault of bytes that begin like a packet, otherwise None."""
-    every = []
+    found_faults = []
     for speaker in speakers:
         form = speaker.link.stream
         for direction in DIRECTIONS if form else ():
             if form and faults.begins_packet(form, direction, data):
                 packet = faults.packet_begun(speaker, direction, data)
-                every.append(faults.fault_of(speaker, direction, *packet))
-    return max(filter(None, every), key=lambda one: one.rank, default=None)
+                found_faults.append(faults.fault_of(speaker, direction, *packet))
+    return max(filter(None, found_faults), key=lambda fault: fault.rank, default=None)
 
 
-def _left_out(heard: Sequence[Heard], taken: bytearray) -> list[str]:
+def _left_out(results: Sequence[Heard], taken: bytearray) -> list[str]:
     """Return the faults of all other packets.
 
     If both directions explain a packet, the better match of its header is used.
     """
     likeliest: dict[int, tuple[Span, Fault]] = {}
-    for span, fault in (both for one in heard for both in one.faults):
+    for span, fault in (entry for result in results for entry in result.faults):
         if span.is_free(taken) and (span.at not in likeliest or fault.rank > likeliest[span.at][1].rank):
             likeliest[span.at] = span, fault
-    found, end = [], 0
+    texts, end = [], 0
     for at, (span, fault) in sorted(likeliest.items()):
         if at >= end:  # bytes within a damaged packet only look like another packet
-            found.append(fault.text)
+            texts.append(fault.text)
         end = max(end, span.end)
-    return found
+    return texts
 
 
 def sync_of(speaker: Speaker) -> str:
     """Return the first bytes of the packets of a node, for a report."""
     form = speaker.link.stream
-    return " or ".join(filter(None, dict.fromkeys(faults.sync_text(form, one) for one in DIRECTIONS))) if form else ""
+    return (
+        " or ".join(filter(None, dict.fromkeys(faults.sync_text(form, direction) for direction in DIRECTIONS)))
+        if form
+        else ""
+    )
 
 
-def _likeliest(heard: Sequence[Heard]) -> Fault | None:
+def _likeliest(results: Sequence[Heard]) -> Fault | None:
     """Return the fault of the first packet, for the direction whose header matches best."""
-    firsts = [one.faults[0] for one in heard if one.faults and _is_marked(one.speaker)]
+    firsts = [result.faults[0] for result in results if result.faults and _is_marked(result.speaker)]
     at = min((span.at for span, _ in firsts), default=0)
     fitting = [fault for span, fault in firsts if span.at == at]
-    return max(fitting, key=lambda one: one.rank, default=None)
+    return max(fitting, key=lambda fault: fault.rank, default=None)
 
 
 def _is_marked(speaker: Speaker) -> bool:
@@ -166,7 +174,7 @@ def _heard(speaker: Speaker, direction: Direction, data: bytes) -> Heard:
     """Decode the data as messages of one direction."""
     decoder = _Listener(speaker, direction)
     events = decoder.feed(data)
-    heard = Heard(speaker, direction, decoder.discarded + decoder.pending)
+    result = Heard(speaker, direction, decoder.discarded + decoder.pending)
     for number, event in enumerate(events):
         if event.event == "gap":
             continue
@@ -175,16 +183,16 @@ def _heard(speaker: Speaker, direction: Direction, data: bytes) -> Heard:
         if span is None:
             continue
         if reading is not None:
-            heard.readings.append(reading)
-            heard.spans.append(span)
+            result.readings.append(reading)
+            result.spans.append(span)
         elif fault := _fault(speaker, direction, packet, event.event != "framing"):
-            heard.faults.append((span, fault))
+            result.faults.append((span, fault))
     if decoder.pending:
         begin = len(data) - decoder.pending
-        whole = faults.packet_begun(speaker, direction, data[begin:])
-        if fault := _fault(speaker, direction, *whole):
-            heard.faults.append((Span(begin, len(data)), fault))
-    return heard
+        beginning = faults.packet_begun(speaker, direction, data[begin:])
+        if fault := _fault(speaker, direction, *beginning):
+            result.faults.append((Span(begin, len(data)), fault))
+    return result
 
 
 def _fault(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
@@ -196,8 +204,8 @@ def _fault(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool
 
 def _reading(speaker: Speaker, direction: Direction, event: StreamEvent) -> Reading | None:
     assert event.id is not None
-    known = getattr(speaker.ids, direction)
-    message = match.message_of(speaker.icd, [one.message for one in known.get(event.id, ())], event.data)
+    variants = getattr(speaker.ids, direction)
+    message = match.message_of(speaker.icd, [variant.message for variant in variants.get(event.id, ())], event.data)
     if message is None or match.miscounted(speaker, message, event.data) is not None:
         return None
     form = speaker.facts.stream

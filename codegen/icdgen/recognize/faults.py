@@ -63,11 +63,13 @@ def sync_text(form: Stream, direction: Direction) -> str:
     if form.delimited_by in (SLIP, HDLC):
         return _ENDS[form.delimited_by]
     constants = {field.at: field for field in form.fields if field.role == "constant" and not field.in_trailer}
-    found, at = b"", 0
+    constant_bytes, at = b"", 0
     while (field := constants.get(at)) is not None and field.bits == 8 * field.size:
-        found += field.values[direction == "telemetry"].to_bytes(field.size, "little" if field.little else "big")
+        constant_bytes += field.values[direction == "telemetry"].to_bytes(
+            field.size, "little" if field.little else "big"
+        )
         at += field.size
-    return found.hex(" ").upper()
+    return constant_bytes.hex(" ").upper()
 
 
 def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int:
@@ -75,20 +77,20 @@ def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int
 
     Return -1 if a constant is wrong. The packet may be cut off.
     """
-    found = 0
+    bits = 0
     for field in form.fields:
         if field.role != "constant" or field.in_trailer or field.at >= len(packet):
             continue
         # Compare only the bytes that were received.
-        came = packet[field.at : field.at + field.size]
+        received = packet[field.at : field.at + field.size]
         order: Literal["little", "big"] = "little" if field.little else "big"
-        mask = ((1 << field.bits) - 1 << field.shift).to_bytes(field.size, order)[: len(came)]
+        mask = ((1 << field.bits) - 1 << field.shift).to_bytes(field.size, order)[: len(received)]
         value = field.values[direction == "telemetry"] << field.shift
-        expected = value.to_bytes(field.size, order)[: len(came)]
-        if any((a ^ b) & m for a, b, m in zip(came, expected, mask, strict=True)):
+        expected = value.to_bytes(field.size, order)[: len(received)]
+        if any((a ^ b) & m for a, b, m in zip(received, expected, mask, strict=True)):
             return -1
-        found += sum(one.bit_count() for one in mask)
-    return found
+        bits += sum(byte.bit_count() for byte in mask)
+    return bits
 
 
 def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
@@ -110,14 +112,14 @@ def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bo
         id = rows[0].id if rows else None
     else:
         id = _value(form, field, packet, is_whole)
-    known = [one.message for one in getattr(speaker.ids, direction).get(id, ())] if id is not None else []
+    messages = [variant.message for variant in getattr(speaker.ids, direction).get(id, ())] if id is not None else []
     row = next((row for row in rows if row.id == id), None)
     rank, title = bits, f"packet of {node}"
     if id is not None and field is not None:
         title += f" with the id {id_text(declared, id)}"
-    if known:
+    if messages:
         rank += 100
-        names = " or ".join(f"`{message.name}` ({direction} {id_text(declared, id or 0)})" for message in known)
+        names = " or ".join(f"`{message.name}` ({direction} {id_text(declared, id or 0)})" for message in messages)
         title = f"packet of {node}, {names}"
     needed = _size(form, packet)
     if needed is not None and not form.header_bytes + form.trailer_bytes <= needed <= longest:
@@ -128,19 +130,19 @@ def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bo
             "a byte of the header is damaged, or bytes are missing",
             longest,
             count,
-            is_of_message=bool(known),
+            is_of_message=bool(messages),
         )
     is_of_row = bool(row and needed and row.least <= needed - form.header_bytes - form.trailer_bytes <= row.most)
-    is_certain = bool(known) and (is_of_row or (needed is None and form.delimited_by in (SLIP, HDLC)))
+    is_certain = bool(messages) and (is_of_row or (needed is None and form.delimited_by in (SLIP, HDLC)))
     if not is_whole or (needed is not None and count < needed):
-        wanted = f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
+        expected = f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
         if needed is None and count >= form.header_bytes and form.delimited_by in _ENDS:
-            wanted = f"the byte {_ENDS[form.delimited_by]} that ends it is missing"
-        text = f"a {title} is cut off: {byte_count(count)} came, {wanted}"
+            expected = f"the byte {_ENDS[form.delimited_by]} that ends it is missing"
+        text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
         help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
-        return Fault(rank, text, help, needed or form.header_bytes, count, False, bool(known), is_certain)
+        return Fault(rank, text, help, needed or form.header_bytes, count, False, bool(messages), is_certain)
     fault = _fault_of_whole(speaker, direction, packet, title, row, rank, is_certain)
-    return fault._replace(is_of_message=bool(known))
+    return fault._replace(is_of_message=bool(messages))
 
 
 def _fault_of_whole(
@@ -166,24 +168,26 @@ def _fault_of_whole(
         return Fault(rank, text, "bytes are missing, or too many, or damaged", needed, count)
     for field in form.fields:
         if field.role == "constant" and field.in_trailer:
-            came, right = _get(form, field, packet, len(packet)), field.values[direction == "telemetry"]
-            if came != right:
-                text = f"a {title} ends with {_bytes_text(field, came)}, expected {_bytes_text(field, right)}"
+            value, expected = _get(form, field, packet, len(packet)), field.values[direction == "telemetry"]
+            if value != expected:
+                text = f"a {title} ends with {_bytes_text(field, value)}, expected {_bytes_text(field, expected)}"
                 return Fault(rank, text, "bytes are missing, or too many, or damaged", count, count)
     place = form.of("checksum")
     if place and form.check and (row is not None or not form.check.is_seeded):
-        given, right = _get(form, place, packet, len(packet)), _checksum(form, row, packet)
-        if given != right:
-            text = f"a {title} has a wrong checksum: it is {_bytes_text(place, given)}, expected {_bytes_text(place, right)}"
+        received, expected = _get(form, place, packet, len(packet)), _checksum(form, row, packet)
+        if received != expected:
+            text = f"a {title} has a wrong checksum: it is {_bytes_text(place, received)}, expected {_bytes_text(place, expected)}"
             help = "a byte of it is damaged or missing, or the packet is of another node"
             return Fault(rank + 200, text, help, count, count, is_certain=is_certain)
     if row is None:
         other: Direction = "telemetry" if direction == "telecommand" else "telecommand"
         place = form.of("id")
         id = _get(form, place, packet, count) if place else 0
-        names = [f"`{one.message.name}`" for one in getattr(speaker.ids, other).get(id, ())]
-        none = f"no {direction} with this id, but {other} {' or '.join(names)}" if names else "no message with this id"
-        text = f"a {title} and {byte_count(size)} of data is no message: {node} has {none}"
+        names = [f"`{variant.message.name}`" for variant in getattr(speaker.ids, other).get(id, ())]
+        absence = (
+            f"no {direction} with this id, but {other} {' or '.join(names)}" if names else "no message with this id"
+        )
+        text = f"a {title} and {byte_count(size)} of data is no message: {node} has {absence}"
         return Fault(rank + 300, text, f"`icdgen show {node}` lists its messages", 0, count, is_unknown=True)
     if not row.least <= size <= row.most:
         lengths = f"{row.least}" if row.least == row.most else f"{row.least} to {row.most}"

@@ -36,14 +36,14 @@ def recognize(
     if isinstance(text, bytes):
         return _readings(icd, speakers, Pasted(text), asked)
     lines = [line for line in text.splitlines() if line.strip()]
-    apart = _line_by_line(icd, speakers, lines, asked)
-    if apart and not asked.messages and all(one.id is not None for one in apart):
-        return apart
+    by_line = _line_by_line(icd, speakers, lines, asked)
+    if by_line and not asked.messages and all(reading.id is not None for reading in by_line):
+        return by_line
     try:
         return _readings(icd, speakers, read(text), asked)
     except (Ambiguous, BadHex, BadLength, NotFound):
-        if apart:
-            return apart
+        if by_line:
+            return by_line
         raise
 
 
@@ -53,28 +53,28 @@ def _line_by_line(icd: Icd, speakers: Sequence[Speaker], lines: Sequence[str], a
         return []
     with suppress(Ambiguous, BadHex, BadLength, NotFound):
         pasted = [read(line) for line in lines]
-        if not any(one.packets or one.form for one in pasted):
-            return [found for one in pasted for found in _readings(icd, speakers, one, asked)]
+        if not any(pasted_line.packets or pasted_line.form for pasted_line in pasted):
+            return [reading for pasted_line in pasted for reading in _readings(icd, speakers, pasted_line, asked)]
     return []
 
 
 def _readings(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Asked) -> list[Reading]:
     if pasted.packets and any(speaker.facts.can for speaker in speakers):
-        found = bus.readings(speakers, pasted.packets, asked)
+        results = bus.readings(speakers, pasted.packets, asked)
     else:
-        found = _framed(speakers, pasted.whole, asked) or _unframed(icd, speakers, pasted, asked)
-    left_out = [text for one in found for text in one.left_out]
-    found = asked.of(found)
-    if asked.messages and not any(map(asked.is_of, found)):
-        text = f"the frame is not {asked.names} but {found[0].title}"
+        results = _framed(speakers, pasted.whole, asked) or _unframed(icd, speakers, pasted, asked)
+    left_out = [text for reading in results for text in reading.left_out]
+    results = asked.of(results)
+    if asked.messages and not any(map(asked.is_of, results)):
+        text = f"the frame is not {asked.names} but {results[0].title}"
         raise NotFound(text, "leave the message out, or name that one")
     if asked.messages:
-        found = [one for one in found if asked.is_of(one)]
+        results = [reading for reading in results if asked.is_of(reading)]
     # The first reading has the reports. Restore them if the selection dropped it.
-    if not found[0].left_out:
-        found[0] = found[0].without(*left_out)
+    if not results[0].left_out:
+        results[0] = results[0].without(*left_out)
     note = (f"read as {pasted.form}",) if pasted.form else ()
-    return [_decoded(icd, one.noted(*note)) for one in found]
+    return [_decoded(icd, reading.noted(*note)) for reading in results]
 
 
 def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
@@ -102,13 +102,15 @@ def _framed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Read
             if data[:2] == bytes((framing.escape, framing.start)):
                 raise BadLength(_broken(events), 0, len(data), "the frame is cut off, or a byte of it is damaged")
             continue
-        found, wrong = match.each(bodies, partial(_of_body, talking, asked=asked))
+        matches, failures = match.each(bodies, partial(_of_body, talking, asked=asked))
         errors = [event.event for event in events if event.event != "message"]
-        left = [str(error) for error in wrong] + [f"the stream has an error: {one.replace('_', ' ')}" for one in errors]
+        left = [str(error) for error in failures] + [
+            f"the stream has an error: {error_name.replace('_', ' ')}" for error_name in errors
+        ]
         if decoder.pending > 1:
             left.append(_broken([]))
         around = match.around(decoder.discarded + decoder.pending, ())
-        return [found[0].without(*left).noted(*around), *found[1:]]
+        return [matches[0].without(*left).noted(*around), *matches[1:]]
     return []
 
 
@@ -144,11 +146,11 @@ def _broken(events: list[UartEvent]) -> str:
 
 
 def _of_body(speakers: Sequence[Speaker], body: bytes, asked: Asked) -> Reading:
-    found = match.by_id(speakers, body)
-    if not found:
+    candidates = match.by_id(speakers, body)
+    if not candidates:
         raise match.why_none(speakers, body)
-    one = match.decided(found, f"a frame with id {body[0]}", asked)
-    return replace(one, remarks=(f"framing with id {body[0]} removed", *one.remarks))
+    reading = match.decided(candidates, f"a frame with id {body[0]}", asked)
+    return replace(reading, remarks=(f"framing with id {body[0]} removed", *reading.remarks))
 
 
 def _unframed(icd: Icd, speakers: Sequence[Speaker], pasted: Pasted, asked: Asked) -> list[Reading]:
@@ -172,8 +174,8 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, asked: Asked) -> R
         raise BadLength("there are no bytes", 1, 0, "give a frame")
     fault = envelopes.begun(speakers, data)
     if asked.messages:
-        one = of_asked(icd, speakers[0], asked.messages, data)
-        return one.noted(f"the data begin like a packet: {fault.text}") if fault else one
+        reading = of_asked(icd, speakers[0], asked.messages, data)
+        return reading.noted(f"the data begin like a packet: {fault.text}") if fault else reading
     if fault:
         raise fault.error
     _refuse_pieces(speakers, data)
@@ -209,19 +211,19 @@ def _guessed(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> Reading:
     if any(map(asked.fits, plain)) and not any(map(asked.fits, with_id)):
         with_id = []
     if with_id:
-        one = match.decided(with_id, f"{given} beginning with the id {with_id[0].id}", asked)
-        others = [other for other in plain if other.key != one.key]
-        note = [f"without an id in front it could be {match.named(others)}"] if others else []
-        return one.noted(f"id {one.id} removed", *note)
+        reading = match.decided(with_id, f"{given} beginning with the id {with_id[0].id}", asked)
+        alternatives = [alternative for alternative in plain if alternative.key != reading.key]
+        note = [f"without an id in front it could be {match.named(alternatives)}"] if alternatives else []
+        return reading.noted(f"id {reading.id} removed", *note)
     if plain:
-        one = match.decided(plain, f"{given} without an id", asked)
-        return replace(one, id=None).noted("found by its length alone")
+        reading = match.decided(plain, f"{given} without an id", asked)
+        return replace(reading, id=None).noted("found by its length alone")
     raise match.why_none(speakers, data)
 
 
-def _decoded(icd: Icd, one: Reading) -> Reading:
+def _decoded(icd: Icd, reading: Reading) -> Reading:
     """Return a reading with its decoded frame, if it has data."""
-    if one.what not in KINDS:
-        return one
-    made = frame(icd, one.speaker.node, one.message, one.data)
-    return replace(one, frame=replace(made, remarks=(*one.remarks, *made.remarks)))
+    if reading.what not in KINDS:
+        return reading
+    decoded = frame(icd, reading.speaker.node, reading.message, reading.data)
+    return replace(reading, frame=replace(decoded, remarks=(*reading.remarks, *decoded.remarks)))

@@ -20,13 +20,13 @@ def of_asked(icd: Icd, speaker: Speaker, messages: Sequence[Message], data: byte
     """
     if len(messages) == 1:
         return of_message(icd, speaker, messages[0], data)
-    apart = speaker.taken_apart(data)
-    found = match.message_of(icd, messages, data)
-    if found is None and apart is not None and apart[0] in messages[0].ids:
-        found = match.message_of(icd, messages, apart[1])
-    if found is None:
+    parts = speaker.taken_apart(data)
+    message = match.message_of(icd, messages, data)
+    if message is None and parts is not None and parts[0] in messages[0].ids:
+        message = match.message_of(icd, messages, parts[1])
+    if message is None:
         raise match.none_of(messages, byte_count(len(data)))
-    return of_message(icd, speaker, found, data)
+    return of_message(icd, speaker, message, data)
 
 
 def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Reading:
@@ -34,22 +34,26 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
     plain = message.telecommand_id if message.telecommand_id is not None else message.telemetry_id
     assert plain is not None
     if len(data) in message.layout.lengths:
-        wrong = match.miscounted(speaker, message, data)
-        if wrong is not None:
-            raise wrong
+        error = match.miscounted(speaker, message, data)
+        if error is not None:
+            raise error
         return _reading(speaker, message, None, data)
-    apart = speaker.taken_apart(data)
-    for id, rest in [(None, data), *([apart] if apart and apart[0] in message.ids else [])]:
-        taken = () if id is None else (f"id {id} removed",)
-        for other in _talking(icd, speaker, message):
-            right = match.checksum(other, plain if id is None else id, message, rest)
-            if right is not None and rest[message.length :] == right:
-                return _reading(speaker, message, id, rest[: message.length], *taken, "CRC is right")
-        if id is not None and len(rest) in message.layout.lengths and match.miscounted(speaker, message, rest) is None:
-            return _reading(speaker, message, id, rest, *taken)
-    right = match.checksum(speaker, plain, message, data)
-    if right is not None:
-        raise match.wrong_checksum(message, right, data)
+    parts = speaker.taken_apart(data)
+    for id, remaining in [(None, data), *([parts] if parts and parts[0] in message.ids else [])]:
+        notes = () if id is None else (f"id {id} removed",)
+        for sender in _talking(icd, speaker, message):
+            expected = match.checksum(sender, plain if id is None else id, message, remaining)
+            if expected is not None and remaining[message.length :] == expected:
+                return _reading(speaker, message, id, remaining[: message.length], *notes, "CRC is right")
+        if (
+            id is not None
+            and len(remaining) in message.layout.lengths
+            and match.miscounted(speaker, message, remaining) is None
+        ):
+            return _reading(speaker, message, id, remaining, *notes)
+    expected = match.checksum(speaker, plain, message, data)
+    if expected is not None:
+        raise match.wrong_checksum(message, expected, data)
     help = f"`icdgen show {speaker.node.name} {shlex.quote(message.name)}` shows what it holds"
     text = f"{message.name} has {length_text(message)}, {len(data)} given"
     raise BadLength(text, message.length, len(data), help)
@@ -62,5 +66,5 @@ def _reading(speaker: Speaker, message: Message, id: int | None, data: bytes, *r
 
 def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[Speaker]:
     """Return the node and all nodes that include the message, which may add a checksum."""
-    others = (one for one in all_speakers(icd) if one.node is not speaker.node)
-    return [speaker, *(other for other in others if message in icd.messages_of(other.node))]
+    speakers = (candidate for candidate in all_speakers(icd) if candidate.node is not speaker.node)
+    return [speaker, *(including for including in speakers if message in icd.messages_of(including.node))]

@@ -30,16 +30,16 @@ def each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Reading
 
     Raise the first error if there are no readings.
     """
-    found: list[Reading] = []
-    wrong: list[UserError] = []
+    readings: list[Reading] = []
+    errors: list[UserError] = []
     for item in items:
         try:
-            found.append(read(item))
+            readings.append(read(item))
         except (Ambiguous, BadLength, NotFound) as error:
-            wrong.append(error)
-    if not found:
-        raise wrong[0]
-    return found, wrong
+            errors.append(error)
+    if not readings:
+        raise errors[0]
+    return readings, errors
 
 
 def around(lost: int, errors: Iterable[str]) -> list[str]:
@@ -50,56 +50,56 @@ def around(lost: int, errors: Iterable[str]) -> list[str]:
 
 def by_id(speakers: Sequence[Speaker], body: bytes) -> list[Reading]:
     """Return all candidates for an id and the bytes after it."""
-    return _each_once(found for speaker in speakers for found in _of_speaker(speaker, body))
+    return _each_once(reading for speaker in speakers for reading in _of_speaker(speaker, body))
 
 
-def of_ids(known: Sequence[tuple[Speaker, int]], data: bytes) -> list[Reading]:
+def of_ids(ids: Sequence[tuple[Speaker, int]], data: bytes) -> list[Reading]:
     """Return all candidates for data whose ids are not in front of it. Each speaker has its id."""
-    return _each_once(found for speaker, id in known for found in _with_id(speaker, id, data))
+    return _each_once(reading for speaker, id in ids for reading in _with_id(speaker, id, data))
 
 
 def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
     """Return all candidates for bytes without an id, by length and by a matching checksum."""
     return _each_once(
-        found
+        reading
         for speaker in speakers
-        for what, known in _directions(speaker)
-        for id in known
-        for found in _with_checksum(speaker, what, id, _message(speaker, known, id, data), data)
+        for what, variants in _directions(speaker)
+        for id in variants
+        for reading in _with_checksum(speaker, what, id, _message(speaker, variants, id, data), data)
     )
 
 
 def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
     """Return the candidates of a node for an id and the bytes after it."""
-    apart, facts = speaker.taken_apart(body), speaker.facts
-    if apart is None:
+    parts, facts = speaker.taken_apart(body), speaker.facts
+    if parts is None:
         return
-    yield from _with_id(speaker, *apart)
+    yield from _with_id(speaker, *parts)
     form = facts.acknowledge
-    if form and len(body) == form.length and apart[0] not in facts.telemetry:
-        told, error = body[form.id_at], body[form.error_at]
-        if told in facts.telecommands:
-            yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
+    if form and len(body) == form.length and parts[0] not in facts.telemetry:
+        acknowledged, error = body[form.id_at], body[form.error_at]
+        if acknowledged in facts.telecommands:
+            yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[acknowledged], acknowledged, error=error)
 
 
 def _with_id(speaker: Speaker, id: int, data: bytes) -> Iterator[Reading]:
     """Return the candidates of a node for an id and separate data."""
-    for what, known in _directions(speaker):
-        message = _message(speaker, known, id, data)
+    for what, variants in _directions(speaker):
+        message = _message(speaker, variants, id, data)
         yield from _with_checksum(speaker, what, id, message, data)
         if message and what == TELEMETRY and not data and message.layout.shortest:
             yield Reading(speaker, REQUEST, message, id)
 
 
-def message_of(icd: Icd, known: Sequence[Message], data: bytes) -> Message | None:
+def message_of(icd: Icd, messages: Sequence[Message], data: bytes) -> Message | None:
     """Return the message of an id.
 
     If several messages share the id, the data selects one. Return None if none matches.
     """
-    if len(known) < 2:
-        return known[0] if known else None
+    if len(messages) < 2:
+        return messages[0] if messages else None
     try:
-        return codec.message_of_frame(icd, known, data)
+        return codec.message_of_frame(icd, messages, data)
     except codec.LengthError:
         return None
 
@@ -108,8 +108,8 @@ def _directions(speaker: Speaker) -> tuple[tuple[str, dict[int, tuple[Variant, .
     return (TELECOMMAND, speaker.ids.telecommand), (TELEMETRY, speaker.ids.telemetry)
 
 
-def _message(speaker: Speaker, known: Mapping[int, Sequence[Variant]], id: int, data: bytes) -> Message | None:
-    return message_of(speaker.icd, [one.message for one in known.get(id, ())], data)
+def _message(speaker: Speaker, variants: Mapping[int, Sequence[Variant]], id: int, data: bytes) -> Message | None:
+    return message_of(speaker.icd, [variant.message for variant in variants.get(id, ())], data)
 
 
 def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None, data: bytes) -> Iterator[Reading]:
@@ -119,8 +119,8 @@ def _with_checksum(speaker: Speaker, what: str, id: int, message: Message | None
     if len(data) in message.layout.lengths and miscounted(speaker, message, data) is None:
         yield Reading(speaker, what, message, id, data)
         return
-    right = checksum(speaker, id, message, data)
-    if right is not None and data[message.length :] == right:
+    expected = checksum(speaker, id, message, data)
+    if expected is not None and data[message.length :] == expected:
         yield Reading(speaker, what, message, id, data[: message.length], checked=True, remarks=("CRC is right",))
 
 
@@ -132,36 +132,40 @@ def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes 
     return i2c_write(speaker.link, id, data[: message.length], crc=True)[-form.bytes :]
 
 
-def decided(found: Sequence[Reading], of: str, asked: Asked) -> Reading:
+def decided(candidates: Sequence[Reading], of: str, asked: Asked) -> Reading:
     """Return the most likely reading, with a remark about others. Raise `Ambiguous`.
 
     The message that the user has named has precedence, then a right checksum. An
     acknowledge is less likely than other messages. If the named message has equal
     frames in both directions, the direction remains open.
     """
-    found = asked.of(found)
-    likely = [one for one in found if one.checked] or [one for one in found if one.what != ACKNOWLEDGE] or list(found)
-    if len(likely) > 1 and all(asked.is_of(one) and one.what in KINDS for one in likely):
-        first, *others = likely
-        if all(other.message is first.message and other.data == first.data for other in others):
+    candidates = asked.of(candidates)
+    likely = (
+        [reading for reading in candidates if reading.checked]
+        or [reading for reading in candidates if reading.what != ACKNOWLEDGE]
+        or list(candidates)
+    )
+    if len(likely) > 1 and all(asked.is_of(reading) and reading.what in KINDS for reading in likely):
+        first, *alternatives = likely
+        if all(alternative.message is first.message and alternative.data == first.data for alternative in alternatives):
             return replace(first, what=first.message.kind)
     if len(likely) > 1:
-        wrong = f", not {asked.names}" if asked.messages and not any(map(asked.is_of, likely)) else ""
-        raise Ambiguous(f"{of} can be {named(likely)}{wrong}", HELP)
-    others = [one for one in found if one.key != likely[0].key]
-    return likely[0].noted(f"it can also be {named(others)}") if others else likely[0]
+        contrast = f", not {asked.names}" if asked.messages and not any(map(asked.is_of, likely)) else ""
+        raise Ambiguous(f"{of} can be {named(likely)}{contrast}", HELP)
+    alternatives = [reading for reading in candidates if reading.key != likely[0].key]
+    return likely[0].noted(f"it can also be {named(alternatives)}") if alternatives else likely[0]
 
 
 def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
     """Return the error for bytes whose id or length matches no message."""
-    apart: list[Apart] = [(speaker, both) for speaker in speakers if (both := speaker.taken_apart(body)) is not None]
-    if not apart:
+    parts: list[Apart] = [(speaker, part) for speaker in speakers if (part := speaker.taken_apart(body)) is not None]
+    if not parts:
         size = min(wire_ids.size(speaker.node.id_bits) for speaker in speakers)
         text = f"an id of {nodes_of(speakers)} has {size} bytes, {len(body)} given"
         return BadLength(text, size, len(body), "bytes are missing")
-    ids = " or ".join(dict.fromkeys(f"{id} (0x{id:02X})" for _, (id, _) in apart))
+    ids = " or ".join(dict.fromkeys(f"{id} (0x{id:02X})" for _, (id, _) in parts))
     text = f"no message of {nodes_of(speakers)} has the id {ids}"
-    return why_not(apart, NotFound(text, "`icdgen show NODE` lists what there is"))
+    return why_not(parts, NotFound(text, "`icdgen show NODE` lists what there is"))
 
 
 def nodes_of(speakers: Sequence[Speaker]) -> str:
@@ -169,38 +173,40 @@ def nodes_of(speakers: Sequence[Speaker]) -> str:
     return ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
 
 
-def why_not(apart: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
+def why_not(parts: Sequence[Apart], unknown: NotFound) -> BadLength | NotFound:
     """Return the error for the data of these ids, or ``unknown`` if no message has them."""
-    known = {
+    candidates = {
         (what, message.node, message.name): (speaker, message, id, data)
-        for speaker, (id, data) in apart
+        for speaker, (id, data) in parts
         for what, messages in _directions(speaker)
         for message, *_ in messages.get(id, ())
     }
-    if not known:
+    if not candidates:
         return unknown
-    for speaker, message, id, data in known.values():
-        right = checksum(speaker, id, message, data)
-        if right is not None:
-            return wrong_checksum(message, right, data)
-        wrong = miscounted(speaker, message, data) if len(data) in message.layout.lengths else None
-        if wrong is not None:
-            return wrong
-    told = " or ".join(
-        f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}" for s, m, _, _ in known.values()
+    for speaker, message, id, data in candidates.values():
+        expected = checksum(speaker, id, message, data)
+        if expected is not None:
+            return wrong_checksum(message, expected, data)
+        error = miscounted(speaker, message, data) if len(data) in message.layout.lengths else None
+        if error is not None:
+            return error
+    listed = " or ".join(
+        f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}" for s, m, _, _ in candidates.values()
     )
-    _, first, id, data = next(iter(known.values()))
-    if len(known) > 1 and any(len(data) in message.layout.lengths for _, message, _, data in known.values()):
-        return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
-    text = f"{told}, {len(data)} given after the id {id}"
+    _, first, id, data = next(iter(candidates.values()))
+    if len(candidates) > 1 and any(len(data) in message.layout.lengths for _, message, _, data in candidates.values()):
+        return none_of(
+            [message for _, message, _, _ in candidates.values()], f"the {len(data)} bytes after the id {id}"
+        )
+    text = f"{listed}, {len(data)} given after the id {id}"
     return BadLength(text, first.length, len(data), "bytes are missing, or too many")
 
 
 def none_of(messages: Sequence[Message], data: str) -> NotFound:
     """Return the error for data that matches none of several messages that share an id."""
-    told = ", ".join(f"`{message.name}` ({describe(message)}, {length_text(message)})" for message in messages)
+    listed = ", ".join(f"`{message.name}` ({describe(message)}, {length_text(message)})" for message in messages)
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"
-    return NotFound(f"{data} are like none of {told}, by length and constants", help)
+    return NotFound(f"{data} are like none of {listed}, by length and constants", help)
 
 
 def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | None:
@@ -209,32 +215,32 @@ def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | N
         codec.decode(speaker.icd.node(message.node), message, data)
     except codec.LengthError as error:
         parts = message.layout.parts
-        said = f"`{parts[0].counter}` says" if len(parts) == 1 else "they say"
-        text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {said}"
+        source = f"`{parts[0].counter}` says" if len(parts) == 1 else "they say"
+        text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {source}"
         return BadLength(text, error.expected, error.actual, "bytes are missing, or too many, or damaged")
     return None
 
 
-def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:
+def wrong_checksum(message: Message, expected: bytes, data: bytes) -> BadLength:
     """Return the error for data with a wrong checksum."""
-    text = f"`{message.name}` has {message.length} bytes; as CRC after them {right.hex().upper()} would be right, "
+    text = f"`{message.name}` has {message.length} bytes; as CRC after them {expected.hex().upper()} would be right, "
     help = "a byte was damaged, or there are too many"
     return BadLength(f"{text}not {data[message.length :].hex().upper()}", message.length, len(data), help)
 
 
-def _each_once(found: Iterable[Reading]) -> list[Reading]:
+def _each_once(readings: Iterable[Reading]) -> list[Reading]:
     """Return one reading per message and direction, if several nodes have the message.
 
     A reading with a checksum has precedence, then the node that declares the message.
     """
-    alike: dict[tuple[str, str, str], list[Reading]] = {}
-    for one in found:
-        alike.setdefault(one.key, []).append(one)
-    return [max(those, key=lambda one: (one.checked, one.is_own)) for those in alike.values()]
+    by_key: dict[tuple[str, str, str], list[Reading]] = {}
+    for reading in readings:
+        by_key.setdefault(reading.key, []).append(reading)
+    return [max(group, key=lambda reading: (reading.checked, reading.is_own)) for group in by_key.values()]
 
 
-def named(found: Sequence[Reading]) -> str:
+def named(readings: Sequence[Reading]) -> str:
     """Return the titles of the first readings, for a report. Each title is given once."""
-    every = list(dict.fromkeys(one.title for one in found))
-    titles, rest = every[:MOST_LISTED], len(every) - MOST_LISTED
-    return ", or ".join(titles) + (f", or one of {rest} others" if rest > 0 else "")
+    all_titles = list(dict.fromkeys(reading.title for reading in readings))
+    titles, remaining = all_titles[:MOST_LISTED], len(all_titles) - MOST_LISTED
+    return ", or ".join(titles) + (f", or one of {remaining} others" if remaining > 0 else "")

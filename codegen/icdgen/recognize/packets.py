@@ -44,8 +44,8 @@ def packets(text: str) -> list[Printed] | None:
     Return None if a line is not a packet, or if its number of bytes is wrong.
     """
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    found = [packet for line in lines for packet in _packet(line)]
-    return found if found and len(found) == len(lines) else None
+    result = [packet for line in lines for packet in _packet(line)]
+    return result if result and len(result) == len(lines) else None
 
 
 def _packet(line: str) -> Iterator[Printed]:

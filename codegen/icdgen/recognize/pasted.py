@@ -53,8 +53,8 @@ class Pasted:
 
 def read(text: str) -> Pasted:
     """Return the bytes or packets of a text. Raise `BadHex`, with the position of the error."""
-    if found := packets(text):
-        return Pasted(packets=tuple(found))
+    if can_packets := packets(text):
+        return Pasted(packets=tuple(can_packets))
     if (data := dump(text)) is not None:
         return Pasted(data, form="a dump with addresses")
     literal = _LITERAL.fullmatch(text.strip())
@@ -63,14 +63,16 @@ def read(text: str) -> Pasted:
     try:
         return Pasted(parse_hex(text))
     except BadHex:
-        other = _of_code(_COMMENT.sub(" ", text)) or _labelled(text) or _marked(text) or _decimal(text) or _base64(text)
-        if other is None:
+        pasted = (
+            _of_code(_COMMENT.sub(" ", text)) or _labelled(text) or _marked(text) or _decimal(text) or _base64(text)
+        )
+        if pasted is None:
             raise
-        return other
+        return pasted
 
 
 def _unescaped(text: str) -> bytes | None:
-    found = bytearray()
+    result = bytearray()
     for escape, plain in _ESCAPE.findall(text):
         if plain:
             value = ord(plain)
@@ -80,8 +82,8 @@ def _unescaped(text: str) -> bytes | None:
             value = _ESCAPED.get(escape, 256)
         if value > 255:
             return None
-        found.append(value)
-    return bytes(found)
+        result.append(value)
+    return bytes(result)
 
 
 def _of_code(text: str) -> Pasted | None:

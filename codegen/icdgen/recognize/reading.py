@@ -93,15 +93,15 @@ class Reading:
     @property
     def title(self) -> str:
         """Description for a report, such as ``request for Attitude (telemetry 146)``."""
-        told = (
+        described = (
             f"`{self.message.name}` ({describe(self.message, self.speaker.facts.stream)}) of {self.speaker.node.name}"
         )
         if self.what in KINDS:
-            return told
+            return described
         if self.error is None:
-            return f"{self.what} {'for' if self.what == REQUEST else 'of'} {told}"
-        named = [key.replace("_", " ") for key, code in self.speaker.facts.errors.items() if code == self.error]
-        return f"{self.what} of {told}: error {self.error}" + (f" ({named[0]})" if named else "")
+            return f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"
+        labels = [key.replace("_", " ") for key, code in self.speaker.facts.errors.items() if code == self.error]
+        return f"{self.what} of {described}: error {self.error}" + (f" ({labels[0]})" if labels else "")
 
     @property
     def has_wrong_constant(self) -> bool:
@@ -110,12 +110,12 @@ class Reading:
 
     def noted(self, *remarks: str) -> Reading:
         """Return a copy with further remarks."""
-        shown = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
-        return replace(self, frame=shown, remarks=(*self.remarks, *remarks))
+        frame = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
+        return replace(self, frame=frame, remarks=(*self.remarks, *remarks))
 
     def without(self, *left_out: str) -> Reading:
         """Return a copy with reports about packets of the input that cannot be decoded."""
-        notes = [f"left out: {one}" for one in left_out]
+        notes = [f"left out: {report}" for report in left_out]
         return replace(self.noted(*notes), left_out=(*self.left_out, *left_out))
 
     def to_json(self) -> dict[str, object]:
@@ -126,10 +126,10 @@ class Reading:
         time: dict[str, object] = {"time": self.time} if self.time else {}
         if self.frame is not None:
             return {**self.frame.to_json(), "direction": self.what, **time}
-        found: dict[str, object] = {
+        values: dict[str, object] = {
             "node": self.speaker.node.name,
             "message": self.message.name,
             "direction": self.what,
         }
-        found |= {"id": self.id} | ({} if self.error is None else {"error": self.error}) | time
-        return found | ({"remarks": list(self.remarks)} if self.remarks else {})
+        values |= {"id": self.id} | ({} if self.error is None else {"error": self.error}) | time
+        return values | ({"remarks": list(self.remarks)} if self.remarks else {})
