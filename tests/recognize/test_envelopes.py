@@ -33,7 +33,7 @@ CASES = [
 @pytest.mark.parametrize("is_named", [False, True])
 def test_a_frame_is_found_with_its_node_direction_and_message(node, direction, id, data, is_named):
     (found,) = recognize(ICD, sent(node, direction, id, data).hex(" "), node if is_named else None)
-    assert (found.speaker.node.name, found.what, found.id, found.data) == (node, direction, id, data)
+    assert (found.endpoint.node.name, found.what, found.id, found.data) == (node, direction, id, data)
     assert found.frame.data == data and "envelope with id" in found.remarks[0]
 
 

@@ -20,7 +20,7 @@ def test_data_in_any_spelling_are_the_same_frame(shipped, way):
 @pytest.mark.parametrize("way", WHOLE)
 def test_a_frame_that_says_what_it_is_needs_no_name(shipped, way):
     found = [recognize(shipped, WHOLE[way], *names) for names in [(), ("cubeacp",), ("cubeacp", "146")]]
-    assert {(one.speaker.node.name, one.message.id, one.what, one.data) for (one,) in found} == {
+    assert {(one.endpoint.node.name, one.message.id, one.what, one.data) for (one,) in found} == {
         ("cubeacp", 146, "telemetry", DATA)
     }
 

@@ -15,7 +15,7 @@ from icdgen.icd.fmt import format_text
 from icdgen.loading import load
 from icdgen.recognize import recognize
 from icdgen.recognize.envelopes import sync_of
-from icdgen.recognize.reading import speaker_of
+from icdgen.recognize.reading import endpoint_of
 from icdgen.site import make, write
 from icdgen.vectors.make import make as golden
 from tests.conftest import ROOT
@@ -100,7 +100,7 @@ def test_the_page_of_a_message_takes_no_piece_of_a_packet_for_its_data_in_silenc
             })).filter((one) => typeof one === "string")""",
             [facts, message.length, cuts],
         )
-        has_sync = bool(sync_of(speaker_of(icd, icd.nodes[0])))
+        has_sync = bool(sync_of(endpoint_of(icd, icd.nodes[0])))
         assert found == [] or not has_sync, message.name
 
 

@@ -46,7 +46,7 @@ def on_the_command_line(icd, text: str) -> object:
         return "ambiguous"
     except UserError:
         return None
-    return [[one.speaker.node.name, one.message.name, one.what, one.data.hex(), one.id] for one in found]
+    return [[one.endpoint.node.name, one.message.name, one.what, one.data.hex(), one.id] for one in found]
 
 
 def streams(icd) -> list[str]:

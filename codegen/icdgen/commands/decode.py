@@ -46,7 +46,7 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     # The user may have meant an id that the node does not have.
     if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
         note = f"{node} has no message {arguments[1]}: it is taken for the first byte of the frame"
-        readings = [reading if reading.id is not None else reading.noted(note) for reading in readings]
+        readings = [reading if reading.id is not None else reading.with_remarks(note) for reading in readings]
     {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](readings)
     left_out = [text for reading in readings for text in reading.left_out]
     if form == "csv":  # the other forms have it among the remarks
@@ -221,7 +221,7 @@ def _print_csv(readings: Sequence[Reading]) -> None:
     for number, reading in enumerate(readings):
         start = (
             number,
-            reading.speaker.node.name,
+            reading.endpoint.node.name,
             reading.message.name,
             reading.what,
             "" if reading.id is None else reading.id,

@@ -12,9 +12,9 @@ from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 from icdgen.icd import wire_ids
 from icdgen.protocol.sections import CAN_WITH_DATA
 from icdgen.recognize import match
-from icdgen.recognize.asked import Asked
 from icdgen.recognize.packets import Printed
-from icdgen.recognize.reading import ACKNOWLEDGE, REFUSAL, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
+from icdgen.recognize.reading import ACKNOWLEDGE, REFUSAL, REQUEST, TELECOMMAND, TELEMETRY, Endpoint, Reading
+from icdgen.recognize.selection import Selection
 from icdgen.values.errors import BadLength, NotFound
 
 _WHAT = {
@@ -23,7 +23,7 @@ _WHAT = {
 }  # fmt: skip
 
 
-def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
+def readings(endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection) -> list[Reading]:
     """Return the messages in the packets, in their order.
 
     Raise `NotFound`, `BadLength` or `Ambiguous`.
@@ -33,104 +33,104 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Ask
         raise NotFound(text, "candump prints them with 8 digits")
     sent = [CanPacket(packet.id, packet.data) for packet in packets]
     times = [packet.time for packet in packets]
-    can_speakers = [speaker for speaker in speakers if speaker.facts.can]
-    per_speaker = [_of_speaker(speaker, sent, times) for speaker in can_speakers]
-    most = max(len(result) for result in per_speaker)
+    can_endpoints = [endpoint for endpoint in endpoints if endpoint.facts.can]
+    per_endpoint = [_of_endpoint(endpoint, sent, times) for endpoint in can_endpoints]
+    most = max(len(result) for result in per_endpoint)
     if most == 0:
-        raise _why_none(can_speakers[0], sent)
-    complete = [result for result in per_speaker if len(result) == most]
-    chosen = [_chosen([result[number] for result in complete], asked) for number in range(most)]
-    left = _left_out(complete[0][0].speaker, sent) - most
+        raise _no_message_error(can_endpoints[0], sent)
+    complete = [result for result in per_endpoint if len(result) == most]
+    chosen = [_chosen([result[number] for result in complete], selection) for number in range(most)]
+    left = _left_out(complete[0][0].endpoint, sent) - most
     note = [f"{left} of the CAN messages are no message of the ICD, or not complete"] if left else []
-    return [chosen[0].without(*note), *chosen[1:]]
+    return [chosen[0].with_left_out(*note), *chosen[1:]]
 
 
-def by_identifier(speakers: Sequence[Speaker], packets: Sequence[Printed], asked: Asked) -> list[Reading]:
+def by_identifier(endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection) -> list[Reading]:
     """Return the message of each packet whose CAN identifier is the id.
 
     Raise `NotFound`, `BadLength` or `Ambiguous` if no packet is a message.
     """
-    matches, errors = match.each(packets, lambda packet: _by_identifier(speakers, packet, asked))
+    matches, errors = match.read_each(packets, lambda packet: _by_identifier(endpoints, packet, selection))
     reports = [f"{error} ({count} CAN packet{'s' * (count > 1)})" for error, count in Counter(map(str, errors)).items()]
-    return [matches[0].without(*reports), *matches[1:]]
+    return [matches[0].with_left_out(*reports), *matches[1:]]
 
 
-def _by_identifier(speakers: Sequence[Speaker], packet: Printed, asked: Asked) -> Reading:
+def _by_identifier(endpoints: Sequence[Endpoint], packet: Printed, selection: Selection) -> Reading:
     ids = [
-        (speaker, id)
-        for speaker in speakers
-        if (id := wire_ids.of_can(packet.id, packet.extended, speaker.node.id_bits)) is not None
+        (endpoint, id)
+        for endpoint in endpoints
+        if (id := wire_ids.of_can(packet.id, packet.extended, endpoint.node.id_bits)) is not None
     ]
     candidates = match.of_ids(ids, packet.data)
     if not candidates:
-        text = f"no message of {match.nodes_of(speakers)} has the CAN identifier {packet.identifier}"
+        text = f"no message of {match.nodes_of(endpoints)} has the CAN identifier {packet.identifier}"
         help = "`icdgen show NODE` lists what there is; name the message to have the bytes read all the same"
-        raise match.why_not([(speaker, (id, packet.data)) for speaker, id in ids], NotFound(text, help))
-    reading = match.decided(candidates, f"a packet with the CAN identifier {packet.identifier}", asked)
-    return replace(reading, time=packet.time).noted(f"CAN identifier {packet.identifier} removed")
+        raise match.data_error([(endpoint, (id, packet.data)) for endpoint, id in ids], NotFound(text, help))
+    reading = match.most_likely(candidates, f"a packet with the CAN identifier {packet.identifier}", selection)
+    return replace(reading, time=packet.time).with_remarks(f"CAN identifier {packet.identifier} removed")
 
 
-def _of_speaker(speaker: Speaker, packets: list[CanPacket], times: list[str]) -> list[Reading]:
-    joiner = CanJoiner(speaker.link, senders=len(packets))
+def _of_endpoint(endpoint: Endpoint, packets: list[CanPacket], times: list[str]) -> list[Reading]:
+    joiner = CanJoiner(endpoint.link, senders=len(packets))
     result = []
     for packet, time in zip(packets, times, strict=True):
         for event in joiner.feed(0, packet):
-            reading = _reading(speaker, event.message) if event.message else None
+            reading = _reading(endpoint, event.message) if event.message else None
             if reading is not None:
                 result.append(replace(reading, time=time))  # time of the packet that completes the message
     return result
 
 
-def _reading(speaker: Speaker, can_message: CanMessage) -> Reading | None:
+def _reading(endpoint: Endpoint, can_message: CanMessage) -> Reading | None:
     sends = can_message.kind in ("telecommand", "acknowledge", "refusal")
-    message = (speaker.facts.telecommands if sends else speaker.facts.telemetry).get(can_message.id)
+    message = (endpoint.facts.telecommands if sends else endpoint.facts.telemetry).get(can_message.id)
     if message is None or (can_message.kind in CAN_WITH_DATA and len(can_message.data) != message.length):
         return None
     way = f"CAN, from address {can_message.source} to {can_message.destination}"
-    return Reading(speaker, _WHAT[can_message.kind], message, can_message.id, can_message.data, remarks=(way,))
+    return Reading(endpoint, _WHAT[can_message.kind], message, can_message.id, can_message.data, remarks=(way,))
 
 
-def _left_out(speaker: Speaker, packets: list[CanPacket]) -> int:
+def _left_out(endpoint: Endpoint, packets: list[CanPacket]) -> int:
     """Return the number of messages that the packets begin, known or unknown."""
-    events, waiting = _told(speaker, packets)
+    events, waiting = _can_events(endpoint, packets)
     return len([event for event in events if event.event != "duplicate"]) + len(waiting)
 
 
-def _told(speaker: Speaker, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
+def _can_events(endpoint: Endpoint, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
     """Return the events of the packets, and those of messages that lack packets."""
-    joiner = CanJoiner(speaker.link, senders=len(packets))
+    joiner = CanJoiner(endpoint.link, senders=len(packets))
     return [event for packet in packets for event in joiner.feed(0, packet)], joiner.expire(math.inf)
 
 
-def _came(speaker: Speaker, packets: list[CanPacket]) -> int:
+def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
     """Return the number of packets of the first incomplete message.
 
     All packets of a message have one identifier.
     """
     for id in dict.fromkeys(packet.id for packet in packets):
         own = list(dict.fromkeys(packet for packet in packets if packet.id == id))
-        if _told(speaker, own)[1]:
+        if _can_events(endpoint, own)[1]:
             return len(own)
     return 0
 
 
-def _chosen(candidates: list[Reading], asked: Asked) -> Reading:
+def _chosen(candidates: list[Reading], selection: Selection) -> Reading:
     different = {
         reading.key: reading for reading in (*candidates, *(reading for reading in candidates if reading.is_own))
     }
-    return match.decided(list(different.values()), f"a CAN message with id {candidates[0].id}", asked)
+    return match.most_likely(list(different.values()), f"a CAN message with id {candidates[0].id}", selection)
 
 
-def _why_none(speaker: Speaker, packets: list[CanPacket]) -> BadLength | NotFound:
+def _no_message_error(endpoint: Endpoint, packets: list[CanPacket]) -> BadLength | NotFound:
     """Return the error for packets without a message of the node."""
-    events, waiting = _told(speaker, packets)
+    events, waiting = _can_events(endpoint, packets)
     event = events[0] if events else None
     if waiting and not any(candidate.message for candidate in events):
-        received, missing = _came(speaker, packets), waiting[0].missing
+        received, missing = _received_count(endpoint, packets), waiting[0].missing
         text = f"{missing} of {received + missing} packets of the message with id {waiting[0].id} are missing"
         return BadLength(text, received + missing, received, "give all packets of the message")
     if event and event.message:
-        return match.why_none([speaker], bytes([event.message.id]) + event.message.data)
+        return match.no_match_error([endpoint], bytes([event.message.id]) + event.message.data)
     text = event.event.replace("_", " ") if event else "no message"
-    what = f"the packet with identifier 0x{packets[0].id:08X} is none of {speaker.node.name}"
+    what = f"the packet with identifier 0x{packets[0].id:08X} is none of {endpoint.node.name}"
     return NotFound(f"{what}: {text}", "see the `can` section of its ICD")

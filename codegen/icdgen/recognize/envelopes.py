@@ -11,9 +11,9 @@ from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
 
 from icdgen.describe.ids import id_text
 from icdgen.recognize import faults, match
-from icdgen.recognize.asked import Asked
 from icdgen.recognize.faults import Fault
-from icdgen.recognize.reading import Reading, Speaker
+from icdgen.recognize.reading import Endpoint, Reading
+from icdgen.recognize.selection import Selection
 
 DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 
@@ -33,11 +33,11 @@ class Span(NamedTuple):
         return taken.find(1, self.at, self.end) < 0
 
 
-class _Listener(StreamDecoder):
+class _RecordingDecoder(StreamDecoder):
     """Decoder that also records the position and the bytes of each packet."""
 
-    def __init__(self, speaker: Speaker, direction: Direction) -> None:
-        super().__init__(speaker.link, direction)
+    def __init__(self, endpoint: Endpoint, direction: Direction) -> None:
+        super().__init__(endpoint.link, direction)
         self.packets: dict[int, tuple[Span, bytes]] = {}  # by the index of the event
         self._at = self._end = 0
 
@@ -63,10 +63,10 @@ class _Listener(StreamDecoder):
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
+class DirectionResult:
     """Messages and faults of one direction. ``lost`` is the number of unused bytes."""
 
-    speaker: Speaker
+    endpoint: Endpoint
     direction: Direction
     lost: int
     readings: list[Reading] = field(default_factory=list)
@@ -74,7 +74,7 @@ class Heard:
     faults: list[tuple[Span, Fault]] = field(default_factory=list)
 
 
-def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Reading]:
+def readings(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> list[Reading]:
     """Return the messages in the data, including those of the other direction.
 
     The direction with the fewest unused bytes is chosen, among those with a message
@@ -84,18 +84,23 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
     and `Ambiguous`.
     """
     results = [
-        _heard(speaker, direction, data) for speaker in speakers if speaker.facts.stream for direction in DIRECTIONS
+        _decode_direction(endpoint, direction, data)
+        for endpoint in endpoints
+        if endpoint.facts.stream
+        for direction in DIRECTIONS
     ]
-    usable = [result for result in results if result.readings and (result.lost == 0 or _is_marked(result.speaker))]
+    usable = [result for result in results if result.readings and (result.lost == 0 or _is_marked(result.endpoint))]
     if not usable:
         if fault := _likeliest(results):
             raise fault.error
         return []
-    usable = [result for result in usable if any(map(asked.fits, result.readings))] or usable
+    usable = [result for result in usable if any(map(selection.fits, result.readings))] or usable
     least, fewer = min((result.lost, -len(result.readings)) for result in usable)
     best = [result for result in usable if (result.lost, -len(result.readings)) == (least, fewer)]
     chosen = {
-        best[0].spans[at]: match.decided([result.readings[at] for result in best], "a frame in an envelope", asked)
+        best[0].spans[at]: match.most_likely(
+            [result.readings[at] for result in best], "a frame in an envelope", selection
+        )
         for at in range(-fewer)
     }
     taken = bytearray(len(data))
@@ -104,7 +109,7 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
     opposite = [
         result
         for result in usable
-        if result not in best and any(result.speaker is candidate.speaker for candidate in best)
+        if result not in best and any(result.endpoint is candidate.endpoint for candidate in best)
     ]
     for candidate in opposite:
         for span, reading in zip(candidate.spans, candidate.readings, strict=True):
@@ -112,24 +117,24 @@ def readings(speakers: Sequence[Speaker], data: bytes, asked: Asked) -> list[Rea
                 chosen[span] = reading
                 span.mark(taken)
                 least -= span.end - span.at
-    reports = _left_out([result for result in results if result.speaker is best[0].speaker], taken)
+    reports = _left_out([result for result in results if result.endpoint is best[0].endpoint], taken)
     first, *remaining = [chosen[span] for span in sorted(chosen)]
-    return [first.without(*reports).noted(*match.around(least, ())), *remaining]
+    return [first.with_left_out(*reports).with_remarks(*match.stream_remarks(least, ())), *remaining]
 
 
-def begun(speakers: Sequence[Speaker], data: bytes) -> Fault | None:
+def begun(endpoints: Sequence[Endpoint], data: bytes) -> Fault | None:
     """Return the fault of bytes that begin like a packet, otherwise None."""
     found_faults = []
-    for speaker in speakers:
-        form = speaker.link.stream
+    for endpoint in endpoints:
+        form = endpoint.link.stream
         for direction in DIRECTIONS if form else ():
             if form and faults.begins_packet(form, direction, data):
-                packet = faults.packet_begun(speaker, direction, data)
-                found_faults.append(faults.fault_of(speaker, direction, *packet))
+                packet = faults.packet_begun(endpoint, direction, data)
+                found_faults.append(faults.fault_of(endpoint, direction, *packet))
     return max(filter(None, found_faults), key=lambda fault: fault.rank, default=None)
 
 
-def _left_out(results: Sequence[Heard], taken: bytearray) -> list[str]:
+def _left_out(results: Sequence[DirectionResult], taken: bytearray) -> list[str]:
     """Return the faults of all other packets.
 
     If both directions explain a packet, the better match of its header is used.
@@ -146,9 +151,9 @@ def _left_out(results: Sequence[Heard], taken: bytearray) -> list[str]:
     return texts
 
 
-def sync_of(speaker: Speaker) -> str:
+def sync_of(endpoint: Endpoint) -> str:
     """Return the first bytes of the packets of a node, for a report."""
-    form = speaker.link.stream
+    form = endpoint.link.stream
     return (
         " or ".join(filter(None, dict.fromkeys(faults.sync_text(form, direction) for direction in DIRECTIONS)))
         if form
@@ -156,60 +161,60 @@ def sync_of(speaker: Speaker) -> str:
     )
 
 
-def _likeliest(results: Sequence[Heard]) -> Fault | None:
+def _likeliest(results: Sequence[DirectionResult]) -> Fault | None:
     """Return the fault of the first packet, for the direction whose header matches best."""
-    firsts = [result.faults[0] for result in results if result.faults and _is_marked(result.speaker)]
+    firsts = [result.faults[0] for result in results if result.faults and _is_marked(result.endpoint)]
     at = min((span.at for span, _ in firsts), default=0)
     fitting = [fault for span, fault in firsts if span.at == at]
     return max(fitting, key=lambda fault: fault.rank, default=None)
 
 
-def _is_marked(speaker: Speaker) -> bool:
+def _is_marked(endpoint: Endpoint) -> bool:
     """Return whether messages have a constant or a checksum."""
-    form = speaker.facts.stream
+    form = endpoint.facts.stream
     return form is not None and (form.check is not None or form.of("constant") is not None)
 
 
-def _heard(speaker: Speaker, direction: Direction, data: bytes) -> Heard:
+def _decode_direction(endpoint: Endpoint, direction: Direction, data: bytes) -> DirectionResult:
     """Decode the data as messages of one direction."""
-    decoder = _Listener(speaker, direction)
+    decoder = _RecordingDecoder(endpoint, direction)
     events = decoder.feed(data)
-    result = Heard(speaker, direction, decoder.discarded + decoder.pending)
+    result = DirectionResult(endpoint, direction, decoder.discarded + decoder.pending)
     for number, event in enumerate(events):
         if event.event == "gap":
             continue
         span, packet = decoder.packets.get(number, (None, b""))
-        reading = _reading(speaker, direction, event) if event.event == "message" else None
+        reading = _reading(endpoint, direction, event) if event.event == "message" else None
         if span is None:
             continue
         if reading is not None:
             result.readings.append(reading)
             result.spans.append(span)
-        elif fault := _fault(speaker, direction, packet, event.event != "framing"):
+        elif fault := _fault(endpoint, direction, packet, event.event != "framing"):
             result.faults.append((span, fault))
     if decoder.pending:
         begin = len(data) - decoder.pending
-        beginning = faults.packet_begun(speaker, direction, data[begin:])
-        if fault := _fault(speaker, direction, *beginning):
+        beginning = faults.packet_begun(endpoint, direction, data[begin:])
+        if fault := _fault(endpoint, direction, *beginning):
             result.faults.append((Span(begin, len(data)), fault))
     return result
 
 
-def _fault(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
+def _fault(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
     """Return the fault of a packet, or None if the bytes may as well be noise."""
-    fault = faults.fault_of(speaker, direction, packet, is_whole)
-    form = speaker.link.stream
+    fault = faults.fault_of(endpoint, direction, packet, is_whole)
+    form = endpoint.link.stream
     return fault if fault and form and (fault.is_of_message or faults.has_sync(form)) else None
 
 
-def _reading(speaker: Speaker, direction: Direction, event: StreamEvent) -> Reading | None:
+def _reading(endpoint: Endpoint, direction: Direction, event: StreamEvent) -> Reading | None:
     assert event.id is not None
-    variants = getattr(speaker.ids, direction)
-    message = match.message_of(speaker.icd, [variant.message for variant in variants.get(event.id, ())], event.data)
-    if message is None or match.miscounted(speaker, message, event.data) is not None:
+    variants = getattr(endpoint.ids, direction)
+    message = match.message_of(endpoint.icd, [variant.message for variant in variants.get(event.id, ())], event.data)
+    if message is None or match.counter_error(endpoint, message, event.data) is not None:
         return None
-    form = speaker.facts.stream
+    form = endpoint.facts.stream
     chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
     note = f"envelope with id {id_text(form, event.id)} removed" + (f"; it has {chosen}" if chosen else "")
     checked = form is not None and form.check is not None
-    return Reading(speaker, direction, message, event.id, event.data, checked=checked, remarks=(note,))
+    return Reading(endpoint, direction, message, event.id, event.data, checked=checked, remarks=(note,))

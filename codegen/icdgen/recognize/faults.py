@@ -11,7 +11,7 @@ from icdgen_runtime.wire.stuffing import Unstuffer
 from icdgen.describe.ids import id_text
 from icdgen.describe.numbers import byte_count
 from icdgen.protocol.envelope import COBS, HDLC, LENGTH, PACKET, SLIP
-from icdgen.recognize.reading import Speaker
+from icdgen.recognize.reading import Endpoint
 from icdgen.values.errors import BadLength, NotFound
 
 _DATA_ALONE = "if these are the data of a message alone, name it: `icdgen decode {} MESSAGE FRAME`"
@@ -93,16 +93,16 @@ def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int
     return bits
 
 
-def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
+def fault_of(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
     """Return the reason why a packet without stuffing is not a message of a direction.
 
     Return None if it does not begin like a packet. ``is_whole``: its end was received,
     as far as this can be detected.
     """
-    form, declared = speaker.link.stream, speaker.facts.stream
+    form, declared = endpoint.link.stream, endpoint.facts.stream
     assert form
-    longest = speaker.link.longest
-    node, count = speaker.node.name, len(packet)
+    longest = endpoint.link.longest
+    node, count = endpoint.node.name, len(packet)
     bits = _bits_of_constants(form, direction, packet)
     if bits < 0:
         return None
@@ -112,7 +112,7 @@ def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bo
         id = rows[0].id if rows else None
     else:
         id = _value(form, field, packet, is_whole)
-    messages = [variant.message for variant in getattr(speaker.ids, direction).get(id, ())] if id is not None else []
+    messages = [variant.message for variant in getattr(endpoint.ids, direction).get(id, ())] if id is not None else []
     row = next((row for row in rows if row.id == id), None)
     rank, title = bits, f"packet of {node}"
     if id is not None and field is not None:
@@ -141,12 +141,12 @@ def fault_of(speaker: Speaker, direction: Direction, packet: bytes, is_whole: bo
         text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
         help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
         return Fault(rank, text, help, needed or form.header_bytes, count, False, bool(messages), is_certain)
-    fault = _fault_of_whole(speaker, direction, packet, title, row, rank, is_certain)
+    fault = _fault_of_whole(endpoint, direction, packet, title, row, rank, is_certain)
     return fault._replace(is_of_message=bool(messages))
 
 
 def _fault_of_whole(
-    speaker: Speaker,
+    endpoint: Endpoint,
     direction: Direction,
     packet: bytes,
     title: str,
@@ -155,7 +155,7 @@ def _fault_of_whole(
     is_certain: bool,
 ) -> Fault:
     """Return the fault of a packet that is not cut off."""
-    form, node = speaker.link.stream, speaker.node.name
+    form, node = endpoint.link.stream, endpoint.node.name
     assert form
     size, count = len(packet) - form.header_bytes - form.trailer_bytes, len(packet)
     if size < 0:
@@ -183,7 +183,7 @@ def _fault_of_whole(
         other: Direction = "telemetry" if direction == "telecommand" else "telecommand"
         place = form.of("id")
         id = _get(form, place, packet, count) if place else 0
-        names = [f"`{variant.message.name}`" for variant in getattr(speaker.ids, other).get(id, ())]
+        names = [f"`{variant.message.name}`" for variant in getattr(endpoint.ids, other).get(id, ())]
         absence = (
             f"no {direction} with this id, but {other} {' or '.join(names)}" if names else "no message with this id"
         )
@@ -197,9 +197,9 @@ def _fault_of_whole(
     return Fault(rank + 300, text, "a byte was damaged, or there are too many", size, size)
 
 
-def packet_begun(speaker: Speaker, direction: Direction, data: bytes) -> tuple[bytes, bool]:
+def packet_begun(endpoint: Endpoint, direction: Direction, data: bytes) -> tuple[bytes, bool]:
     """Return the first packet without stuffing, and whether its end was received."""
-    form = speaker.link.stream
+    form = endpoint.link.stream
     assert form
     if form.delimited_by == PACKET:
         return data, True
@@ -207,7 +207,7 @@ def packet_begun(speaker: Speaker, direction: Direction, data: bytes) -> tuple[b
         needed = _size(form, data)
         return data[:needed], needed is not None and len(data) >= needed
     end = bytes.fromhex(_ENDS[form.delimited_by])
-    line = Unstuffer(form.delimited_by, speaker.link.longest)
+    line = Unstuffer(form.delimited_by, endpoint.link.longest)
     frames = line.feed(data)
     if frames:
         return frames[0].bytes, frames[0].fault is None

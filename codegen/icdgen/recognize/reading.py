@@ -21,7 +21,7 @@ TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = "telecommand", "telemetr
 
 
 @dataclass(frozen=True)
-class Speaker:
+class Endpoint:
     """A node of an ICD set, and its protocol."""
 
     icd: Icd = field(repr=False, compare=False)
@@ -38,21 +38,21 @@ class Speaker:
         """Messages of the node by their ids."""
         return ids_of(self.icd, self.node)
 
-    def taken_apart(self, body: bytes) -> tuple[int, bytes] | None:
+    def split_id(self, body: bytes) -> tuple[int, bytes] | None:
         """Split bytes into the id and the bytes after it. Return None if there are too few."""
         size = wire_ids.size(self.node.id_bits)
         return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
 
 
 @cached_by_node
-def speaker_of(icd: Icd, node: Node) -> Speaker:
+def endpoint_of(icd: Icd, node: Node) -> Endpoint:
     """Return the node with its protocol."""
-    return Speaker(icd, node, facts.of(icd, node))
+    return Endpoint(icd, node, facts.of(icd, node))
 
 
-def all_speakers(icd: Icd) -> list[Speaker]:
+def all_endpoints(icd: Icd) -> list[Endpoint]:
     """Return all nodes of the set with their protocols."""
-    return [speaker_of(icd, node) for node in icd.nodes]
+    return [endpoint_of(icd, node) for node in icd.nodes]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class Reading:
     there was a checksum, and it was right.
     """
 
-    speaker: Speaker
+    endpoint: Endpoint
     what: str
     message: Message
     id: int | None = None
@@ -88,19 +88,19 @@ class Reading:
     @property
     def is_own(self) -> bool:
         """Whether the node declares the message, instead of including it."""
-        return self.speaker.node.name == self.message.node
+        return self.endpoint.node.name == self.message.node
 
     @property
     def title(self) -> str:
         """Description for a report, such as ``request for Attitude (telemetry 146)``."""
         described = (
-            f"`{self.message.name}` ({describe(self.message, self.speaker.facts.stream)}) of {self.speaker.node.name}"
+            f"`{self.message.name}` ({describe(self.message, self.endpoint.facts.stream)}) of {self.endpoint.node.name}"
         )
         if self.what in KINDS:
             return described
         if self.error is None:
             return f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"
-        labels = [key.replace("_", " ") for key, code in self.speaker.facts.errors.items() if code == self.error]
+        labels = [key.replace("_", " ") for key, code in self.endpoint.facts.errors.items() if code == self.error]
         return f"{self.what} of {described}: error {self.error}" + (f" ({labels[0]})" if labels else "")
 
     @property
@@ -108,15 +108,15 @@ class Reading:
         """Whether a field with a constant has another value."""
         return self.frame is not None and bool(self.frame.wrong_constants)
 
-    def noted(self, *remarks: str) -> Reading:
+    def with_remarks(self, *remarks: str) -> Reading:
         """Return a copy with further remarks."""
         frame = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
         return replace(self, frame=frame, remarks=(*self.remarks, *remarks))
 
-    def without(self, *left_out: str) -> Reading:
+    def with_left_out(self, *left_out: str) -> Reading:
         """Return a copy with reports about packets of the input that cannot be decoded."""
         notes = [f"left out: {report}" for report in left_out]
-        return replace(self.noted(*notes), left_out=(*self.left_out, *left_out))
+        return replace(self.with_remarks(*notes), left_out=(*self.left_out, *left_out))
 
     def to_json(self) -> dict[str, object]:
         """Return the frame as `Frame.to_json` does, with ``direction``.
@@ -127,7 +127,7 @@ class Reading:
         if self.frame is not None:
             return {**self.frame.to_json(), "direction": self.what, **time}
         values: dict[str, object] = {
-            "node": self.speaker.node.name,
+            "node": self.endpoint.node.name,
             "message": self.message.name,
             "direction": self.what,
         }

@@ -12,7 +12,7 @@ from icdgen.values.find import find_message, find_sharing
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class Selection:
     """Messages, one of which the frame must be, and their kind.
 
     Several messages share an id. Without messages or kind, everything is accepted.
@@ -30,7 +30,7 @@ class Asked:
         """Return whether a reading has one of the messages."""
         return any(reading.message is message for message in self.messages)
 
-    def can_be(self, data: bytes) -> bool:
+    def can_have_length(self, data: bytes) -> bool:
         """Return whether one of the messages can have the length of ``data``."""
         return any(len(data) in message.layout.lengths for message in self.messages)
 
@@ -46,16 +46,16 @@ class Asked:
         return [reading for reading in candidates if self.fits(reading)] or list(candidates)
 
 
-def asked_for(icd: Icd, node: Node | None, key: str | None, kind: str | None) -> Asked:
+def selection_of(icd: Icd, node: Node | None, key: str | None, kind: str | None) -> Selection:
     """Return the messages that ``key`` names, as for `icdgen.values.find_message`.
 
     Raise `NotFound`, or `Ambiguous` unless the messages share an id.
     """
     if node is None or key is None:
-        return Asked(kind=kind)
+        return Selection(kind=kind)
     try:
-        return Asked((find_message(icd, node.name, key, kind),), kind)
+        return Selection((find_message(icd, node.name, key, kind),), kind)
     except Ambiguous:
         if sharing := find_sharing(icd, node.name, key, kind):
-            return Asked(tuple(sharing), kind)
+            return Selection(tuple(sharing), kind)
         raise
