@@ -1,6 +1,6 @@
-"""Log files as tables: what is in them, and CSV, JSON lines and Parquet made of them, in constant memory.
+"""Conversion of log files to tables: listing, CSV, JSON lines and Parquet, in constant memory.
 
-Physical values by curves are those of the Python runtime, which importing this makes importable.
+The Python runtime computes calibrations. Importing this package makes it importable.
 """
 
 from icdgen import shipped

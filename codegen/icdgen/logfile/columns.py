@@ -1,4 +1,4 @@
-"""The columns of a log: which bits of an entry are which field."""
+"""Columns of a log, and the bits of an entry that they contain."""
 
 from __future__ import annotations
 
@@ -20,50 +20,55 @@ TIME = "time"
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A field of a frame, or a whole slot without a frame. Bytes are counted from the start of an entry."""
+    """A field of a frame, or a slot of an unassigned bit. Offsets count from the start of an entry."""
 
     name: str
     frame: str
     message: Message | None
-    field: FrameField | None  # None: the slot as it is
+    field: FrameField | None  # None: the bytes of the slot
     start: int  # of the slot
     length: int
     byte_order: str
-    pieces: tuple[Piece, ...]  # of a number, in the entry
-    operands: tuple[Column, ...] = ()  # of what is derived, the fields
+    pieces: tuple[Piece, ...]  # bits of a number in the entry
+    operands: tuple[Column, ...] = ()  # fields from which a value is derived
 
     @property
     def at(self) -> int:
-        """First byte."""
+        """First byte of the field."""
         return self.start + (self.field.at // 8 if self.field else 0)
 
     @property
     def size(self) -> int:
-        """Bytes that it touches."""
+        """Number of bytes that contain bits of the field."""
         return len(layout.byte_range(self.field)) if self.field else self.length
 
     @property
     def kind(self) -> str:
+        """Type of the field; ``bytes`` for a slot without a frame."""
         return self.field.type if self.field else "bytes"
 
     @property
     def unit(self) -> str:
+        """Symbol of the unit; empty without one."""
         return self.field.unit_symbol if self.field else ""
 
     @property
     def steps(self) -> Steps | None:
-        """How the physical value is computed from the raw one; None without a scale."""
+        """Computation of the physical value, or None without a scale."""
         return steps(self.field) if self.field is not None else None
 
     @property
     def curve(self) -> Curve | None:
-        """How it is computed in doubles."""
+        """Calibration of the field, which is computed in doubles, or None."""
         return self.field.curve if self.field is not None else None
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """How entries of a log with that mask are read. ``seconds``, ``milliseconds``: offset and size."""
+    """Layout of the entries of a log with one mask.
+
+    ``seconds`` and ``milliseconds`` are offset and size.
+    """
 
     node: Node
     slots: tuple[LogBit, ...]
@@ -75,7 +80,10 @@ class Plan:
 
 
 def plan(icd: Icd, known: Facts, mask: bytes) -> Plan:
-    """The columns of all frames that the mask selects. Raises `icdgen.protocol.facts.Unsupported`."""
+    """Return the columns of all frames that the mask selects.
+
+    Raise `icdgen.protocol.facts.Unsupported`.
+    """
     form, slot_bytes = need(known.log_file, "telemetry_log"), need(known.mask, "log_mask").slot_bytes
     slots = need(known.mask, "log_mask").selected(mask)
     columns: list[Column] = []
@@ -93,6 +101,7 @@ def plan(icd: Icd, known: Facts, mask: bytes) -> Plan:
 
 
 def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Column]:
+    """Return the columns of a slot, which begins at byte ``start`` of an entry."""
     message = known.telemetry.get(slot.id) if slot.id is not None else None
     if message is None:
         yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
@@ -101,7 +110,10 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
 
 
 def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = None) -> Iterator[Column]:
-    """The fields of a message whose bytes begin at ``start``; ``length``: those that lie in so many."""
+    """Return the columns of a message that begins at byte ``start``.
+
+    ``length`` excludes fields beyond this number of bytes.
+    """
     owner, size = icd.node(message.node), message.length if length is None else length
     frame = _snake(message.identifier or message.name, owner.vocabulary)
     made: dict[str, Column] = {}
@@ -123,7 +135,7 @@ def _snake(name: str, vocabulary: tuple[str, ...]) -> str:
 
 
 def unique(columns: Iterable[Column]) -> Iterator[Column]:
-    """The columns, each under a name of its own."""
+    """Return the columns with unique names. Repeated names get a number."""
     seen: set[str] = {TIME}
     for column in columns:
         name, number = column.name, 1

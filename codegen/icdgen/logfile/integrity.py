@@ -24,17 +24,17 @@ from icdgen.logfile.strided import numbers_at
 MINUTE, DAY, MONTH, YEAR = 60_000, 86_400_000, 30 * 86_400_000, 366 * 86_400_000  # ms
 YEAR_1990 = 631_152_000_000  # ms: an earlier time may be a counter
 LATEST_SECOND = 253_402_300_799  # the last one of the year 9999
-STEPS_IN_LIMIT = 5  # an entry that comes later than so many usual steps is looked at closely
-LEARNED_ENTRIES = 64  # from which the usual step is taken
-COMPARED_ENTRIES = 8  # from which the places of other times in an entry are taken
+STEPS_IN_LIMIT = 5  # an entry later than this number of usual steps is checked for damage
+LEARNED_ENTRIES = 64  # entries that determine the usual step
+COMPARED_ENTRIES = 8  # entries that determine the positions of other times in an entry
 FIRST_CHUNK, LAST_CHUNK = 16, 1 << 20  # entries, bytes
-WINDOW = 1 << 16  # bytes that are searched at once
+WINDOW = 1 << 16  # bytes searched at a time
 NEVER = math.inf
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Whole entries, one after the other, from byte ``start`` of the file."""
+    """Consecutive complete entries from byte ``start`` of the file."""
 
     start: int
     entries: int
@@ -42,7 +42,10 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Damage:
-    """Bytes ``start`` to ``end`` (exclusive) that are left out, and about how many entries that is."""
+    """Bytes ``start`` to ``end`` (exclusive) that are left out.
+
+    ``rows`` is the approximate number of lost entries.
+    """
 
     start: int
     end: int
@@ -51,7 +54,7 @@ class Damage:
 
 @dataclass(frozen=True, slots=True)
 class TimeJump:
-    """The entry at byte ``at`` continues in another time. Times are milliseconds since 1970."""
+    """A change of the clock at the entry at byte ``at``. Times are milliseconds since 1970."""
 
     at: int
     before: int
@@ -60,7 +63,10 @@ class TimeJump:
 
 @dataclass(slots=True)
 class Integrity:
-    """What a log consists of. ``truncated``: bytes of the last entry, which is incomplete."""
+    """Complete entries, damage and clock jumps of a log.
+
+    ``truncated`` is the length of an incomplete last entry.
+    """
 
     spans: list[Span] = field(default_factory=list)
     damages: list[Damage] = field(default_factory=list)
@@ -73,18 +79,18 @@ class Integrity:
 
 
 class LogSurvey:
-    """Finds the whole entries of an open log of ``size`` bytes, whose entries begin at ``begin``."""
+    """Search for complete entries in an open log of ``size`` bytes that begin at ``begin``."""
 
     def __init__(self, file: BinaryIO, size: int, begin: int, plan: Plan) -> None:
         self.file, self.size, self.begin, self.plan = file, size, begin, plan
         self.entry_bytes = plan.entry_bytes
         self.time_end = max(at + size for at, size in (plan.seconds, plan.milliseconds))
         self.step = 0.0  # usual milliseconds from an entry to the next
-        self.limit = float(MINUTE)  # a longer step is looked at closely
-        self.other_times: list[int] = []  # bytes of an entry at which its data hold the present time as well
+        self.limit = float(MINUTE)  # a longer step is checked for damage
+        self.other_times: list[int] = []  # offsets in an entry at which its data also contain the time
 
     def run(self, most: int | None = None) -> Integrity:
-        """Read the file up to ``most`` whole entries. There is no span if nothing in it looks like entries."""
+        """Read the file up to ``most`` complete entries. Without entries, there is no span."""
         result, size = Integrity(), self.entry_bytes
         start = self._anchor()
         if start is None:
@@ -116,6 +122,7 @@ class LogSurvey:
             start = run = resume
 
     def _damage(self, start: int, end: int) -> Damage:
+        """Return a damaged range with its approximate number of entries."""
         return Damage(start, end, max(1, round((end - start) / self.entry_bytes)))
 
     def _read(self, at: int, size: int) -> bytes:
@@ -123,14 +130,17 @@ class LogSurvey:
         return self.file.read(size)
 
     def _time(self, at: int, needed: int | None = None) -> int | None:
-        """Milliseconds since 1970 if byte ``at`` were the start of an entry; None if that cannot be."""
+        """Return the time of an entry at byte ``at`` in milliseconds since 1970, or None if invalid."""
         if at < 0 or at + (self.entry_bytes if needed is None else needed) > self.size:
             return None
         time = self._times(self._read(at, self.time_end), 1, 1)
         return int(time[0]) if len(time) and time[0] >= 0 else None
 
     def _times(self, data: bytes, stride: int, count: int) -> Sequence[int]:
-        """Times of ``count`` possible entries every ``stride`` bytes; -1 where milliseconds or seconds are out of range."""
+        """Return the times of ``count`` possible entries every ``stride`` bytes.
+
+        A time is -1 if milliseconds or seconds are out of range.
+        """
         (seconds_at, seconds_size), (rest_at, rest_size) = self.plan.seconds, self.plan.milliseconds
         little = self.plan.order == "little"
         count = min(count, (len(data) - self.time_end) // stride + 1)
@@ -160,8 +170,8 @@ class LogSurvey:
         is_trusted = first is not None and first >= YEAR_1990 and second is not None and abs(second - first) <= DAY
         for low in range(begin + 1, self.size - 3 * size + 1, WINDOW):
             fresh = [at for at in self._candidates(low, WINDOW) if self._rises(at, MONTH)]
-            # Data may hold counters and times too. Prefer what makes the file end with a whole entry, and what goes on from the
-            # first entry.
+            # Data may contain counters and times, too. Prefer a start with which the file ends with a complete
+            # entry, or one that continues the first entry.
             recent = [at for at in fresh if (self._time(at) or 0) >= YEAR_1990]
             following = [at for at in recent if first is not None and 0 <= (self._time(at) or 0) - first <= MONTH]
             pool = recent or fresh
@@ -190,7 +200,7 @@ class LogSurvey:
         data = self._read(at, LEARNED_ENTRIES * size)
         count = len(data) // size
         times = [int(time) for time in self._times(data, size, count)]
-        # What comes behind a break is another time, or damage.
+        # After a break, there is another time base or damage.
         chain = takewhile(lambda pair: pair[0] >= 0 and 0 <= pair[1] - pair[0] <= MONTH, pairwise(times))
         steps = [after - before for before, after in chain if after > before]
         if steps:
@@ -215,7 +225,7 @@ class LogSurvey:
             data = self._read(position, max(size, amount // size * size))
             count = len(data) // size
             if not count:
-                break  # the file has become shorter meanwhile
+                break  # the file was truncated meanwhile
             times = self._times(data, size, count)
             index = _first_irregular(previous, times, self.limit)
             if index is not None:
@@ -234,9 +244,10 @@ class LogSurvey:
         return self._search(last + 1, end, self._time(last)) is None
 
     def _resolve(self, run: int, broken: int) -> tuple[int, int]:
-        """Return where to stop before the entry at ``broken`` and where to resume; the same place twice: the clock jumped.
+        """Return where to stop before the entry at ``broken``, and where to resume.
 
-        The entry before damage is left out too: its data may be damaged already.
+        Both are equal if the clock jumped. The entry before damage is left out, as its
+        data may be damaged already.
         """
         size = self.entry_bytes
         before, previous = self._time(broken - 2 * size) if broken - 2 * size >= run else None, self._time(
@@ -274,13 +285,13 @@ class LogSurvey:
         return (broken, broken) if is_clock else (broken - size, self.size)
 
     def _deviation(self, before: int | None, after: int | None, entries: int = 1) -> float:
-        """Milliseconds by which the step over so many entries differs from the usual one."""
+        """Return the difference between the step over ``entries`` and the usual one, in ms."""
         if before is None or after is None or abs(after - before) > entries * self.limit:
             return NEVER
         return abs(after - before - entries * self.step)
 
     def _is_clock(self, at: int) -> bool:
-        """Whether the next two entries, as far as there are any, go on from the one at ``at``, be it after a pause."""
+        """Return whether up to two entries continue the entry at ``at``, also after a pause."""
         times = [self._time(at + number * self.entry_bytes) for number in range(3)]
         there = [time for number, time in enumerate(times) if at + (number + 1) * self.entry_bytes <= self.size]
         if len(there) == 1:
@@ -295,20 +306,23 @@ class LogSurvey:
         return True
 
     def _rises(self, at: int, limit: float) -> bool:
-        """Whether two more entries follow the one at ``at``, each a little later."""
+        """Return whether two more entries follow the one at ``at``, each slightly later."""
         times = [self._time(at + number * self.entry_bytes) for number in range(3)]
         pairs = pairwise(times)
         return all(a is not None and b is not None and 0 < b - a <= limit for a, b in pairs)
 
     def _unsteadiness(self, at: int) -> float:
-        """How much the first two steps of the entries from ``at`` differ, from 0 to 1; more if there are none."""
+        """Return the difference of the first two steps from ``at``, from 0 to 1.
+
+        Return infinity without two steps.
+        """
         first, second, third = (self._time(at + number * self.entry_bytes) for number in range(3))
         if first is None or second is None or third is None or not first <= second <= third:
             return NEVER
         return abs((third - second) - (second - first)) / max(third - first, 1)
 
     def _candidates(self, low: int, length: int) -> list[int]:
-        """Bytes at which an entry could begin, by its time alone."""
+        """Return the bytes at which an entry could begin, judged by its time only."""
         count = min(length, self.size - self.entry_bytes - low + 1)
         if count <= 0:
             return []
@@ -318,9 +332,11 @@ class LogSurvey:
     def _search(
         self, low: int, high: int, previous: int | None, origin: int | None = None, is_aligned: bool = True
     ) -> int | None:
-        """Return the first byte from ``low`` below ``high`` at which entries go on from the time ``previous``.
+        """Return the first byte from ``low`` to before ``high`` at which entries continue.
 
-        ``origin``: start of the last entry, default ``low``. ``is_aligned``: also where entries stand if no byte is missing.
+        ``previous`` is the time before. ``origin`` is the start of the last entry, by
+        default ``low``. ``is_aligned`` includes positions that are correct if no byte
+        is missing.
         """
         if previous is None:
             return None
@@ -343,13 +359,19 @@ class LogSurvey:
         return None
 
     def _regular(self, at: int) -> int:
-        """Return ``at``, or the entry after it if the lowest byte of the time at ``at`` is damaged: its step is an unusual one."""
+        """Return ``at``, or the next entry if the lowest byte of the time at ``at`` is damaged.
+
+        A damaged time has an unusual step to the next entry.
+        """
         first, second, third = (self._time(at + number * self.entry_bytes) for number in range(3))
         is_odd = self._deviation(first, second) > self.step / 2 >= self._deviation(second, third)
         return at + self.entry_bytes if is_odd else at
 
     def _has_other_times(self, at: int) -> bool:
-        """Whether entries from ``at`` hold further times where those before did: else ``at`` is one of these places."""
+        """Return whether entries from ``at`` contain further times at the usual positions.
+
+        Otherwise ``at`` may be one of these positions.
+        """
         size = self.entry_bytes
         for place in self.other_times:
             starts = [start for start in (at, at + size, at + 2 * size) if start + place + self.time_end <= self.size]
@@ -368,7 +390,10 @@ def _has_numpy() -> bool:
 
 
 def _first_irregular(previous: int, times: Sequence[int], limit: float) -> int | None:
-    """Index of the first time that is none, or before its predecessor, or more than ``limit`` after it."""
+    """Return the index of the first time that is invalid, too early or too late.
+
+    Too early is before its predecessor, too late is more than ``limit`` after it.
+    """
     if isinstance(times, list):
         for index, time in enumerate(times):
             if time < 0 or not 0 <= time - previous <= limit:

@@ -1,4 +1,4 @@
-"""What a log holds, for people."""
+"""Listing of the contents of a log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MESSAGES = [Column(title, right=title not in _NAMES) for title in ("id", "messa
 
 
 def recording_text(recording: Recording, tally: Tally, width: int | None) -> str:
-    """Messages that came, how often, and what was wrong."""
+    """List the received messages with their numbers, and the errors of the recording."""
     times = sum(tally.messages.values())
     line = f"{recording.path}: {recording.direction} of {recording.node.name}, {byte_count(recording.size)}, "
     rows = []
@@ -28,7 +28,7 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
 
 
 def to_text(source: Source, width: int | None) -> str:
-    """Size, time, mask and frames."""
+    """List size, times, mask and frames of a log."""
     plan, entries = source.plan, source.entries
     lines = [f"{source.path}: log of {plan.node.name}, {source.size:,} bytes"]
     span = f"{entries:,} entr{'y' if entries == 1 else 'ies'} of {plan.entry_bytes} bytes"

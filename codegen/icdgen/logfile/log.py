@@ -1,4 +1,4 @@
-"""What `icdgen log` takes: log files of devices, and recordings of links, as one thing."""
+"""Common interface of log files of devices and of recordings of links, for `icdgen log`."""
 
 from __future__ import annotations
 
@@ -22,39 +22,44 @@ from icdgen.protocol import facts
 
 
 class Log(Protocol):
-    """A table. `prepare` comes before `names`, `rows` and `to_parquet`; all are told `head`, and raise `UserError`."""
+    """A log as a table.
+
+    Call `prepare` before `names`, `rows` and `to_parquet`, with the same ``head``: the
+    maximum number of rows, or None. These methods raise `UserError`.
+    """
 
     @property
     def names(self) -> list[str]:
-        """Of its columns."""
+        """Names of the columns."""
 
     def listing(self, width: int | None, done: Done) -> str:
-        """What is in it, for people."""
+        """Return a description of the contents."""
 
     def steps(self, head: int | None) -> int:
-        """How many bytes preparing and converting will tell of, about."""
+        """Return the approximate number of bytes that will be reported to ``done``."""
 
     def prepare(self, head: int | None, done: Done) -> list[str]:
-        """Notes about what is wrong with it."""
+        """Return notes about errors in the log."""
 
     def is_damaged(self, head: int | None) -> bool:
-        """Whether entries are left out because the file is damaged."""
+        """Return whether entries are left out because the file is damaged."""
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
-        """Its rows."""
+        """Iterate over the rows."""
 
     def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
-        """Writes the file."""
+        """Write a Parquet file."""
 
 
 def open_log(icd: Icd, node: Node, path: Path, direction: Direction, messages: Sequence[Message]) -> Log:
-    """``messages``: those that are wanted; none: all. Raises `icdgen.errors.UserError`."""
+    """Open a log. ``messages`` selects messages; empty for all. Raise `icdgen.errors.UserError`."""
     if facts.of(icd, node).stream is not None:
         return _Recorded(Recording(icd, node, path, direction, messages))
     return _Entries(_only(open_source(icd, node, path), messages))
 
 
 def _only(source: Source, messages: Sequence[Message]) -> Source:
+    """Return the log with the columns of these messages. Raise `icdgen.errors.UserError`."""
     if not messages:
         return source
     wanted = {key(message) for message in messages}
@@ -68,6 +73,8 @@ def _only(source: Source, messages: Sequence[Message]) -> Source:
 
 
 class _Entries:
+    """A log file of a device."""
+
     def __init__(self, source: Source) -> None:
         self.source = source
 
@@ -98,7 +105,7 @@ class _Entries:
 
 
 class _Recorded:
-    """It is read twice: only what came has columns."""
+    """A recording of a link. It is read twice, as only received messages have columns."""
 
     def __init__(self, recording: Recording) -> None:
         self.recording = recording
@@ -120,7 +127,7 @@ class _Recorded:
         return tally.notes()
 
     def is_damaged(self, head: int | None) -> bool:
-        return False  # noise on a line is normal: it is counted, and damages no message that is taken
+        return False  # noise on a line is normal; it is counted and does not affect decoded messages
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return self.sheet.rows(head, done)

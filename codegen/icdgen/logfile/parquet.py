@@ -1,4 +1,4 @@
-"""Parquet: whole columns at once, by numpy and pyarrow. One thread decodes while another writes."""
+"""Conversion to Parquet with numpy and pyarrow. One thread decodes while another writes."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
     import numpy as np
     import pyarrow as pa
 
-PIECE = 6 << 20  # bytes that are decoded at once: what stays in the cache
-GROUP = 24 << 20  # bytes of the log that become a row group, about
+PIECE = 6 << 20  # bytes decoded at a time: fits the cache of the processor
+GROUP = 24 << 20  # approximate bytes of the log in a row group
 
 
 def to_parquet(source: Source, path: Path, head: int | None, done: Callable[[int], None]) -> None:
-    """Writes the file; units and names stand in the metadata of each column. Raises `icdgen.errors.UserError`."""
+    """Write the file. Units and names are metadata of the columns. Raise `icdgen.errors.UserError`."""
     check_installed()
     decoder = Decoder(source.plan)
     write(path, decoder.schema, _ahead(_groups(source, decoder, head, done)))
 
 
 def write(path: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
-    """Writes a file of these row groups."""
+    """Write a file with these row groups."""
     import pyarrow.parquet as pq
 
     with pq.ParquetWriter(path, schema, compression="lz4", write_page_index=True) as writer:
@@ -43,14 +43,14 @@ def write(path: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
 
 
 def schema_of(fields: Iterable[pa.Field], node: Node) -> pa.Schema:
-    """The columns, and of which node they are."""
+    """Return the schema of the columns, with the node as metadata."""
     import pyarrow as pa
 
     return pa.schema(fields, {"icdgen.node": node.name, "icdgen.icd_sha256": node.digest})
 
 
 def check_installed() -> None:
-    """Raises `icdgen.errors.UserError` where numpy or pyarrow is not there."""
+    """Raise `icdgen.errors.UserError` if numpy or pyarrow is not installed."""
     try:
         import numpy  # noqa: F401
         import pyarrow.parquet  # noqa: F401
@@ -59,6 +59,7 @@ def check_installed() -> None:
 
 
 def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[int], None]) -> Iterator[pa.Table]:
+    """Decode row groups of about `GROUP` bytes."""
     import pyarrow as pa
 
     batches, size = [], 0
@@ -74,7 +75,7 @@ def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[
 
 
 def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
-    """The items, made in a thread, one ahead."""
+    """Return the items. A thread creates each item while the previous one is used."""
     with ThreadPoolExecutor(1) as thread:
         coming = thread.submit(next, items, None)
         while (item := coming.result()) is not None:
@@ -83,7 +84,7 @@ def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
 
 
 class Decoder:
-    """Entries -> Arrow."""
+    """Converter of entries to Arrow record batches."""
 
     def __init__(self, plan: Plan) -> None:
         import pyarrow as pa
@@ -94,7 +95,7 @@ class Decoder:
         self.schema = schema_of([time, *(reader.field for reader in self.columns)], plan.node)
 
     def batch(self, data: bytes) -> pa.RecordBatch:
-        """The entries in ``data``."""
+        """Return the entries in ``data`` as a record batch."""
         import numpy as np
         import pyarrow as pa
 
@@ -107,14 +108,14 @@ class Decoder:
 
 
 class ColumnReader:
-    """A column of Arrow, of entries of so many bytes."""
+    """Converter of one column of entries to an Arrow array."""
 
     def __init__(self, column: Column, entry_bytes: int) -> None:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes
         self.operands = [ColumnReader(operand, entry_bytes) for operand in column.operands]
-        self.names: pa.Array | None = None  # of all values, where there are few
+        self.names: pa.Array | None = None  # names of all values of a small enumeration
         metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
         if column.field and column.field.enum:
             metadata["members"] = json.dumps({m.values: m.name for m in column.field.enum.members})
@@ -145,6 +146,7 @@ class ColumnReader:
         return pa.type_for_alias(f"{'int' if column.field.is_signed else 'uint'}{size}")
 
     def read(self, data: bytes, count: int) -> pa.Array:
+        """Return the column of ``count`` entries."""
         import numpy as np
         import pyarrow as pa
 
@@ -170,7 +172,7 @@ class ColumnReader:
         return pa.array(raw.astype(type_.to_pandas_dtype()))
 
     def _numbers(self, data: bytes) -> np.ndarray:
-        """The values of numbers: physical ones, where there is a formula."""
+        """Return physical values, or raw values without a scale."""
         import numpy as np
 
         column = self.column
@@ -217,7 +219,7 @@ class ColumnReader:
         return value
 
     def _physical(self, raw: np.ndarray) -> np.ndarray:
-        """The correctly rounded doubles."""
+        """Return the physical values, as correctly rounded doubles."""
         import numpy as np
 
         steps = self.column.steps

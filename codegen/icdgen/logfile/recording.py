@@ -1,4 +1,4 @@
-"""A recording: the bytes of a link whose messages travel in envelopes, as a receiver wrote them to a file."""
+"""Recordings: files with the received bytes of a link whose messages have header and trailer."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ from icdgen.protocol import facts
 from icdgen.protocol.envelope import PACKET
 from icdgen.runtime_objects.links import link_of
 
-_PIECE = 1 << 18  # bytes that are read at once
-_MOST_IDS = 64  # unknown ids that are told apart
-_MOST_SAID = 8  # of them that are named
+_PIECE = 1 << 18  # bytes of a read
+_MOST_IDS = 64  # unknown ids with a counter of their own
+_MOST_SAID = 8  # unknown ids in a note
 
 Opened = tuple[bytes, frozenset[str] | None, Mapping[str, int]]
-Key = tuple[str, str]  # of a message: the node that declares it, and its name
+Key = tuple[str, str]  # node that declares a message, and its name
 
 
 class Came(NamedTuple):
-    """A message and what its sender chose of the envelope.
+    """A received message, with the frame fields that its sender chose.
 
-    ``data`` is as long as the longest frame: what it leaves out is 0. ``there``: names of its fields, None: all of them;
-    ``ends``: the byte at which each open part ends.
+    ``data`` is padded with zeros to the longest frame. ``there`` are the names of the
+    fields present, or None for all. ``ends`` is the first byte after each
+    variable-length field.
     """
 
     message: Message
@@ -45,7 +46,7 @@ class Came(NamedTuple):
 
 @dataclass(slots=True)
 class Tally:
-    """What was found: messages and their bytes by `key`, and what was wrong."""
+    """Numbers of messages, their bytes by `key`, and numbers of errors."""
 
     messages: Counter[Key] = field(default_factory=Counter)
     sizes: Counter[Key] = field(default_factory=Counter)
@@ -57,7 +58,7 @@ class Tally:
     cut: int = 0
 
     def fault(self, event: StreamEvent) -> None:
-        """Counts something that is no message."""
+        """Count an event that is not a message."""
         if event.event == "gap":
             self.missing += event.missing
             self.repeated += event.missing == 0
@@ -67,10 +68,11 @@ class Tally:
             self.faults[FAULTS.get(event.event, event.event)] += 1
 
     def _is_told_apart(self, id: int) -> bool:
+        """Return whether an unknown id has its own counter."""
         return id in self.unknown or len(self.unknown) < _MOST_IDS
 
     def notes(self) -> list[str]:
-        """What was wrong, for people."""
+        """Return the errors as notes for a report."""
         said = [f"{what} ({times:,})" for what, times in sorted(self.faults.items())]
         notes = [f"not taken: {', '.join(said)}"] if said else []
         if self.unknown:
@@ -87,7 +89,10 @@ class Tally:
 
 
 class Recording:
-    """``chosen``: the messages that are wanted; none: all. Raises `icdgen.errors.UserError`."""
+    """A recording of one direction. ``chosen`` selects messages; empty for all.
+
+    Raise `icdgen.errors.UserError`.
+    """
 
     def __init__(
         self, icd: Icd, node: Node, path: Path, direction: Direction = "telemetry", chosen: Sequence[Message] = ()
@@ -116,12 +121,15 @@ class Recording:
 
     @property
     def form(self) -> Stream:
-        """The envelope."""
+        """Frame format of the link."""
         assert self.link.stream is not None
         return self.link.stream
 
     def read(self, tally: Tally, head: int | None, done: Done) -> Iterator[Came]:
-        """The wanted messages, ``head``: only so many; all that is read is counted. Raises `icdgen.errors.UserError`."""
+        """Iterate over the chosen messages, up to ``head``. Count all events in ``tally``.
+
+        Raise `icdgen.errors.UserError`.
+        """
         decoder, wanted = StreamDecoder(self.link, self.direction), 0
         for piece in self._pieces() if head != 0 else ():
             for event in decoder.feed(piece):
@@ -135,7 +143,10 @@ class Recording:
             done(len(piece))
 
     def survey(self, head: int | None, done: Done) -> Tally:
-        """What is in it, up to the last wanted message. Raises `icdgen.errors.UserError`, also if there is no message."""
+        """Count the events up to the last chosen message.
+
+        Raise `icdgen.errors.UserError`, also if there is no message.
+        """
         tally = Tally()
         for _ in self.read(tally, head, done):
             pass
@@ -179,7 +190,7 @@ class Recording:
 
 
 def key(message: Message) -> Key:
-    """What tells a message from the others of a node."""
+    """Return the node that declares a message, and its name. They are unique for a node."""
     return message.node, message.name
 
 
@@ -189,7 +200,10 @@ def _has_equal_frames(message: Message) -> bool:
 
 
 def _opened(node: Node, message: Message, data: bytes) -> Opened:
-    """`Came.data`, ``there`` and ``ends``. Raises `icdgen.codec.LengthError` for data that the message cannot have."""
+    """Return ``data``, ``there`` and ``ends`` of a message.
+
+    Raise `icdgen.codec.LengthError` if the length of the data is invalid.
+    """
     raw = codec.decode_frame(node, message, data)
     sizes = codec.sizes_of_values(message, raw)
     begin = message.layout.length

@@ -1,4 +1,4 @@
-"""Entries as values of Python, one by one, with the standard library alone."""
+"""Entries as Python values, one at a time, with the standard library only."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from icdgen import codec
 from icdgen.logfile.columns import Column
 from icdgen.logfile.source import Source, time_text
 
-Value = int | float | str | bool | None  # None: it is not there
-Done = Callable[[int], None]  # is told how many bytes have been read
+Value = int | float | str | bool | None  # None: missing
+Done = Callable[[int], None]  # called with the number of bytes read
 
 
 def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
-    """Time and values of each entry."""
+    """Iterate over time and values of each entry."""
     readers, size = [reader(column) for column in source.plan.columns], source.plan.entry_bytes
     for piece in source.pieces(head):
         for at in range(0, len(piece), size):
@@ -26,20 +26,21 @@ def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
 
 
 def reader(column: Column) -> Callable[[bytes], Value]:
-    """What takes the value of a column out of an entry."""
+    """Return the function that reads the value of a column from an entry."""
     if column.operands:
         return _derived(column)
     return _READERS.get(column.kind, _integer)(column)
 
 
 def _derived(column: Column) -> Callable[[bytes], float]:
+    """Return the function that computes a derived value from an entry."""
     assert column.field and column.field.derived
     how, numbers = column.field.derived, [_number(operand) for operand in column.operands]
     return lambda entry: how.double([number(entry) for number in numbers])
 
 
 def _number(column: Column) -> Callable[[bytes], float]:
-    """What takes the value of a number out of an entry, as a double."""
+    """Return the function that reads a number from an entry as a double."""
     if column.operands:
         return _derived(column)
     assert column.field
@@ -48,6 +49,7 @@ def _number(column: Column) -> Callable[[bytes], float]:
 
 
 def _raw(column: Column) -> Callable[[bytes], int]:
+    """Return the function that reads a raw integer from an entry."""
     assert column.field
     field, first, last = column.field, column.at, column.at + column.size
     if field.at % 8 == 0 and field.bits % 8 == 0:

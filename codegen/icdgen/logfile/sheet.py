@@ -1,4 +1,7 @@
-"""A recording as a table: a row is a message, and a column a field of one of them, empty in rows of the others."""
+"""A recording as a table.
+
+A row is a message. A column is a field of one message, and is empty in rows of others.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,11 @@ from icdgen.logfile.recording import Came, Key, Recording, Tally, key
 from icdgen.logfile.rows import Done, Value, reader
 from icdgen.protocol.envelope import GIVEN
 
-MESSAGE = "message"  # the column with the name
+MESSAGE = "message"  # column with the name of the message
 
 
 class Entry(NamedTuple):
-    """A column of the table: its place and what it contains. ``is_cut``: it has bytes of variable length."""
+    """A column of the table: its index and its field. ``is_cut``: the number of bytes varies."""
 
     place: int
     column: Column
@@ -23,7 +26,7 @@ class Entry(NamedTuple):
 
 
 class Sheet:
-    """``came``: the messages whose columns there are."""
+    """The table of a recording. ``came``: messages that have columns."""
 
     def __init__(self, recording: Recording, came: Iterable[Key]) -> None:
         self.recording = recording
@@ -39,16 +42,16 @@ class Sheet:
 
     @cached_property
     def columns(self) -> list[Column]:
-        """Those behind the name and the roles, in order."""
+        """Columns of fields, after the name of the message and the frame fields."""
         return [entry.column for entries in self.entries.values() for entry in entries]
 
     @cached_property
     def names(self) -> list[str]:
-        """Of all columns."""
+        """Names of all columns."""
         return [MESSAGE, *self.roles, *(column.name for column in self.columns)]
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
-        """A row for each message."""
+        """Iterate over the rows, one for each message."""
         readers = {name: [(one, reader(one.column)) for one in entries] for name, entries in self.entries.items()}
         for came in self.recording.read(Tally(), head, done):
             row: list[Value] = [None] * len(self.names)
@@ -61,11 +64,11 @@ class Sheet:
 
 
 def end_of(came: Came, column: Column) -> int:
-    """The byte at which the open part ends that a column is."""
+    """Return the first byte after a variable-length field."""
     assert column.field
     return came.ends[column.field.name]
 
 
 def is_there(came: Came, column: Column) -> bool:
-    """Whether the message has the field."""
+    """Return whether the message has the field."""
     return came.there is None or (column.field is not None and column.field.name in came.there)

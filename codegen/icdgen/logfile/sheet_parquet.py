@@ -1,4 +1,7 @@
-"""Parquet of a recording: the messages of a kind are decoded at once, and put into the rows in which they came."""
+"""Conversion of a recording to Parquet.
+
+Equal messages of a batch are decoded together, and then put into their rows.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +18,11 @@ from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of, is_there
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_CELLS = 4_000_000  # of a row group, about: sparse tables are wide
+_CELLS = 4_000_000  # approximate cells of a row group: limits the memory for wide, sparse tables
 
 
 def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
-    """Writes the file; what is not there is null. Raises `icdgen.errors.UserError`."""
+    """Write the file. Missing values are null. Raise `icdgen.errors.UserError`."""
     check_installed()
     maker = _Maker(sheet)
     batches = _batches(sheet.recording.read(Tally(), head, done), max(256, _CELLS // len(sheet.names)))
@@ -32,7 +35,7 @@ def _batches(messages: Iterator[Came], size: int) -> Iterator[list[Came]]:
 
 
 class _Maker:
-    """Messages -> Arrow."""
+    """Converter of messages to Arrow tables."""
 
     def __init__(self, sheet: Sheet) -> None:
         import pyarrow as pa
@@ -50,7 +53,7 @@ class _Maker:
         self.schema = schema_of(fields, sheet.recording.node)
 
     def table(self, batch: list[Came]) -> pa.Table:
-        """A row for each message of the batch."""
+        """Return the messages of a batch as rows."""
         import pyarrow as pa
 
         places: dict[Key, list[int]] = {}
@@ -67,7 +70,7 @@ class _Maker:
         return pa.Table.from_arrays(arrays, schema=self.schema)
 
     def _spread(self, batch: list[Came], here: list[int], entry: Entry, reader: ColumnReader, data: bytes) -> pa.Array:
-        """A column: its values in the rows of its message, null in all others."""
+        """Return a column with its values in the rows of its message, and null in the others."""
         import numpy as np
         import pyarrow as pa
 

@@ -1,4 +1,4 @@
-"""A log file on the disk, read in pieces of whole entries."""
+"""A log file, read in pieces of complete entries."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from icdgen.logfile.integrity import Damage, Integrity, LogSurvey, TimeJump
 from icdgen.protocol import facts
 from icdgen.values.find import find_node
 
-_MOST_NOTES = 8  # damaged ranges or time jumps that are named one by one
+_MOST_NOTES = 8  # damaged ranges or time jumps that are listed
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-_PIECE = 1 << 18  # bytes of entries that are read at once, about
+_PIECE = 1 << 18  # approximate bytes of a read
 
 
 @dataclass(frozen=True)
 class Source:
-    """A log file and its header. Entries are those that `icdgen.logfile.integrity` finds whole."""
+    """A log file and its header. `icdgen.logfile.integrity` finds its complete entries."""
 
     path: Path
     mask: bytes
@@ -45,10 +45,14 @@ class Source:
 
     @property
     def entries(self) -> int:
+        """Number of complete entries."""
         return self.integrity.entries
 
     def pieces(self, head: int | None, size: int = _PIECE) -> Iterator[bytes]:
-        """The entries, about ``size`` bytes at once; ``head``: only so many. Raises `icdgen.errors.UserError`."""
+        """Iterate over up to ``head`` entries, about ``size`` bytes at a time.
+
+        Raise `icdgen.errors.UserError`.
+        """
         integrity = self.integrity if head is None else self.survey(head)
         some, one = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
         try:
@@ -60,14 +64,14 @@ class Source:
                         data = file.read(min(some, left) * one)
                         whole = len(data) // one
                         if not whole:
-                            return  # it has become shorter meanwhile
+                            return  # the file was truncated meanwhile
                         yield data[: whole * one]
                         left -= whole
         except OSError as error:
             raise unreadable(self.path, error) from None
 
     def time(self, entry: bytes) -> int:
-        """Milliseconds since 1970."""
+        """Return the time of an entry in milliseconds since 1970."""
         order = self.plan.order
         (at, size), (after, rest) = self.plan.seconds, self.plan.milliseconds
         return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(entry[after : after + rest], order)
@@ -89,7 +93,7 @@ class Source:
         return times[0], times[1]
 
     def notes(self, integrity: Integrity) -> list[str]:
-        """Report damage, clock jumps, an incomplete last entry, and what a log of this node would not have."""
+        """Return notes about damage, clock jumps, an incomplete last entry, and doubts about the node."""
         notes = [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in self._doubts(integrity)]
         notes += _summary([_damage_text(damage) for damage in integrity.damages], "damaged range")
         notes += _summary([_jump_text(jump) for jump in integrity.jumps], "time jump")
@@ -98,7 +102,7 @@ class Source:
         return notes
 
     def _doubts(self, integrity: Integrity) -> Iterator[str]:
-        """Any file of some length can be read as a log: reasons to doubt that it is one."""
+        """Return reasons to doubt that the file is a log. Nearly any file can be read as one."""
         unknown = sum(slot.id is None for slot in self.plan.slots)
         if unknown:
             yield f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has"
@@ -118,18 +122,18 @@ def _jump_text(jump: TimeJump) -> str:
 
 
 def _summary(texts: list[str], what: str) -> list[str]:
-    """The first texts, and how many more there are."""
+    """Return the first texts and the number of the remaining ones."""
     rest = len(texts) - _MOST_NOTES
     return texts[:_MOST_NOTES] + ([f"and {rest:,} more {what}{'s' * (rest > 1)}"] if rest > 0 else [])
 
 
 def time_text(milliseconds: int) -> str:
-    """ISO 8601 in UTC."""
+    """Return a time as ISO 8601 text in UTC."""
     return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(timespec="milliseconds")[:-6] + "Z"
 
 
 def node_of(icd: Icd, name: str | None) -> Node:
-    """The node that is meant; without a name the only one that has logs. Raises `icdgen.errors.UserError`."""
+    """Return the node of this name, or the only node with logs. Raise `icdgen.errors.UserError`."""
     if name is not None:
         return find_node(icd, name)
     able = [node for node in icd.nodes if (known := facts.of(icd, node)).log_file or known.stream]
@@ -143,7 +147,7 @@ def node_of(icd: Icd, name: str | None) -> Node:
 
 
 def open_source(icd: Icd, node: Node, path: Path) -> Source:
-    """The log file. Raises `icdgen.errors.UserError`."""
+    """Open a log file. Raise `icdgen.errors.UserError`."""
     known = facts.of(icd, node)
     if known.log_file is None or known.mask is None:
         raise UserError(f"the ICD of {node.name} describes no logs", "name another node")

@@ -1,4 +1,4 @@
-"""Numbers that repeat at a fixed distance in bytes, as arrays of numpy."""
+"""Numbers at a fixed distance in bytes, as numpy arrays."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ if TYPE_CHECKING:
 def numbers_at(
     data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u", count: int | None = None
 ) -> np.ndarray:
-    """Return the number of ``size`` bytes at ``at`` and every ``stride`` bytes after it, by default one for each whole stride.
+    """Return the number of ``size`` bytes at ``at`` and every ``stride`` bytes after it.
 
-    The array is a view of ``data`` where numpy has a type of that size.
+    By default, there is one number for each complete stride. The array is a view of
+    ``data`` if numpy has a type of that size.
     """
     import numpy as np
 

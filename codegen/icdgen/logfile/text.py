@@ -1,4 +1,4 @@
-"""CSV and JSON lines."""
+"""Conversion to CSV and JSON lines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from icdgen.logfile.rows import Value
 
 
 def to_csv(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) -> None:
-    """A line with the names of the columns, then one for each row (RFC 4180, but for LF). What is not there is empty."""
+    """Write the names of the columns and the rows as CSV: RFC 4180, but with LF.
+
+    Missing values are empty.
+    """
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(names)
     for values in rows:
@@ -20,7 +23,10 @@ def to_csv(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) 
 
 
 def to_json_lines(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) -> None:
-    """An object for each row, without what is not there. JSON has no NaN and no infinity: null."""
+    """Write an object for each row, without missing values.
+
+    NaN and infinity become null, as JSON cannot represent them.
+    """
     for values in rows:
         there = ((name, value) for name, value in zip(names, values, strict=True) if value is not None)
         told = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in there}
