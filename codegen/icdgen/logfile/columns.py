@@ -79,30 +79,30 @@ class Plan:
     columns: tuple[Column, ...]
 
 
-def plan(icd: Icd, known: Facts, mask: bytes) -> Plan:
+def plan(icd: Icd, facts: Facts, mask: bytes) -> Plan:
     """Return the columns of all frames that the mask selects.
 
     Raise `icdgen.protocol.facts.Unsupported`.
     """
-    form, slot_bytes = need(known.log_file, "telemetry_log"), need(known.mask, "log_mask").slot_bytes
-    slots = need(known.mask, "log_mask").selected(mask)
+    form, slot_bytes = need(facts.log_file, "telemetry_log"), need(facts.mask, "log_mask").slot_bytes
+    slots = need(facts.mask, "log_mask").selected(mask)
     columns: list[Column] = []
     for number, slot in enumerate(slots):
-        columns += _columns(icd, known, slot, form.frames_at + number * slot_bytes)
+        columns += _columns(icd, facts, slot, form.frames_at + number * slot_bytes)
     return Plan(
-        known.node,
+        facts.node,
         tuple(slots),
         form.frames_at + len(slots) * slot_bytes,
         form.seconds,
         form.milliseconds,
-        "little" if known.little else "big",
+        "little" if facts.little else "big",
         tuple(unique(columns)),
     )
 
 
-def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Column]:
+def _columns(icd: Icd, facts: Facts, slot: LogBit, start: int) -> Iterator[Column]:
     """Return the columns of a slot, which begins at byte ``start`` of an entry."""
-    message = known.telemetry.get(slot.id) if slot.id is not None else None
+    message = facts.telemetry.get(slot.id) if slot.id is not None else None
     if message is None:
         yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
     else:
@@ -116,18 +116,24 @@ def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = 
     """
     owner, size = icd.node(message.node), message.length if length is None else length
     frame = _snake(message.identifier or message.name, owner.vocabulary)
-    made: dict[str, Column] = {}
+    columns: dict[str, Column] = {}
     for field in icd.longest_frame(message):
-        of = field.derived.fields if field.derived is not None else ()
-        if field.role == "count" or not made.keys() >= set(of) or (not of and field.at + field.bits > size * 8):
+        operand_names = field.derived.fields if field.derived is not None else ()
+        if (
+            field.role == "count"
+            or not columns.keys() >= set(operand_names)
+            or (not operand_names and field.at + field.bits > size * 8)
+        ):
             continue
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
-        operands = tuple(made[one] for one in of)
-        made[field.name] = Column(name, message.name, message, field, start, size, field.byte_order, pieces, operands)
-        yield made[field.name]
+        operands = tuple(columns[operand] for operand in operand_names)
+        columns[field.name] = Column(
+            name, message.name, message, field, start, size, field.byte_order, pieces, operands
+        )
+        yield columns[field.name]
 
 
 def _snake(name: str, vocabulary: tuple[str, ...]) -> str:

@@ -141,22 +141,24 @@ class LogSurvey:
 
         A time is -1 if milliseconds or seconds are out of range.
         """
-        (seconds_at, seconds_size), (rest_at, rest_size) = self.plan.seconds, self.plan.milliseconds
+        (seconds_at, seconds_size), (milliseconds_at, milliseconds_size) = self.plan.seconds, self.plan.milliseconds
         little = self.plan.order == "little"
         count = min(count, (len(data) - self.time_end) // stride + 1)
         if count < FIRST_CHUNK or not _has_numpy():
             times = []
             for at in range(0, count * stride, stride):
-                rest = int.from_bytes(data[at + rest_at : at + rest_at + rest_size], self.plan.order)
+                milliseconds = int.from_bytes(
+                    data[at + milliseconds_at : at + milliseconds_at + milliseconds_size], self.plan.order
+                )
                 seconds = int.from_bytes(data[at + seconds_at : at + seconds_at + seconds_size], self.plan.order)
-                times.append(seconds * 1000 + rest if rest < 1000 and seconds <= LATEST_SECOND else -1)
+                times.append(seconds * 1000 + milliseconds if milliseconds < 1000 and seconds <= LATEST_SECOND else -1)
             return times
         import numpy as np
 
-        whole = numbers_at(data, stride, seconds_at, seconds_size, little, count=count)
-        parts = numbers_at(data, stride, rest_at, rest_size, little, count=count)
-        milliseconds = whole.astype(np.int64) * 1000 + parts.astype(np.int64)
-        result: Sequence[int] = np.where((parts < 1000) & (whole <= LATEST_SECOND), milliseconds, -1)  # type: ignore[assignment]
+        seconds_array = numbers_at(data, stride, seconds_at, seconds_size, little, count=count)
+        milliseconds_array = numbers_at(data, stride, milliseconds_at, milliseconds_size, little, count=count)
+        times_array = seconds_array.astype(np.int64) * 1000 + milliseconds_array.astype(np.int64)
+        result: Sequence[int] = np.where((milliseconds_array < 1000) & (seconds_array <= LATEST_SECOND), times_array, -1)  # type: ignore[assignment]
         return result
 
     def _anchor(self) -> int | None:
@@ -235,10 +237,10 @@ class LogSurvey:
 
     def _ends_well(self, end: int) -> bool:
         """Whether the bytes behind the last whole entry are the beginning of the next one."""
-        rest, last = self.size - end, end - self.entry_bytes
-        if not rest or last < self.begin:
+        remaining, last = self.size - end, end - self.entry_bytes
+        if not remaining or last < self.begin:
             return True
-        if rest >= self.time_end and self._time(end, self.time_end) is None:
+        if remaining >= self.time_end and self._time(end, self.time_end) is None:
             return False
         # Bytes were lost in the last entry if a whole one ends at the end of the file.
         return self._search(last + 1, end, self._time(last)) is None
@@ -293,10 +295,10 @@ class LogSurvey:
     def _is_clock(self, at: int) -> bool:
         """Return whether up to two entries continue the entry at ``at``, also after a pause."""
         times = [self._time(at + number * self.entry_bytes) for number in range(3)]
-        there = [time for number, time in enumerate(times) if at + (number + 1) * self.entry_bytes <= self.size]
-        if len(there) == 1:
-            return there[0] is not None and (self.size - at) % self.entry_bytes == 0
-        for before, after in pairwise(there):
+        available = [time for number, time in enumerate(times) if at + (number + 1) * self.entry_bytes <= self.size]
+        if len(available) == 1:
+            return available[0] is not None and (self.size - at) % self.entry_bytes == 0
+        for before, after in pairwise(available):
             if (
                 before is None
                 or after is None

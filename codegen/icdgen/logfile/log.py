@@ -62,12 +62,12 @@ def _only(source: Source, messages: Sequence[Message]) -> Source:
     """Return the log with the columns of these messages. Raise `icdgen.errors.UserError`."""
     if not messages:
         return source
-    wanted = {key(message) for message in messages}
+    keys = {key(message) for message in messages}
     columns = tuple(
-        column for column in source.plan.columns if column.message is not None and key(column.message) in wanted
+        column for column in source.plan.columns if column.message is not None and key(column.message) in keys
     )
-    if lacking := wanted - {key(column.message) for column in columns if column.message is not None}:
-        names = ", ".join(sorted(name for _, name in lacking))
+    if missing := keys - {key(column.message) for column in columns if column.message is not None}:
+        names = ", ".join(sorted(name for _, name in missing))
         raise UserError(f"{source.path} has no {names}", f"`icdgen log {source.path}` lists what it holds")
     return replace(source, plan=replace(source.plan, columns=columns))
 

@@ -101,8 +101,8 @@ class Decoder:
 
         plan, count = self.plan, len(data) // self.plan.entry_bytes
         seconds = numbers_at(data, plan.entry_bytes, *plan.seconds, plan.order == "little")
-        rest = numbers_at(data, plan.entry_bytes, *plan.milliseconds, plan.order == "little")
-        time = pa.array(seconds.astype(np.int64) * 1000 + rest, pa.int64()).cast(self.schema.field(0).type)
+        milliseconds = numbers_at(data, plan.entry_bytes, *plan.milliseconds, plan.order == "little")
+        time = pa.array(seconds.astype(np.int64) * 1000 + milliseconds, pa.int64()).cast(self.schema.field(0).type)
         arrays = [time, *(reader.read(data, count) for reader in self.columns)]
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)
 
@@ -165,7 +165,7 @@ class ColumnReader:
             return pa.DictionaryArray.from_arrays(pa.array(raw.astype(np.uint8)), self.names)
         if column.kind == "enum":
             different, where = np.unique(raw, return_inverse=True)
-            names = pa.array(self._named(int(one) for one in different), pa.string())
+            names = pa.array(self._named(int(value) for value in different), pa.string())
             return pa.DictionaryArray.from_arrays(pa.array(where.astype(np.int32)), names)
         if column.kind == "bool":
             return pa.array(raw != 0)
@@ -192,7 +192,7 @@ class ColumnReader:
     def _named(self, values: Iterable[int]) -> list[str]:
         enum = self.column.field.enum if self.column.field else None
         members = ((value, enum.member_of(value) if enum else None) for value in values)
-        return [one.name if one else f"unknown {value}" for value, one in members]
+        return [member.name if member else f"unknown {value}" for value, member in members]
 
     def _raw(self, data: bytes) -> np.ndarray:
         import numpy as np
@@ -226,13 +226,13 @@ class ColumnReader:
         assert steps
         a, b, d = steps.terms
         if steps.exact_in_doubles:
-            value = raw.astype(np.float64)
+            result = raw.astype(np.float64)
             if a != 1:
-                value *= a
+                result *= a
             if b:
-                value += b
+                result += b
             if d != 1:
-                value /= d
-            return value
+                result /= d
+            return result
         different, where = np.unique(raw, return_inverse=True)
-        return np.array([(int(one) * a + b) / d for one in different], np.float64)[where]
+        return np.array([(int(raw_value) * a + b) / d for raw_value in different], np.float64)[where]

@@ -23,16 +23,16 @@ from icdgen.runtime_objects.links import link_of
 
 _PIECE = 1 << 18  # bytes of a read
 _MOST_IDS = 64  # unknown ids with a counter of their own
-_MOST_SAID = 8  # unknown ids in a note
+_MOST_LISTED = 8  # unknown ids in a note
 
-Opened = tuple[bytes, frozenset[str] | None, Mapping[str, int]]
+Unpacked = tuple[bytes, frozenset[str] | None, Mapping[str, int]]
 Key = tuple[str, str]  # node that declares a message, and its name
 
 
-class Came(NamedTuple):
+class ReceivedMessage(NamedTuple):
     """A received message, with the frame fields that its sender chose.
 
-    ``data`` is padded with zeros to the longest frame. ``there`` are the names of the
+    ``data`` is padded with zeros to the longest frame. ``present`` are the names of the
     fields present, or None for all. ``ends`` is the first byte after each
     variable-length field.
     """
@@ -40,7 +40,7 @@ class Came(NamedTuple):
     message: Message
     data: bytes
     values: Mapping[str, int]
-    there: frozenset[str] | None
+    present: frozenset[str] | None
     ends: Mapping[str, int]
 
 
@@ -62,23 +62,25 @@ class Tally:
         if event.event == "gap":
             self.missing += event.missing
             self.repeated += event.missing == 0
-        elif event.event == "unknown_id" and event.id is not None and self._is_told_apart(event.id):
+        elif event.event == "unknown_id" and event.id is not None and self._has_own_counter(event.id):
             self.unknown[event.id] += 1
         else:
             self.faults[FAULTS.get(event.event, event.event)] += 1
 
-    def _is_told_apart(self, id: int) -> bool:
+    def _has_own_counter(self, id: int) -> bool:
         """Return whether an unknown id has its own counter."""
         return id in self.unknown or len(self.unknown) < _MOST_IDS
 
     def notes(self) -> list[str]:
         """Return the errors as notes for a report."""
-        said = [f"{what} ({times:,})" for what, times in sorted(self.faults.items())]
-        notes = [f"not taken: {', '.join(said)}"] if said else []
+        listed = [f"{what} ({times:,})" for what, times in sorted(self.faults.items())]
+        notes = [f"not taken: {', '.join(listed)}"] if listed else []
         if self.unknown:
-            said = [f"{id} ({times:,})" for id, times in self.unknown.most_common(_MOST_SAID)]
-            rest = len(self.unknown) - len(said)
-            notes.append(f"ids that the ICD does not have: {', '.join(said)}{f' and {rest} others' if rest else ''}")
+            listed = [f"{id} ({times:,})" for id, times in self.unknown.most_common(_MOST_LISTED)]
+            remaining = len(self.unknown) - len(listed)
+            notes.append(
+                f"ids that the ICD does not have: {', '.join(listed)}{f' and {remaining} others' if remaining else ''}"
+            )
         counts = {
             "messages missing, by their sequence numbers": self.missing,
             "messages that came again, by their sequence numbers": self.repeated,
@@ -100,13 +102,14 @@ class Recording:
         self.icd, self.node, self.path, self.direction = icd, node, path, direction
         self.link = link_of(icd, facts.of(icd, node))
         self._known: dict[int, list[Message]] = {
-            id: [one.message for one in those] for id, those in getattr(ids_of(icd, node), direction).items()
+            id: [variant.message for variant in variants]
+            for id, variants in getattr(ids_of(icd, node), direction).items()
         }
-        self.messages = {key(one): one for those in self._known.values() for one in those}
-        self._alike = {name for name, message in self.messages.items() if _has_equal_frames(message)}
-        self.chosen = {key(one) for one in chosen} or set(self.messages)
-        if strange := self.chosen - set(self.messages):
-            names = ", ".join(sorted(name for _, name in strange))
+        self.messages = {key(message): message for messages in self._known.values() for message in messages}
+        self._with_equal_frames = {name for name, message in self.messages.items() if _has_equal_frames(message)}
+        self.chosen = {key(message) for message in chosen} or set(self.messages)
+        if unknown := self.chosen - set(self.messages):
+            names = ", ".join(sorted(name for _, name in unknown))
             help = "`--direction` says who sent what was recorded"
             raise UserError(f"{names} is no {direction} of {node.name}", help)
         if self.form.delimited_by == PACKET:
@@ -125,19 +128,19 @@ class Recording:
         assert self.link.stream is not None
         return self.link.stream
 
-    def read(self, tally: Tally, head: int | None, done: Done) -> Iterator[Came]:
+    def read(self, tally: Tally, head: int | None, done: Done) -> Iterator[ReceivedMessage]:
         """Iterate over the chosen messages, up to ``head``. Count all events in ``tally``.
 
         Raise `icdgen.errors.UserError`.
         """
-        decoder, wanted = StreamDecoder(self.link, self.direction), 0
+        decoder, count = StreamDecoder(self.link, self.direction), 0
         for piece in self._pieces() if head != 0 else ():
             for event in decoder.feed(piece):
-                came = self._came(event, tally)
-                if came is not None:
-                    wanted += 1
-                    yield came
-                    if wanted == head:
+                received = self._received(event, tally)
+                if received is not None:
+                    count += 1
+                    yield received
+                    if count == head:
                         return
             tally.lost, tally.cut = decoder.discarded, decoder.pending
             done(len(piece))
@@ -158,16 +161,16 @@ class Recording:
             )
         return tally
 
-    def _came(self, event: StreamEvent, tally: Tally) -> Came | None:
+    def _received(self, event: StreamEvent, tally: Tally) -> ReceivedMessage | None:
         if event.event != "message" or event.id is None:
             tally.fault(event)
             return None
-        known = self._known[event.id]
-        message = known[0] if len(known) == 1 else codec.message_of_frame_if_any(self.icd, known, event.data)
-        opened: Opened = (event.data, None, {})
+        messages = self._known[event.id]
+        message = messages[0] if len(messages) == 1 else codec.message_of_frame_if_any(self.icd, messages, event.data)
+        unpacked: Unpacked = (event.data, None, {})
         try:
-            if message is not None and key(message) not in self._alike:
-                opened = _opened(self.icd.node(message.node), message, event.data)
+            if message is not None and key(message) not in self._with_equal_frames:
+                unpacked = _unpacked(self.icd.node(message.node), message, event.data)
         except codec.LengthError:
             message = None
         if message is None:
@@ -177,8 +180,8 @@ class Recording:
         tally.sizes[key(message)] += len(event.data)
         if key(message) not in self.chosen:
             return None
-        data, there, ends = opened
-        return Came(message, data.ljust(message.length, b"\0"), event.values, there, ends)
+        data, present, ends = unpacked
+        return ReceivedMessage(message, data.ljust(message.length, b"\0"), event.values, present, ends)
 
     def _pieces(self) -> Iterator[bytes]:
         try:
@@ -199,8 +202,8 @@ def _has_equal_frames(message: Message) -> bool:
     return not message.layout.parts and not any(node.present_if for node in message.layout.nodes)
 
 
-def _opened(node: Node, message: Message, data: bytes) -> Opened:
-    """Return ``data``, ``there`` and ``ends`` of a message.
+def _unpacked(node: Node, message: Message, data: bytes) -> Unpacked:
+    """Return ``data``, ``present`` and ``ends`` of a message.
 
     Raise `icdgen.codec.LengthError` if the length of the data is invalid.
     """

@@ -87,7 +87,7 @@ def _enum(column: Column) -> Callable[[bytes], Value]:
     assert column.field and column.field.enum
     raw, enum = _raw(column), column.field.enum
     named = lru_cache(maxsize=1024)(
-        lambda value: found.name if (found := enum.member_of(value)) else f"unknown {value}"
+        lambda value: member.name if (member := enum.member_of(value)) else f"unknown {value}"
     )
     return lambda entry: named(raw(entry))
 
@@ -97,10 +97,10 @@ def _float(column: Column) -> Callable[[bytes], Value]:
 
     assert column.field
     raw, bits, curve = _raw(column), column.field.bits, column.curve
-    form, whole = ("<f", "<I") if bits == 32 else ("<d", "<Q")
+    form, integer_form = ("<f", "<I") if bits == 32 else ("<d", "<Q")
 
     def read(entry: bytes) -> Value:
-        value = struct.unpack(form, struct.pack(whole, raw(entry)))[0]
+        value = struct.unpack(form, struct.pack(integer_form, raw(entry)))[0]
         if curve is not None:
             return curve.double(value)
         return float(floats.text_of(value, bits)) if math.isfinite(value) else value  # 0.1, not 0.10000000149011612

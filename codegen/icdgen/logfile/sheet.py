@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from icdgen.logfile.columns import Column, columns_of, unique
-from icdgen.logfile.recording import Came, Key, Recording, Tally, key
+from icdgen.logfile.recording import Key, ReceivedMessage, Recording, Tally, key
 from icdgen.logfile.rows import Done, Value, reader
 from icdgen.protocol.envelope import GIVEN
 
@@ -26,11 +26,11 @@ class Entry(NamedTuple):
 
 
 class Sheet:
-    """The table of a recording. ``came``: messages that have columns."""
+    """The table of a recording. ``received``: messages that have columns."""
 
-    def __init__(self, recording: Recording, came: Iterable[Key]) -> None:
+    def __init__(self, recording: Recording, received: Iterable[Key]) -> None:
         self.recording = recording
-        messages = [message for name, message in recording.messages.items() if name in set(came)]
+        messages = [message for name, message in recording.messages.items() if name in set(received)]
         roles = {field.role for field in recording.form.fields}
         self.roles = [role for role in GIVEN if role in roles]
         columns = unique(column for message in messages for column in columns_of(recording.icd, message))
@@ -52,23 +52,28 @@ class Sheet:
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         """Iterate over the rows, one for each message."""
-        readers = {name: [(one, reader(one.column)) for one in entries] for name, entries in self.entries.items()}
-        for came in self.recording.read(Tally(), head, done):
+        readers = {
+            name: [(column_entry, reader(column_entry.column)) for column_entry in entries]
+            for name, entries in self.entries.items()
+        }
+        for received in self.recording.read(Tally(), head, done):
             row: list[Value] = [None] * len(self.names)
-            row[0] = came.message.name
-            row[1 : 1 + len(self.roles)] = [came.values.get(role) for role in self.roles]
-            for entry, read in readers[key(came.message)]:
-                if is_there(came, entry.column):
-                    row[entry.place] = read(came.data[: end_of(came, entry.column)] if entry.is_cut else came.data)
+            row[0] = received.message.name
+            row[1 : 1 + len(self.roles)] = [received.values.get(role) for role in self.roles]
+            for entry, read in readers[key(received.message)]:
+                if is_present(received, entry.column):
+                    row[entry.place] = read(
+                        received.data[: end_of_field(received, entry.column)] if entry.is_cut else received.data
+                    )
             yield row
 
 
-def end_of(came: Came, column: Column) -> int:
+def end_of_field(received: ReceivedMessage, column: Column) -> int:
     """Return the first byte after a variable-length field."""
     assert column.field
-    return came.ends[column.field.name]
+    return received.ends[column.field.name]
 
 
-def is_there(came: Came, column: Column) -> bool:
+def is_present(received: ReceivedMessage, column: Column) -> bool:
     """Return whether the message has the field."""
-    return came.there is None or (column.field is not None and column.field.name in came.there)
+    return received.present is None or (column.field is not None and column.field.name in received.present)

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from icdgen.logfile.parquet import ColumnReader, check_installed, schema_of, write
-from icdgen.logfile.recording import Came, Key, Tally, key
+from icdgen.logfile.recording import Key, ReceivedMessage, Tally, key
 from icdgen.logfile.rows import Done
-from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of, is_there
+from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of_field, is_present
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -24,17 +24,17 @@ _CELLS = 4_000_000  # approximate cells of a row group: limits the memory for wi
 def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
     """Write the file. Missing values are null. Raise `icdgen.errors.UserError`."""
     check_installed()
-    maker = _Maker(sheet)
+    builder = _TableBuilder(sheet)
     batches = _batches(sheet.recording.read(Tally(), head, done), max(256, _CELLS // len(sheet.names)))
-    write(path, maker.schema, map(maker.table, batches))
+    write(path, builder.schema, map(builder.table, batches))
 
 
-def _batches(messages: Iterator[Came], size: int) -> Iterator[list[Came]]:
+def _batches(messages: Iterator[ReceivedMessage], size: int) -> Iterator[list[ReceivedMessage]]:
     while batch := list(islice(messages, size)):
         yield batch
 
 
-class _Maker:
+class _TableBuilder:
     """Converter of messages to Arrow tables."""
 
     def __init__(self, sheet: Sheet) -> None:
@@ -47,41 +47,45 @@ class _Maker:
         }
         fields = [pa.field(MESSAGE, pa.dictionary(pa.int32(), pa.string()), nullable=False)]
         fields += [pa.field(role, pa.uint32(), nullable=False) for role in sheet.roles]
-        for entry, reader in (both for those in self.readers.values() for both in those):
+        for entry, reader in (pair for pairs in self.readers.values() for pair in pairs):
             field = reader.field.with_nullable(True)
             fields.append(field.with_type(pa.binary()) if entry.is_cut else field)
         self.schema = schema_of(fields, sheet.recording.node)
 
-    def table(self, batch: list[Came]) -> pa.Table:
+    def table(self, batch: list[ReceivedMessage]) -> pa.Table:
         """Return the messages of a batch as rows."""
         import pyarrow as pa
 
         places: dict[Key, list[int]] = {}
-        for place, came in enumerate(batch):
-            places.setdefault(key(came.message), []).append(place)
-        arrays = [pa.array([came.message.name for came in batch]).dictionary_encode()]
-        arrays += [pa.array([came.values[role] for came in batch], pa.uint32()) for role in self.sheet.roles]
+        for place, received in enumerate(batch):
+            places.setdefault(key(received.message), []).append(place)
+        arrays = [pa.array([received.message.name for received in batch]).dictionary_encode()]
+        arrays += [pa.array([received.values[role] for received in batch], pa.uint32()) for role in self.sheet.roles]
         for name, readers in self.readers.items():
             here = places.get(name, [])
             data = b"".join(batch[place].data for place in here)
             for entry, reader in readers:
                 type_ = self.schema.field(entry.place).type
-                arrays.append(self._spread(batch, here, entry, reader, data) if here else pa.nulls(len(batch), type_))
+                arrays.append(
+                    self._column_of_batch(batch, here, entry, reader, data) if here else pa.nulls(len(batch), type_)
+                )
         return pa.Table.from_arrays(arrays, schema=self.schema)
 
-    def _spread(self, batch: list[Came], here: list[int], entry: Entry, reader: ColumnReader, data: bytes) -> pa.Array:
+    def _column_of_batch(
+        self, batch: list[ReceivedMessage], here: list[int], entry: Entry, reader: ColumnReader, data: bytes
+    ) -> pa.Array:
         """Return a column with its values in the rows of its message, and null in the others."""
         import numpy as np
         import pyarrow as pa
 
         if entry.is_cut:
-            found: list[bytes | None] = [None] * len(batch)
+            values: list[bytes | None] = [None] * len(batch)
             for place in here:
-                one = batch[place]
-                if is_there(one, entry.column):
-                    found[place] = one.data[entry.column.at : end_of(one, entry.column)]
-            return pa.array(found, pa.binary())
-        which, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
-        which[here] = np.arange(len(here))
-        is_null[here] = [not is_there(batch[place], entry.column) for place in here]
-        return reader.read(data, len(here)).take(pa.array(which, mask=is_null))
+                received = batch[place]
+                if is_present(received, entry.column):
+                    values[place] = received.data[entry.column.at : end_of_field(received, entry.column)]
+            return pa.array(values, pa.binary())
+        indices, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
+        indices[here] = np.arange(len(here))
+        is_null[here] = [not is_present(batch[place], entry.column) for place in here]
+        return reader.read(data, len(here)).take(pa.array(indices, mask=is_null))

@@ -54,27 +54,29 @@ class Source:
         Raise `icdgen.errors.UserError`.
         """
         integrity = self.integrity if head is None else self.survey(head)
-        some, one = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
+        chunk_entries, entry_bytes = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
         try:
             with self.path.open("rb") as file:
                 for span in integrity.spans:
                     file.seek(span.start)
-                    left = span.entries
-                    while left:
-                        data = file.read(min(some, left) * one)
-                        whole = len(data) // one
-                        if not whole:
+                    remaining = span.entries
+                    while remaining:
+                        data = file.read(min(chunk_entries, remaining) * entry_bytes)
+                        count = len(data) // entry_bytes
+                        if not count:
                             return  # the file was truncated meanwhile
-                        yield data[: whole * one]
-                        left -= whole
+                        yield data[: count * entry_bytes]
+                        remaining -= count
         except OSError as error:
             raise unreadable(self.path, error) from None
 
     def time(self, entry: bytes) -> int:
         """Return the time of an entry in milliseconds since 1970."""
         order = self.plan.order
-        (at, size), (after, rest) = self.plan.seconds, self.plan.milliseconds
-        return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(entry[after : after + rest], order)
+        (at, size), (milliseconds_at, milliseconds_size) = self.plan.seconds, self.plan.milliseconds
+        return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(
+            entry[milliseconds_at : milliseconds_at + milliseconds_size], order
+        )
 
     def first_and_last(self) -> tuple[int, int] | None:
         """Times of the first and the last entry; None without entries. Raises `icdgen.errors.UserError`."""
@@ -123,8 +125,8 @@ def _jump_text(jump: TimeJump) -> str:
 
 def _summary(texts: list[str], what: str) -> list[str]:
     """Return the first texts and the number of the remaining ones."""
-    rest = len(texts) - _MOST_NOTES
-    return texts[:_MOST_NOTES] + ([f"and {rest:,} more {what}{'s' * (rest > 1)}"] if rest > 0 else [])
+    remaining = len(texts) - _MOST_NOTES
+    return texts[:_MOST_NOTES] + ([f"and {remaining:,} more {what}{'s' * (remaining > 1)}"] if remaining > 0 else [])
 
 
 def time_text(milliseconds: int) -> str:
@@ -136,22 +138,22 @@ def node_of(icd: Icd, name: str | None) -> Node:
     """Return the node of this name, or the only node with logs. Raise `icdgen.errors.UserError`."""
     if name is not None:
         return find_node(icd, name)
-    able = [node for node in icd.nodes if (known := facts.of(icd, node)).log_file or known.stream]
-    if len(able) == 1:
-        return able[0]
-    if not able:
+    candidates = [node for node in icd.nodes if (node_facts := facts.of(icd, node)).log_file or node_facts.stream]
+    if len(candidates) == 1:
+        return candidates[0]
+    if not candidates:
         help = "`protocol.telemetry_log` describes files, and `protocol.stream` what can be recorded of a link"
         raise UserError("the ICDs describe no logs", help)
-    names = ", ".join(node.name for node in able)
+    names = ", ".join(node.name for node in candidates)
     raise UserError("it is not said whose log it is", f"name the node; nodes: {names}")
 
 
 def open_source(icd: Icd, node: Node, path: Path) -> Source:
     """Open a log file. Raise `icdgen.errors.UserError`."""
-    known = facts.of(icd, node)
-    if known.log_file is None or known.mask is None:
+    node_facts = facts.of(icd, node)
+    if node_facts.log_file is None or node_facts.mask is None:
         raise UserError(f"the ICD of {node.name} describes no logs", "name another node")
-    header = known.log_file.header_bytes
+    header = node_facts.log_file.header_bytes
     try:
         if path.is_dir():
             raise UserError(f"{path} is a folder", "name a log file")
@@ -161,9 +163,9 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
         raise unreadable(path, error) from None
     if len(head) < header:
         raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
-    mask = head[known.log_file.mask_at : known.log_file.mask_at + known.mask.size]
-    found = Source(path, mask, header, size, plan(icd, known, mask))
-    if size >= header + found.plan.entry_bytes and not found.survey(1).spans:
+    mask = head[node_facts.log_file.mask_at : node_facts.log_file.mask_at + node_facts.mask.size]
+    source = Source(path, mask, header, size, plan(icd, node_facts, mask))
+    if size >= header + source.plan.entry_bytes and not source.survey(1).spans:
         why = "its entries have no times, their milliseconds are above 999"
         raise UserError(f"{path} is no log of {node.name}: {why}", "name a log file as it was downloaded, or --node")
-    return found
+    return source

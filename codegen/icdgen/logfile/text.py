@@ -19,7 +19,7 @@ def to_csv(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) 
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(names)
     for values in rows:
-        writer.writerow([_shown(value) for value in values])
+        writer.writerow([_csv_value(value) for value in values])
 
 
 def to_json_lines(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) -> None:
@@ -28,10 +28,10 @@ def to_json_lines(names: Sequence[str], rows: Iterable[Sequence[Value]], file: T
     NaN and infinity become null, as JSON cannot represent them.
     """
     for values in rows:
-        there = ((name, value) for name, value in zip(names, values, strict=True) if value is not None)
-        told = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in there}
-        file.write(json.dumps(told, ensure_ascii=False) + "\n")
+        present = ((name, value) for name, value in zip(names, values, strict=True) if value is not None)
+        record = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in present}
+        file.write(json.dumps(record, ensure_ascii=False) + "\n")
 
 
-def _shown(value: Value) -> Value:
+def _csv_value(value: Value) -> Value:
     return str(value).lower() if isinstance(value, bool) else value
