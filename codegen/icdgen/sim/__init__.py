@@ -1,8 +1,9 @@
-"""A device made from its ICD, for tests and for trying things out: what `icdgen sim` runs.
+"""Simulated device, generated from its ICD, for `icdgen sim`.
 
-`computer.Computer` is the device, without clock and without I/O; `line.Line` puts it on a UART with faults on demand;
-`serve` carries that line over a pseudo-terminal, TCP or UDP. Framing, checksums, logs, hole maps and index files are those of the
-Python runtime, which importing this makes importable; what a device does with them is here.
+`computer.Computer` is the device, without clock and without I/O. `line.Line` connects
+it to a UART, with faults on demand. `serve` carries that line over a pseudo-terminal,
+TCP or UDP. Framing, checksums, logs, hole maps and index files use the Python runtime.
+Importing this package makes it importable.
 """
 
 from icdgen import shipped

@@ -1,4 +1,4 @@
-"""The simulated device: which program runs, and when the next one starts."""
+"""The simulated device: the running program, and the start of the next one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from icdgen.sim.storage import Storage
 
 
 class Computer:
-    """The device. ``node`` is the program that runs first; every call is given the time in milliseconds."""
+    """The device. ``node`` is the first program. Times are in milliseconds."""
 
     def __init__(self, icd: Icd, node: Node, settings: Settings, storage: Storage) -> None:
         self.icd, self.settings, self.storage = icd, settings, storage
@@ -17,7 +17,7 @@ class Computer:
         self.start(0, node)
 
     def start(self, now: int, node: Node) -> None:
-        """Starts a program; one that starts another does so after the boot time."""
+        """Start a program. A boot program starts its application after the boot time."""
         self.program = Program(self.icd, node, self.storage, self.settings, now)
         self.boot_at = None
         if self._application(node):
@@ -25,7 +25,7 @@ class Computer:
             self.boot_at = None if wait is None else now + wait
 
     def tick(self, now: int) -> None:
-        """Lets time pass."""
+        """Process timeouts."""
         if self.boot_at is not None and now >= self.boot_at:
             application = self._application(self.program.node)
             assert application
@@ -33,18 +33,18 @@ class Computer:
 
     @property
     def deadline(self) -> int | None:
-        """When `tick` or `Program.log_due` have something to do."""
+        """Time at which `tick` or `Program.log_due` must be called, or None."""
         return min((at for at in (self.boot_at, self.program.log_at) if at is not None), default=None)
 
     def take(self, now: int, message: bytes, bus: str) -> Outcome | None:
-        """A telecommand, id first."""
+        """Process a telecommand, which begins with its id."""
         outcome = self.program.take(now, message, bus)
         if outcome and outcome.reset:
             self._reset(now, outcome.reset)
         return outcome
 
     def frame(self, now: int, id: int) -> bytes | None:
-        """The frame with that id; None if the program has none."""
+        """Return the frame with this id, or None if the program has none."""
         stop = self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
         message = self.program.known.telemetry.get(id)
         if message and message.name == stop:
@@ -52,7 +52,7 @@ class Computer:
         return self.program.frame(now, id)
 
     def restart(self, now: int) -> None:
-        """As after a reset or at power-up."""
+        """Restart with the boot program, as after a reset or at power-up."""
         running = self.program.node
         starters = (n for n in self.icd.nodes if self._application(n) is running)
         self.start(now, next(starters, running))
@@ -66,6 +66,6 @@ class Computer:
             self.restart(now)
 
     def _application(self, node: Node) -> Node | None:
-        """The program that this one starts."""
+        """Return the program that this one starts, or None."""
         name = node.protocol.get("program_start", {}).get("application")
         return next((n for n in self.icd.nodes if n.name == name), None)

@@ -1,4 +1,7 @@
-"""What a user tells the simulated device: values, faults, logs, restarts; by options, from a script, or as it runs."""
+"""Control of the simulated device: values, faults, logs and restarts.
+
+They are given by options, by a script, or while it runs.
+"""
 
 from __future__ import annotations
 
@@ -23,14 +26,14 @@ from icdgen.values.entry import typed
 from icdgen.values.errors import BadValue, NotFound
 from icdgen.values.find import by_name, find_array, find_field, find_message
 
-Wave = Mapping[str, Any]  # as a script has it
+Wave = Mapping[str, Any]  # keys of a script
 WAVES = ("sine", "ramp", "steps", "noise")
 HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: value}}}`; see docs/guides/simulator.md"
 
 
 @dataclass
 class Step:
-    """Something that happens once, ``at`` milliseconds after the start."""
+    """A step of a script, ``at`` milliseconds after the start."""
 
     at: int
     set: dict[str, dict[str, object]] = field(default_factory=dict)
@@ -40,7 +43,7 @@ class Step:
 
 
 class Control:
-    """Carries out a user's orders on a line."""
+    """Execute the steps of a script, and commands of the user, on a line."""
 
     def __init__(self, icd: Icd, node: Node, line: DeviceLine, steps: list[Step]) -> None:
         self.icd, self.node, self.line = icd, node, line
@@ -49,11 +52,11 @@ class Control:
 
     @property
     def deadline(self) -> int | None:
-        """When `tick` wants to be called at the latest, but for values that move: they are as of each request."""
+        """Time of the next step, or None. Waves do not count: requests update their values."""
         return self.steps[0].at if self.steps else None
 
     def tick(self, now: int) -> None:
-        """Does what is due."""
+        """Execute all steps that are due, and update the values of waves."""
         while self.steps and now >= self.steps[0].at:
             self.do(now, self.steps.pop(0))
         values = self.line.computer.program.values
@@ -62,6 +65,7 @@ class Control:
                 values.update(message, {one.name: raw_of(one, at(wave, now / 1000, self.line.faults.random.random))})
 
     def do(self, now: int, step: Step) -> None:
+        """Execute a step."""
         for name, fields in step.set.items():
             for key, value in fields.items():
                 self.set(name, key, value)
@@ -73,7 +77,7 @@ class Control:
             self.line.computer.restart(now)
 
     def set(self, name: str, key: str, value: object) -> None:
-        """Sets a field of a frame, now and from every start on. Raises `icdgen.errors.UserError`."""
+        """Set a field of a frame now and at each start. Raise `icdgen.errors.UserError`."""
         for message, one, given in of_fields(self.icd, self.node, name, key, value):
             self._set(message, one, given)
 
@@ -92,7 +96,7 @@ class Control:
         self.line.computer.settings.values.setdefault(message.name, {}).update(raw)
 
     def assign(self, name: str, text: str) -> None:
-        """``FIELD=VALUE`` of a frame. Raises `icdgen.errors.UserError`."""
+        """Set a field from a text ``FIELD=VALUE``. Raise `icdgen.errors.UserError`."""
         key, equals, value = text.partition("=")
         if not equals:
             help = "for instance --set 'Message' speed=100 mode=Run"
@@ -100,7 +104,7 @@ class Control:
         self.set(name, key, value)
 
     def say(self, now: int, text: str) -> str:
-        """An order as a line of text; the answer. Raises `icdgen.errors.UserError`."""
+        """Execute a command line and return its response. Raise `icdgen.errors.UserError`."""
         try:
             words = shlex.split(text)
         except ValueError as error:
@@ -124,9 +128,11 @@ class Control:
 
 
 def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, FrameField, object]]:
-    """Return a field of a frame and its value; of an array, each element and its own, from a list or a text of one.
+    """Return a field of a frame and its value, or all elements of an array with their values.
 
-    Of variable length it may be a shorter list, and the counter comes first. Raises `icdgen.errors.UserError`.
+    The values of an array are a list, or its text. A variable-length array may have a
+    shorter list; the result then begins with its counter. Raise
+    `icdgen.errors.UserError`.
     """
     message = locate_message(icd, node, name)
     vocabulary = icd.node(message.node).vocabulary
@@ -150,7 +156,10 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
 
 
 def locate_message(icd: Icd, node: Node, name: str) -> Message:
-    """The frame of the node, or of a program that it starts. Raises `icdgen.errors.UserError`."""
+    """Return the frame of the node, or of a program that it starts.
+
+    Raise `icdgen.errors.UserError`.
+    """
     wrong = []
     for one in (node, *(n for n in icd.nodes if n is not node)):
         try:
@@ -161,7 +170,7 @@ def locate_message(icd: Icd, node: Node, name: str) -> Message:
 
 
 def fitting(message: Message, one: FrameField, value: object) -> int | bytes:
-    """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
+    """Return the raw value of a user's value. Raise `icdgen.errors.UserError`."""
     if one.role in ("overlay", "derived"):
         raise UserError(
             f"{message.name}, {one.name}: an overlay field has no bits of its own", "set the fields that have them"
@@ -174,7 +183,7 @@ def fitting(message: Message, one: FrameField, value: object) -> int | bytes:
 
 
 def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
-    """The physical value of a wave at a time."""
+    """Return the physical value of a wave at a time."""
     low, high = float(wave.get("min", -1)), float(wave.get("max", 1))
     period = float(wave.get("period", 60))
     part = seconds / period % 1
@@ -189,7 +198,7 @@ def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
 
 
 def read(path: Path, icd: Icd, node: Node) -> list[Step]:
-    """The steps of a script. Raises `icdgen.errors.UserError`."""
+    """Return the steps of a script. Raise `icdgen.errors.UserError`."""
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -204,6 +213,7 @@ def read(path: Path, icd: Icd, node: Node) -> list[Step]:
 
 
 def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
+    """Return a checked step of a script. Raise `icdgen.errors.UserError`."""
     where = f"{path}: step {number}"
     if not isinstance(row, dict) or set(row) - {"at", "set", "faults", "log", "restart"}:
         raise UserError(f"{where}: there is no such step", HELP)

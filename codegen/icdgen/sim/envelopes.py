@@ -1,4 +1,4 @@
-"""The device on a line with envelopes: what it sends by itself, and what it answers with."""
+"""The device on a line with header and trailer: periodic telemetry and responses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from icdgen.sim.faults import Faults
 
 
 class EnvelopeLine(DeviceLine):
-    """A line whose messages travel in envelopes. ``chosen``: values of the fields that the sender chooses."""
+    """A line whose messages have header and trailer.
+
+    ``chosen`` are the values of the frame fields that the sender chooses.
+    """
 
     def __init__(self, computer: Computer, faults: Faults, chosen: Mapping[str, int]) -> None:
         super().__init__(computer, faults)
@@ -76,11 +79,12 @@ class EnvelopeLine(DeviceLine):
             self._send(now + self.computer.settings.processing_ms, "reply", reply)
 
     def _is_taken(self, message: Message, data: bytes) -> bool:
+        """Return whether the telecommand has a valid length and valid values."""
         program = self.computer.program
         try:
             raw = codec.decode(program.icd.node(message.node), message, data)
         except codec.LengthError:
-            return False  # it has not as many elements as it says
+            return False  # a counter does not match the length
         return program.misfit(message, raw) is None
 
     def _send(self, now: int, on: str, message: Message) -> None:

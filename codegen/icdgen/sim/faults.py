@@ -1,4 +1,4 @@
-"""Faults on demand, from a seed: what happens to a message on its way."""
+"""Simulated transmission faults, from a random seed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SPEC = re.compile(r"(?P<kind>[a-z]+)=(?P<share>[0-9.]+%?)(?:@(?P<on>[a-z,]+))?"
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """``share`` of the messages ``on`` that it concerns, from 0 to 1."""
+    """A fault of the share ``share`` (0 to 1) of messages of the kinds ``on``."""
 
     kind: str
     share: float
@@ -34,18 +34,18 @@ class Fault:
 
 @dataclass
 class Faults:
-    """The faults in force. ``late_ms``: how late at most."""
+    """Active faults. ``late_ms`` is the maximum delay."""
 
     random: Random
     faults: list[Fault] = field(default_factory=list)
     late_ms: int = 1500
 
     def hits(self, kind: str, on: str) -> bool:
-        """Whether this message has that fault."""
+        """Return whether this message has the fault."""
         return any(f.kind == kind and on in f.on and self.random.random() < f.share for f in self.faults)
 
     def spoil(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
-        """What becomes of the bytes of a message: pieces, each with its delay in milliseconds."""
+        """Return the bytes of a message with faults: pieces and their delays in milliseconds."""
         if self.hits("drop", on):
             return []
         out = bytearray(data)
@@ -63,7 +63,10 @@ class Faults:
 
 
 def parse(text: str) -> Fault:
-    """``drop=10%@acknowledge``, ``corrupt=0.01``. Raises `icdgen.errors.UserError`."""
+    """Return the fault of a text such as ``drop=10%@acknowledge`` or ``corrupt=0.01``.
+
+    Raise `icdgen.errors.UserError`.
+    """
     match = _SPEC.fullmatch(text.strip())
     help = f"KIND=SHARE or KIND=SHARE@WHAT, for instance drop=10%@acknowledge; kinds: {', '.join(KINDS)}"
     if match is None or match["kind"] not in KINDS:

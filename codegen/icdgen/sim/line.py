@@ -1,4 +1,4 @@
-"""The device on a UART: bytes in, bytes out, each with its time. Faults happen here."""
+"""The device on a UART: a byte stream with times and faults."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
 
-FLAGS: dict[str, str] = {  # event of the decoder -> what the statistics call it
+FLAGS: dict[str, str] = {  # event of the decoder -> role in the statistics
     "unexpected_start": "uart_incomplete",
     "protocol_error": "uart_protocol",
     "overrun": "overrun",
@@ -19,11 +19,11 @@ FLAGS: dict[str, str] = {  # event of the decoder -> what the statistics call it
 
 
 class Line(DeviceLine):
-    """A UART, whose bytes may be cut anywhere."""
+    """A UART. The pieces of the byte stream may have any size."""
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
         super().__init__(computer, faults)
-        # Programs of a device share its line, and its framing.
+        # All programs of a device use its line and its framing.
         self.link = computer.program.link
         self.decoder = UartDecoder(self.link, computer.program.known.longest_telecommand)
 
@@ -50,7 +50,7 @@ class Line(DeviceLine):
         return [self.take(now)]
 
     def take(self, now: int) -> bytes:
-        """The bytes that are due."""
+        """Return the bytes that are due."""
         return b"".join(super().pieces(now))
 
     def _message(self, now: int, message: bytes) -> None:
@@ -93,7 +93,7 @@ class Line(DeviceLine):
             self._push(now)
 
     def _push(self, now: int) -> None:
-        """Packets of a burst, which come by themselves on a UART."""
+        """Send the packets of a burst, which are unsolicited on a UART."""
         program = self.computer.program
         transfers = program.transfers
         if transfers is None or not transfers.pushed or UART not in transfers.form.packet_ids:

@@ -1,4 +1,4 @@
-"""One program of the simulated device: takes telecommands, answers requests."""
+"""A program of the simulated device: it processes telecommands and requests."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from icdgen.values.frame import violations
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a telecommand. ``reset``: the message that restarts the device, which then does not answer."""
+    """Result of a telecommand.
+
+    ``reset`` is the message that restarts the device, which then does not respond.
+    """
 
     code: int
     parameter: int = 0
@@ -48,7 +51,7 @@ class Program:
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
         self.last = (0, True, 0, 0)  # id, processed, code and parameter of the last telecommand
-        self.free_at = now  # when the last telecommand is processed
+        self.free_at = now  # end of processing of the last telecommand
         self.log_at: int | None = None
         self._identify()
         for name, raw in settings.values.items():
@@ -57,11 +60,14 @@ class Program:
         self._plan_log(now)
 
     def count(self, role: str) -> None:
-        """Raises a counter of the statistics, or sets a flag of it."""
+        """Increment a counter of the statistics, or set a flag."""
         self.counts[role] = self.counts.get(role, 0) + 1
 
     def take(self, now: int, message: bytes, bus: str) -> Outcome | None:
-        """A telecommand, id first, as it came. None: it was lost, for the one before is not processed yet."""
+        """Process a telecommand, which begins with its id.
+
+        Return None if it is lost because the previous one is still being processed.
+        """
         if now < self.free_at:
             self.count("overrun")
             return None
@@ -72,7 +78,7 @@ class Program:
         return outcome
 
     def refuse(self, message: bytes) -> Outcome:
-        """Refuses a telecommand without looking at it."""
+        """Reject a telecommand without processing it."""
         self.count("telecommands")
         known = self.known.telecommands.get(message[0])
         outcome = self._refusal("parameter", acknowledge=known is None or known.acknowledge)
@@ -80,7 +86,7 @@ class Program:
         return outcome
 
     def frame(self, now: int, id: int) -> bytes | None:
-        """The frame with that id; None if there is none."""
+        """Return the frame with this id, or None."""
         message = self.known.telemetry.get(id)
         if message is None:
             return None
@@ -88,7 +94,7 @@ class Program:
         return self.current(now, message)
 
     def current(self, now: int, message: Message) -> bytes:
-        """The frame as it is now."""
+        """Return the current frame of a message."""
         raw: Raw = {}
         if self.transfers:
             raw |= self.transfers.answer(now, message)
@@ -100,14 +106,17 @@ class Program:
         return self.values.encode(message, {**self.values.raw(message), **raw}) if raw else self.values.frame(message)
 
     def log_due(self, now: int) -> bytes | None:
-        """The unsolicited log message that is to be sent now."""
+        """Return an unsolicited log message if it is due."""
         if self.log_at is None or now < self.log_at:
             return None
         self._plan_log(now)
         return self.log_message(now)
 
     def log_message(self, now: int) -> bytes | None:
-        """An unsolicited log message with what the mask selects; None if the ICD has no such messages."""
+        """Return an unsolicited log message with the selected frames.
+
+        Return None if the ICD has no such messages.
+        """
         asked, layout = self._log_setting(), self.known.mask
         if asked is None or layout is None:
             return None
@@ -119,9 +128,9 @@ class Program:
         return LogMessage.encode(self.link, asked[0], frames)
 
     def misfit(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
-        """Index of the first field whose value is not taken."""
+        """Return the index of the first field with an invalid value, or None."""
         for index, field in enumerate(self.icd.longest_frame(message)):
-            value = raw.get(field.name)  # not every field is there in every message
+            value = raw.get(field.name)  # optional fields may be missing
             wrong = isinstance(value, int) and (
                 bool(violations(field, value)) and codec.special_of(field, value) is None
                 if self.settings.strict
@@ -162,7 +171,7 @@ class Program:
         return Outcome(code, acknowledge=known.acknowledge and not reset, reset=reset)
 
     def _unsupported(self) -> set[str]:
-        """Telecommands of a procedure that the ICD gives to other nodes only."""
+        """Return the telecommands of a procedure that only other nodes support."""
         given = self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
         if self.node.name in given.get("nodes", [self.node.name]):
             return set()
@@ -207,7 +216,7 @@ class Program:
         return role
 
     def _log_setting(self) -> tuple[bytes, int] | None:
-        """Mask and period in milliseconds."""
+        """Return mask and period in milliseconds, or None."""
         role = self._log_role()
         message = self.values.messages.get(role.get("message", ""))
         if message is None or not self.known.log_message:

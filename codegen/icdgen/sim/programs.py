@@ -1,4 +1,4 @@
-"""Stored programs, the device's end: one is copied to where it can run, its size and checksum are told."""
+"""Operations on stored programs in the device: copy, and information about size and checksum."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from icdgen.sim.transfers import Raw, Refused
 
 
 class Programs:
-    """The operations on the programs of the storage. ``copy_to``: the program that a copy becomes."""
+    """State of the operations. ``copy_to`` is the program that a copy replaces."""
 
     def __init__(
         self, known: Facts, link: Link, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None
     ) -> None:
         self.known, self.link, self.storage, self.busy_ms = known, link, storage, busy_ms
         self.copy_to, self.room = copy_to, room
-        self.asked = 0  # the program whose information is asked for
+        self.asked = 0  # program of the last request for information
         self.failed = False
-        self.busy: dict[str, int] = {}  # operation -> until when
+        self.busy: dict[str, int] = {}  # operation -> time of its end
 
     def telecommand(self, now: int, message: Message, raw: Raw) -> None:
-        """Does what a telecommand about programs says; nothing for any other. Raises `Refused`."""
+        """Process a telecommand of an operation; ignore others. Raise `Refused`."""
         for name, form in self._forms():
             if form.request.message.name != message.name:
                 continue
@@ -38,7 +38,7 @@ class Programs:
                 self.asked = program
 
     def answer(self, now: int, message: Message) -> Raw:
-        """Values of the fields that tell about an operation."""
+        """Return values of the fields that report the progress of an operation."""
         for name, form in self._forms():
             if form.progress.message.name == message.name:
                 busy = now < self.busy.get(name, now)
@@ -57,7 +57,7 @@ class Programs:
         return [(name, form) for name, form in forms.items() if form]
 
     def _copy(self, program: int) -> bool:
-        """Whether there is such a program, and room for it."""
+        """Copy a program. Return False if there is no such program or not enough room."""
         data = self.storage.programs.get(program)
         if not data or self.copy_to is None or (self.room is not None and len(data) > self.room):
             return False

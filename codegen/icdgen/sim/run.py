@@ -1,4 +1,4 @@
-"""Puts a simulated device together from options, and runs it."""
+"""Construction and execution of a simulated device."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ from icdgen.values import numbers
 from icdgen.values.chosen import values_of
 from icdgen.values.find import find_node, is_part
 
-Way = tuple[Any, ...]  # name of a function of `serve`, and what it is given
+Way = tuple[Any, ...]  # name of a function of `serve`, and its arguments
 
 
 @dataclass
 class Options:
-    """What a user asked for; see `icdgen sim --help`."""
+    """Options of `icdgen sim`; see `icdgen sim --help`."""
 
     values: Sequence[tuple[str, str]] = ()
     script: Path | None = None
@@ -56,7 +56,10 @@ FRAMING = "describe the link in `protocol.uart.framing` or `stream`; `icdgen ini
 
 
 def node_of(icd: Icd, name: str | None) -> Node:
-    """The node that is meant; without a name the only one that can be talked to. Raises `icdgen.errors.UserError`."""
+    """Return the node of this name, or the only one with a protocol on a byte stream.
+
+    Raise `icdgen.errors.UserError`.
+    """
     able = [node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)]
     if name is None:
         if len(able) == 1:
@@ -72,13 +75,13 @@ def node_of(icd: Icd, name: str | None) -> Node:
 
 
 def has_protocol(icd: Icd, node: Node) -> bool:
-    """Whether the ICD says how the node is talked to over a stream of bytes."""
+    """Return whether the ICD describes the protocol of the node on a byte stream."""
     known = facts.of(icd, node)
     return known.framing is not None or known.stream is not None
 
 
 def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, control.Control]:
-    """The device on its line, and who gives it orders. Raises `icdgen.errors.UserError`."""
+    """Return the device on its line, and its control. Raise `icdgen.errors.UserError`."""
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
     storage.files.update(_file(icd, node, text) for text in options.files)
@@ -95,7 +98,7 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, con
 
 
 def run(icd: Icd, name: str | None, ways: list[Way], options: Options, tell: Callable[[str], None]) -> None:
-    """Serves until interrupted."""
+    """Run the device until interrupted. Raise `icdgen.errors.UserError`."""
     line, controlled = build(icd, name, options)
     if line.keeps_packets and any("udp" not in way[:2] for way in ways):
         raise UserError("only packets delimit messages here, and a stream of bytes keeps none apart", "use --udp PORT")
@@ -122,11 +125,11 @@ async def _run(
 
 
 async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
-    """Orders from standard input, until it ends."""
+    """Execute commands from standard input until it ends."""
     loop = asyncio.get_running_loop()
     lines: asyncio.Queue[str | None] = asyncio.Queue()
 
-    def read() -> None:  # a thread of its own: a file or a terminal cannot be waited for everywhere
+    def read() -> None:  # in a thread: asyncio cannot wait for files or terminals on all systems
         for line in sys.stdin or ():
             loop.call_soon_threadsafe(lines.put_nowait, line)
         loop.call_soon_threadsafe(lines.put_nowait, None)
@@ -144,7 +147,7 @@ async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
 
 
 def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
-    """``TYPE:COUNTER=PATH``. Raises `icdgen.errors.UserError`."""
+    """Return a file from a text ``TYPE:COUNTER=PATH``. Raise `icdgen.errors.UserError`."""
     known = facts.of(icd, node)
     key, _, path = text.partition("=")
     kind, colon, counter = key.rpartition(":")
@@ -167,7 +170,7 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
 
 
 def _type(icd: Icd, known: facts.Facts, text: str) -> int | None:
-    """The number of a file type by itself or by its name."""
+    """Return a file type from its number or name. Raise `icdgen.errors.UserError`."""
     from icdgen.values.entry import from_physical
 
     load = known.files.download.load if known.files and known.files.download else None
@@ -179,6 +182,7 @@ def _type(icd: Icd, known: facts.Facts, text: str) -> int | None:
 
 
 def _saver(folder: Path | None) -> Callable[[int, bytes], None] | None:
+    """Return the function that stores uploaded programs in a folder."""
     if folder is None:
         return None
     if folder.exists() and not folder.is_dir():

@@ -1,4 +1,4 @@
-"""The line over a pseudo-terminal, TCP or UDP, with asyncio."""
+"""Transport of the line over a pseudo-terminal, TCP or UDP, with asyncio."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from icdgen.sim.device_line import DeviceLine
 Send = Callable[[bytes], None]
 PIECE = 1400  # bytes of a stream in one datagram
 AGAIN = 1.0  # s between two attempts to connect
-IDLE = 0.5  # s; the longest sleep, in which an interrupt is noticed everywhere
+IDLE = 0.5  # s; longest sleep, as some systems notice an interrupt only afterwards
 
 
 class Server:
-    """Gives the line what comes, and sends what is due to everybody who is connected."""
+    """Pass received bytes to the line, and send its bytes to all connected clients."""
 
     def __init__(self, line: DeviceLine, control: Control) -> None:
         self.line, self.control = line, control
@@ -35,6 +35,7 @@ class Server:
         return int((time.monotonic() - self.begin) * 1000)
 
     def received(self, data: bytes) -> None:
+        """Process bytes of a client."""
         now = self.now
         self.control.tick(now)
         self.line.received(now, data)
@@ -42,14 +43,14 @@ class Server:
         self.wake.set()
 
     def say(self, text: str) -> str:
-        """An order; the answer. Raises `icdgen.errors.UserError`."""
+        """Execute a command and return its response. Raise `icdgen.errors.UserError`."""
         answer = self.control.say(self.now, text)
         self._flush(self.now)
         self.wake.set()
         return answer
 
     async def run(self) -> None:
-        """Lets time pass, for ever."""
+        """Process timeouts, without end."""
         while True:
             now = self.now
             self.control.tick(now)
@@ -59,7 +60,7 @@ class Server:
             self.wake.clear()
             wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
             try:
-                async with asyncio.timeout(wait):  # `wait_for` can lose an interrupt that comes with data
+                async with asyncio.timeout(wait):  # `wait_for` can lose an interrupt that arrives with data
                     await self.wake.wait()
             except TimeoutError:
                 continue
@@ -71,10 +72,10 @@ class Server:
 
 
 async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
-    """Listens; where."""
+    """Listen for TCP connections. Return the address for a message, and the server."""
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        # The client is gone, or the simulator ends: asyncio would print the cancellation of what it started itself.
+        # The client has disconnected, or the simulator ends. Otherwise asyncio would print the cancellation.
         with suppress(OSError, asyncio.CancelledError):
             await _served(server, reader, writer)
 
@@ -86,7 +87,10 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
 
 
 async def udp(server: Server, host: str, port: int, connects: bool = False) -> tuple[str, object]:
-    """Each datagram is a piece of the stream, or a packet; answers go to whoever sent last, or whom we connect to."""
+    """Exchange UDP datagrams. Each is a piece of the stream, or a packet.
+
+    Responses go to the last sender, or to the address to which ``connects`` refers.
+    """
 
     class Protocol(asyncio.DatagramProtocol):
         def __init__(self) -> None:
@@ -122,13 +126,14 @@ async def udp(server: Server, host: str, port: int, connects: bool = False) -> t
 
 
 async def connect(server: Server, kind: str, host: str, port: int) -> tuple[str, object]:
-    """Connects to somebody who listens, and does so again whenever the line is lost; to whom."""
+    """Connect to a server, and reconnect when the connection is lost. Return its address."""
     if kind == "udp":
         return await udp(server, host, port, connects=True)
     return f"to tcp://{host}:{port}", asyncio.create_task(_kept(server, host, port))
 
 
 async def _kept(server: Server, host: str, port: int) -> None:
+    """Connect, and reconnect when the connection is lost."""
     while True:
         with suppress(OSError):
             reader, writer = await asyncio.open_connection(host, port)
@@ -137,7 +142,7 @@ async def _kept(server: Server, host: str, port: int) -> None:
 
 
 async def _served(server: Server, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-    """A connection, until it ends."""
+    """Handle a connection until it ends."""
     send = writer.write
     server.clients.append(send)
     try:
@@ -150,11 +155,11 @@ async def _served(server: Server, reader: asyncio.StreamReader, writer: asyncio.
 
 
 async def pty(server: Server) -> tuple[str, object]:
-    """A pseudo-terminal; its path."""
+    """Open a pseudo-terminal. Return its path and its files."""
     import tty
 
     master, slave = os.openpty()
-    tty.setraw(slave)  # kept open: the device stays when a client closes its end
+    tty.setraw(slave)  # stays open, so that the device remains when a client closes its end
     os.set_blocking(master, False)
     loop, waiting = asyncio.get_running_loop(), bytearray()
 
@@ -172,7 +177,7 @@ async def pty(server: Server) -> tuple[str, object]:
             loop.remove_writer(master)
 
     def send(data: bytes) -> None:
-        if len(waiting) < 1 << 22:  # nobody reads: what is sent is lost, as on a real line
+        if len(waiting) < 1 << 22:  # without a reader, bytes are lost, as on a real line
             waiting.extend(data)
             loop.add_writer(master, write)
 
@@ -182,6 +187,7 @@ async def pty(server: Server) -> tuple[str, object]:
 
 
 def _cannot(kind: str, host: str, port: int, error: OSError) -> UserError:
+    """Return the error for an address that cannot be opened."""
     taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
     why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)
     help = "port 0 takes a free one" if taken else "--host is an address of this machine"

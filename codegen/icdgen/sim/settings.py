@@ -1,4 +1,4 @@
-"""How a simulated device behaves."""
+"""Settings of a simulated device."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from dataclasses import dataclass, field
 
 @dataclass
 class Settings:
-    """Times in milliseconds. ``boot_ms``: how long the boot program waits, None: as the ICD says."""
+    """Settings of a simulated device. Times are in milliseconds.
+
+    ``boot_ms`` is the time in the boot program; None for the time in the ICD.
+    """
 
     boot_ms: int | None = None
-    busy_ms: int = 20  # loading, erasing, committing
-    processing_ms: int = 0  # of a telecommand; another one meanwhile overruns the buffer
-    strict: bool = False  # refuse also what is no member of an enumeration, or beyond a limit
-    every_ms: int = 1000  # between what it sends by itself, in envelopes; 0: nothing
-    values: dict[str, dict[str, int | bytes]] = field(default_factory=dict)  # in force from every start
+    busy_ms: int = 20  # duration of loading, erasing, committing
+    processing_ms: int = 0  # duration of a telecommand; the next one is lost meanwhile
+    strict: bool = False  # also reject unknown enumeration values and values out of limits
+    every_ms: int = 1000  # period of unsolicited messages with header and trailer; 0: none
+    values: dict[str, dict[str, int | bytes]] = field(default_factory=dict)  # set at each start

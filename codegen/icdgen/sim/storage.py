@@ -1,4 +1,4 @@
-"""What survives a restart of the simulated device: files and uploaded programs."""
+"""Files and uploaded programs of the simulated device, which survive a restart."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from icdgen_runtime.wire.crc import crc16
 from icdgen_runtime.wire.files import IndexEntry, write_index
 from icdgen_runtime.wire.link import Link
 
-LARGEST = 1 << 24  # bytes of a program: no offset makes us run out of memory
+LARGEST = 1 << 24  # bytes of a program: a large offset must not exhaust the memory
 
 
 @dataclass
 class File:
-    """A file; ``time`` is packed."""
+    """A file. ``time`` is packed."""
 
     data: bytes
     time: int = 0
@@ -22,14 +22,17 @@ class File:
 
 @dataclass
 class Storage:
-    """Files by type and counter, programs by destination. ``on_upload`` is told of every committed block."""
+    """Files by type and counter, and programs by destination.
+
+    ``on_upload`` is called for each committed block.
+    """
 
     files: dict[tuple[int, int], File] = field(default_factory=dict)
     programs: dict[int, bytearray] = field(default_factory=dict)
     on_upload: Callable[[int, bytes], None] | None = None
 
     def read(self, link: Link, type_: int, counter: int) -> bytes | None:
-        """The content of a file, or of the index file; None if there is none."""
+        """Return the content of a file, or of the index file, or None."""
         if link.index_file and type_ == link.index_file.file_type:
             return write_index(link, [self._entry(link, key) for key in self.files])
         found = self.files.get((type_, counter))
@@ -45,13 +48,13 @@ class Storage:
         return IndexEntry(key[0], key[1], checksum, len(file.data), file.time, meta[:size].ljust(size, b"\0"))
 
     def put(self, destination: int, data: bytes) -> None:
-        """Stores a whole program."""
+        """Store a complete program."""
         self.programs[destination] = bytearray(data)
         if self.on_upload:
             self.on_upload(destination, data)
 
     def write(self, destination: int, offset: int, data: bytes, room: int | None = None) -> bool:
-        """Commits a block of a program; whether there is room for it."""
+        """Commit a block of a program. Return whether there is room for it."""
         if offset + len(data) > (LARGEST if room is None else min(LARGEST, room)):
             return False
         program = self.programs.setdefault(destination, bytearray())
@@ -63,5 +66,5 @@ class Storage:
 
 
 def checksum_of(link: Link, data: bytes) -> int:
-    """The CRC of a file or a block; 0 where the ICD has none."""
+    """Return the CRC of a file or a block, or 0 if the ICD has none."""
     return crc16(link, data) if link.crc16 else 0

@@ -1,4 +1,7 @@
-"""File transfer, the device's end: list, download, upload, erase, format. Which message does what says the ICD."""
+"""File transfer in the device: list, download, upload, erase, format.
+
+The ICD assigns messages to the steps.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ Raw = dict[str, "int | bytes"]
 
 
 class Refused(Exception):
-    """A parameter is wrong: the field of that name, the first one without a name."""
+    """A parameter is invalid: the field of this name, or the first field."""
 
     def __init__(self, field: str | None = None) -> None:
         super().__init__(field)
@@ -32,7 +35,7 @@ class Packet(NamedTuple):
 
 
 class Transfers:
-    """The state of all transfers of a program. ``busy_ms``: how long slow things take."""
+    """State of all transfers of a program. ``busy_ms`` is the duration of slow steps."""
 
     def __init__(self, known: Facts, link: Link, form: Files, storage: Storage, busy_ms: int) -> None:
         self.known, self.link, self.form, self.storage, self.busy_ms = known, link, form, storage, busy_ms
@@ -42,11 +45,11 @@ class Transfers:
         self.map = bytearray(known.hole_map.bytes if known.hole_map else 0)
         self.received: dict[int, bytes] = {}
         self.failed = False
-        self.busy: dict[str, int] = {}  # step -> until when
-        self.fetched = Packet(0, bytes([form.fill]) * form.packet_bytes)  # by the last request
-        self.burst: list[int] = []  # positions still to be fetched, where packets are requested one by one
-        self.pushed: list[Packet] = []  # packets to be sent of the device's own accord
-        self.maps: dict[str, tuple[str, slice]] = {}  # message -> its field, and its part of the map
+        self.busy: dict[str, int] = {}  # step -> time of its end
+        self.fetched = Packet(0, bytes([form.fill]) * form.packet_bytes)  # last requested packet
+        self.burst: list[int] = []  # positions of packets that the client will request
+        self.pushed: list[Packet] = []  # unsolicited packets to send
+        self.maps: dict[str, tuple[str, slice]] = {}  # message -> field, and range of the map
         if holes := known.hole_map:
             for at, one in enumerate(holes.messages):
                 self.maps[one.name] = holes.field, slice(at * holes.message_bytes, (at + 1) * holes.message_bytes)
@@ -78,7 +81,7 @@ class Transfers:
         self.frames = [(one, givers[name]) for name, one in self.steps.items() if name in givers]
 
     def telecommand(self, now: int, message: Message, raw: Raw) -> None:
-        """Does what a telecommand of the transfers says; nothing for any other. Raises `Refused`."""
+        """Process a telecommand of the transfers; ignore others. Raise `Refused`."""
         if message.name in self.maps:
             field, part = self.maps[message.name]
             self.map[part] = raw[field]  # type: ignore[assignment]
@@ -87,7 +90,7 @@ class Transfers:
             take(now, {role: raw[name] for role, name in step.fields.items()})
 
     def answer(self, now: int, message: Message) -> Raw:
-        """Values of the fields that play a part in a transfer."""
+        """Return values of the fields that report the state of a transfer."""
         result: Raw = {}
         if message.name in self.maps:
             field, part = self.maps[message.name]
@@ -99,7 +102,11 @@ class Transfers:
         return result
 
     def fetch(self) -> Packet:
-        """The next packet of the burst; the last one again when there is none left, nothing but fill before any."""
+        """Return the next packet of the burst.
+
+        After the last packet, it is repeated. Before a burst, the packet contains fill
+        bytes.
+        """
         if self.burst:
             self.fetched = self._packet_at(self.burst.pop(0))
         return self.fetched

@@ -1,4 +1,4 @@
-"""What the frames of a simulated program hold."""
+"""Values in the frames of a simulated program."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from icdgen.values.frame import violations
 
 
 class Values:
-    """The frame of every message, by its name. A composite frame and the frames in it always agree."""
+    """The frame of each message, by name. A composite frame is consistent with its parts."""
 
     def __init__(self, icd: Icd, node: Node) -> None:
         self.icd = icd
@@ -24,25 +24,27 @@ class Values:
         }
 
     def frame(self, message: Message) -> bytes:
-        """The frame as it is now."""
+        """Return the current frame."""
         data = bytearray(self.frames[message.name])
         for part, first, last in self._parts(message):
             data[first:last] = self.frame(part)
         return bytes(data)
 
     def put(self, message: Message, data: bytes) -> None:
-        """Takes a whole frame."""
+        """Store a complete frame."""
         self.frames[message.name] = bytes(data)
         for part, first, last in self._parts(message):
             self.put(part, data[first:last])
 
     def raw(self, message: Message) -> dict[str, int | bytes]:
+        """Return the raw values of the current frame."""
         return codec.decode(self.icd.node(message.node), message, self.frame(message))
 
     def update(self, message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int | bytes]:
-        """Sets some fields. Returns the values set, with those of counters. Raises `icdgen.codec.CodecError`.
+        """Set fields. Return the values set, including counters. Raise `icdgen.codec.CodecError`.
 
-        Variable-length bytes and text get the length of what is set; an array gets all elements up to one that is set.
+        Variable-length bytes and text get the length of the new value. An array gets
+        all elements up to the last one that is set.
         """
         before, given = self.raw(message), dict(raw)
         steps = [field.steps[0] for field in self.icd.longest_frame(message) if field.name in raw]
@@ -57,6 +59,7 @@ class Values:
         return given
 
     def encode(self, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
+        """Return the frame of these raw values. Raise `icdgen.codec.CodecError`."""
         return codec.encode(self.icd.node(message.node), message, raw)
 
     def _parts(self, message: Message) -> Iterable[tuple[Message, int, int]]:
@@ -67,7 +70,10 @@ class Values:
 
 
 def allowed_values(icd: Icd, message: Message) -> dict[str, int | bytes]:
-    """Return values of the longest frame that the ICD allows, 0 where it does; overlays read the same bits."""
+    """Return allowed values of all raw fields of the longest frame, 0 if that is allowed.
+
+    Overlay fields read the bits of raw fields and have no values.
+    """
     return {field.name: _allowed_value(message, field) for field in icd.longest_frame(message) if field.is_raw}
 
 
@@ -81,6 +87,7 @@ def _allowed_value(message: Message, field: FrameField) -> int | bytes:
 
 
 def _candidates(field: FrameField) -> Iterable[int]:
+    """Return raw values that may be allowed: the constant, 0, enumeration members, limits."""
     if field.const is not None:
         yield field.const
     yield 0
@@ -100,7 +107,7 @@ def _candidates(field: FrameField) -> Iterable[int]:
 
 
 def _on_curve(field: FrameField, bound: Fraction) -> Iterable[int]:
-    """Raw values about that of a physical one."""
+    """Return raw values near a physical value."""
     for step in (0, 1, -1):
         try:
             yield codec.raw_from_physical(field, bound + step)
@@ -109,7 +116,7 @@ def _on_curve(field: FrameField, bound: Fraction) -> Iterable[int]:
 
 
 def raw_of(field: FrameField, value: float) -> int:
-    """The raw value nearest to a physical one, held within what the field can hold."""
+    """Return the raw value nearest to a physical one, limited to the range of the field."""
     if field.curve is not None:
         return _held(field, field.curve, value)
     if field.type == "float":
@@ -120,7 +127,7 @@ def raw_of(field: FrameField, value: float) -> int:
 
 
 def _held(field: FrameField, curve: Curve, value: float) -> int:
-    """Of a curve; 0 where it does not lead back."""
+    """Return the raw value of a calibration, limited to its range; 0 without an inverse."""
     if not field.is_invertible:
         return 0
     if field.type == "float":
