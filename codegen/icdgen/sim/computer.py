@@ -54,8 +54,8 @@ class Computer:
     def restart(self, now: int) -> None:
         """Restart with the boot program, as after a reset or at power-up."""
         running = self.program.node
-        starters = (n for n in self.icd.nodes if self._application(n) is running)
-        self.start(now, next(starters, running))
+        boot_nodes = (n for n in self.icd.nodes if self._application(n) is running)
+        self.start(now, next(boot_nodes, running))
 
     def _reset(self, now: int, message: Message) -> None:
         application = self._application(self.program.node)

@@ -60,9 +60,9 @@ class Control:
         while self.steps and now >= self.steps[0].at:
             self.do(now, self.steps.pop(0))
         values = self.line.computer.program.values
-        for message, one, wave in self.moving:
+        for message, field, wave in self.moving:
             if message.name in values.frames:
-                values.update(message, {one.name: raw_of(one, at(wave, now / 1000, self.line.faults.random.random))})
+                values.update(message, {field.name: raw_of(field, at(wave, now / 1000, self.line.faults.random.random))})
 
     def do(self, now: int, step: Step) -> None:
         """Execute a step."""
@@ -78,15 +78,15 @@ class Control:
 
     def set(self, name: str, key: str, value: object) -> None:
         """Set a field of a frame now and at each start. Raise `icdgen.errors.UserError`."""
-        for message, one, given in of_fields(self.icd, self.node, name, key, value):
-            self._set(message, one, given)
+        for message, field, element_value in of_fields(self.icd, self.node, name, key, value):
+            self._set(message, field, element_value)
 
-    def _set(self, message: Message, one: FrameField, value: object) -> None:
-        self.moving = [m for m in self.moving if (m[0].name, m[1].name) != (message.name, one.name)]
+    def _set(self, message: Message, field: FrameField, value: object) -> None:
+        self.moving = [m for m in self.moving if (m[0].name, m[1].name) != (message.name, field.name)]
         if isinstance(value, Mapping):
-            self.moving.append((message, one, value))
+            self.moving.append((message, field, value))
             return
-        raw = {one.name: fitting(message, one, value)}
+        raw = {field.name: fitting(message, field, value)}
         values = self.line.computer.program.values
         if message.name in values.frames:
             try:
@@ -111,15 +111,15 @@ class Control:
             raise UserError(f"`{text}`: {error}", "close the quotes") from None
         if not words:
             return ""
-        order, rest = words[0], words[1:]
-        if order == "set" and len(rest) >= 2:
-            for one in rest[1:]:
-                self.assign(rest[0], one)
-        elif order == "fault":
-            self.line.faults.faults = [faults.parse(one) for one in rest]
-        elif order == "log" and not rest:
+        command, arguments = words[0], words[1:]
+        if command == "set" and len(arguments) >= 2:
+            for argument in arguments[1:]:
+                self.assign(arguments[0], argument)
+        elif command == "fault":
+            self.line.faults.faults = [faults.parse(argument) for argument in arguments]
+        elif command == "log" and not arguments:
             self.line.log(now)
-        elif order == "restart" and not rest:
+        elif command == "restart" and not arguments:
             self.line.computer.restart(now)
         else:
             help = "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart"
@@ -147,7 +147,7 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
         return [(message, element, value) for element in elements]
     texts = [] if is_none else listed(key, str(value), len(elements), part is not None)
     result: list[tuple[Message, FrameField, object]] = [
-        (message, one, text) for one, text in zip(elements, texts, strict=False)
+        (message, element, text) for element, text in zip(elements, texts, strict=False)
     ]
     if part is None:
         return result
@@ -160,25 +160,25 @@ def locate_message(icd: Icd, node: Node, name: str) -> Message:
 
     Raise `icdgen.errors.UserError`.
     """
-    wrong = []
-    for one in (node, *(n for n in icd.nodes if n is not node)):
+    errors = []
+    for candidate in (node, *(n for n in icd.nodes if n is not node)):
         try:
-            return find_message(icd, one.name, name, "telemetry")
+            return find_message(icd, candidate.name, name, "telemetry")
         except NotFound as error:
-            wrong.append(error)
-    raise wrong[0]
+            errors.append(error)
+    raise errors[0]
 
 
-def fitting(message: Message, one: FrameField, value: object) -> int | bytes:
+def fitting(message: Message, field: FrameField, value: object) -> int | bytes:
     """Return the raw value of a user's value. Raise `icdgen.errors.UserError`."""
-    if one.role in ("overlay", "derived"):
+    if field.role in ("overlay", "derived"):
         raise UserError(
-            f"{message.name}, {one.name}: an overlay field has no bits of its own", "set the fields that have them"
+            f"{message.name}, {field.name}: an overlay field has no bits of its own", "set the fields that have them"
         )
     text = "true" if value is True else "false" if value is False else str(value)
-    raw = typed(one, text)
-    if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
-        raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
+    raw = typed(field, text)
+    if isinstance(raw, int) and field.type != "float" and not field.raw_min <= raw <= field.raw_max:
+        raise UserError(f"{message.name}, {field.name}: {value} does not fit", f"{field.bits} bits hold the raw value")
     return raw
 
 
@@ -224,28 +224,28 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
         raise UserError(f"{where}: `set` is no mapping of messages to fields", HELP)
     for name, fields in values.items():
         for key, value in fields.items():
-            for message, one, given in of_fields(icd, node, str(name), str(key), value):
-                if isinstance(given, Mapping):
-                    _check_wave(f"{where}, {name}, {key}", one, given)
+            for message, field, element_value in of_fields(icd, node, str(name), str(key), value):
+                if isinstance(element_value, Mapping):
+                    _check_wave(f"{where}, {name}, {key}", field, element_value)
                 else:
-                    fitting(message, one, given)
-    spoiled = row.get("faults")
-    if spoiled is not None and not (isinstance(spoiled, list) and all(isinstance(one, str) for one in spoiled)):
+                    fitting(message, field, element_value)
+    fault_texts = row.get("faults")
+    if fault_texts is not None and not (isinstance(fault_texts, list) and all(isinstance(field, str) for field in fault_texts)):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)
     return Step(
         round(seconds * 1000),
         {str(name): {str(key): value for key, value in fields.items()} for name, fields in values.items()},
-        None if spoiled is None else [faults.parse(one) for one in spoiled],
+        None if fault_texts is None else [faults.parse(field) for field in fault_texts],
         bool(row.get("log", False)),
         bool(row.get("restart", False)),
     )
 
 
-def _check_wave(where: str, one: FrameField, wave: Wave) -> None:
-    if one.role in ("overlay", "derived"):
+def _check_wave(where: str, field: FrameField, wave: Wave) -> None:
+    if field.role in ("overlay", "derived"):
         raise UserError(f"{where}: an overlay field has no bits of its own", "let the fields move that have them")
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
-    if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.is_bytes:
+    if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or field.is_bytes:
         raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")
     if not all(type(n) in (int, float) and math.isfinite(n) for n in numbers) or numbers[2] <= 0:
         raise UserError(f"{where}: `min`, `max` and `period` are numbers, the last above 0")

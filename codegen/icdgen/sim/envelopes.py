@@ -34,8 +34,8 @@ class EnvelopeLine(DeviceLine):
         section = program.icd.protocol_of(program.node)["stream"]
         self.replies: dict[str, str] = section.get("replies", {})
         answers = set(self.replies.values())
-        spoken = [one.message for those in self.ids.telemetry.values() for one in those]
-        self.unasked = [message for message in spoken if message.name not in answers]
+        messages = [variant.message for variants in self.ids.telemetry.values() for variant in variants]
+        self.unasked = [message for message in messages if message.name not in answers]
         self._every = computer.settings.every_ms
         self._next = 0
 
@@ -43,9 +43,9 @@ class EnvelopeLine(DeviceLine):
         self.tick(now)
         for event in self.decoder.feed(data):
             if event.event == "message" and event.id is not None:
-                for _, one in self.faults.spoil("telecommand", event.data):
-                    if one == event.data or self.form.check is None:
-                        self._telecommand(now, event.id, one)
+                for _, received_data in self.faults.spoil("telecommand", event.data):
+                    if received_data == event.data or self.form.check is None:
+                        self._telecommand(now, event.id, received_data)
             else:
                 self.computer.program.count(event.event)
 
@@ -66,7 +66,7 @@ class EnvelopeLine(DeviceLine):
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
         program = self.computer.program
         message = codec.message_of_frame_if_any(
-            program.icd, [one.message for one in self.ids.telecommand.get(id, ())], data
+            program.icd, [variant.message for variant in self.ids.telecommand.get(id, ())], data
         )
         if message is None or not self._is_taken(message, data):
             program.count("refused")

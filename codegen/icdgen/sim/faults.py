@@ -78,9 +78,9 @@ def parse(text: str) -> Fault:
         value = -1.0
     if not 0 <= value <= 1:
         raise UserError(f"`{text}`: the share is not between 0 and 1 (100%)", help)
-    known = {"nack": ("telecommand",), "late": OUT}.get(match["kind"], (*OUT, *IN))
-    on = tuple(match["on"].split(",")) if match["on"] else (known if match["kind"] == "nack" else OUT)
-    for one in on:
-        if one not in known:
-            raise UserError(f"`{text}`: it cannot be on `{one}`", f"what it can be on: {', '.join(known)}")
+    allowed = {"nack": ("telecommand",), "late": OUT}.get(match["kind"], (*OUT, *IN))
+    on = tuple(match["on"].split(",")) if match["on"] else (allowed if match["kind"] == "nack" else OUT)
+    for kind in on:
+        if kind not in allowed:
+            raise UserError(f"`{text}`: it cannot be on `{kind}`", f"what it can be on: {', '.join(allowed)}")
     return Fault(match["kind"], value, on)

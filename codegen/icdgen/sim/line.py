@@ -54,15 +54,15 @@ class Line(DeviceLine):
         return b"".join(super().pieces(now))
 
     def _message(self, now: int, message: bytes) -> None:
-        known = self.computer.program.known
-        if known.telemetry_ids.first <= message[0] <= known.telemetry_ids.last:
-            for _, one in self.faults.spoil("request", message):
-                self._request(now, one)
+        facts = self.computer.program.known
+        if facts.telemetry_ids.first <= message[0] <= facts.telemetry_ids.last:
+            for _, received in self.faults.spoil("request", message):
+                self._request(now, received)
             return
-        form = known.files.upload if known.files else None
+        form = facts.files.upload if facts.files else None
         upload = form is not None and form.packet.message.telecommand_id == message[0]
-        for _, one in self.faults.spoil("upload" if upload else "telecommand", message):
-            self._telecommand(now, one)
+        for _, received in self.faults.spoil("upload" if upload else "telecommand", message):
+            self._telecommand(now, received)
 
     def _request(self, now: int, message: bytes) -> None:
         if len(message) != 1:
@@ -86,9 +86,9 @@ class Line(DeviceLine):
             return
         form = program.known.acknowledge
         if outcome.acknowledge and form:
-            answer = bytearray(form.length)
-            answer[form.id_at], answer[form.error_at] = message[0], outcome.code
-            self._send(now + self.computer.settings.processing_ms, "acknowledge", bytes(answer))
+            acknowledge = bytearray(form.length)
+            acknowledge[form.id_at], acknowledge[form.error_at] = message[0], outcome.code
+            self._send(now + self.computer.settings.processing_ms, "acknowledge", bytes(acknowledge))
         if outcome.reset is None:
             self._push(now)
 

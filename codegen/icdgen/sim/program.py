@@ -80,8 +80,8 @@ class Program:
     def refuse(self, message: bytes) -> Outcome:
         """Reject a telecommand without processing it."""
         self.count("telecommands")
-        known = self.known.telecommands.get(message[0])
-        outcome = self._refusal("parameter", acknowledge=known is None or known.acknowledge)
+        telecommand = self.known.telecommands.get(message[0])
+        outcome = self._refusal("parameter", acknowledge=telecommand is None or telecommand.acknowledge)
         self.last = (message[0], True, outcome.code, outcome.parameter)
         return outcome
 
@@ -117,65 +117,65 @@ class Program:
 
         Return None if the ICD has no such messages.
         """
-        asked, layout = self._log_setting(), self.known.mask
-        if asked is None or layout is None:
+        setting, layout = self._log_setting(), self.known.mask
+        if setting is None or layout is None:
             return None
         frames = []
-        for slot in layout.selected(asked[0]):
+        for slot in layout.selected(setting[0]):
             message = self.known.telemetry.get(slot.id) if slot.id is not None else None
             data = self.current(now, message) if message else bytes([layout.fill]) * slot.length
             frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
-        return LogMessage.encode(self.link, asked[0], frames)
+        return LogMessage.encode(self.link, setting[0], frames)
 
     def misfit(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
         """Return the index of the first field with an invalid value, or None."""
         for index, field in enumerate(self.icd.longest_frame(message)):
             value = raw.get(field.name)  # optional fields may be missing
-            wrong = isinstance(value, int) and (
+            is_invalid = isinstance(value, int) and (
                 bool(violations(field, value)) and codec.special_of(field, value) is None
                 if self.settings.strict
                 else field.const is not None and value != field.const
             )
-            if wrong:
+            if is_invalid:
                 return index
         return None
 
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
-        known = self.known.telecommands.get(message[0])
-        if known is None or known.name in self.unsupported:
-            return self._refusal("unknown_id", acknowledge=known is None or known.acknowledge)
+        telecommand = self.known.telecommands.get(message[0])
+        if telecommand is None or telecommand.name in self.unsupported:
+            return self._refusal("unknown_id", acknowledge=telecommand is None or telecommand.acknowledge)
         data, form = message[1:], self.known.checksum
-        if form and bus in form.telecommand_buses and len(data) == known.length + form.bytes:
-            data = data[: known.length]
+        if form and bus in form.telecommand_buses and len(data) == telecommand.length + form.bytes:
+            data = data[: telecommand.length]
             if message != i2c_write(self.link, message[0], data, crc=True):
                 return self._refusal("checksum")
-        elif form and bus in form.telecommand_always and len(data) == known.length:
+        elif form and bus in form.telecommand_always and len(data) == telecommand.length:
             return self._refusal("checksum")
-        if len(data) != known.length:
+        if len(data) != telecommand.length:
             return self._refusal("length")
-        raw = codec.decode(self.icd.node(known.node), known, data)
-        if (index := self.misfit(known, raw)) is not None:
+        raw = codec.decode(self.icd.node(telecommand.node), telecommand, data)
+        if (index := self.misfit(telecommand, raw)) is not None:
             return self._refusal("parameter", index)
-        if known.kind == CONFIGURATION:
-            self.values.put(known, data)
+        if telecommand.kind == CONFIGURATION:
+            self.values.put(telecommand, data)
         try:
             if self.transfers:
-                self.transfers.telecommand(now, known, raw)
-            self.programs.telecommand(now, known, raw)
+                self.transfers.telecommand(now, telecommand, raw)
+            self.programs.telecommand(now, telecommand, raw)
         except Refused as refused:
-            names = [field.name for field in self.icd.longest_frame(known)]
+            names = [field.name for field in self.icd.longest_frame(telecommand)]
             return self._refusal("parameter", names.index(refused.field) if refused.field else 0)
-        if known.name == self._log_role().get("message"):
+        if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
-        code, reset = self.known.errors.get("none", 0), known if known.expects_reset else None
-        return Outcome(code, acknowledge=known.acknowledge and not reset, reset=reset)
+        code, reset = self.known.errors.get("none", 0), telecommand if telecommand.expects_reset else None
+        return Outcome(code, acknowledge=telecommand.acknowledge and not reset, reset=reset)
 
     def _unsupported(self) -> set[str]:
         """Return the telecommands of a procedure that only other nodes support."""
-        given = self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
-        if self.node.name in given.get("nodes", [self.node.name]):
+        section = self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
+        if self.node.name in section.get("nodes", [self.node.name]):
             return set()
-        return {step["message"] for step in given.values() if isinstance(step, dict) and "message" in step}
+        return {step["message"] for step in section.values() if isinstance(step, dict) and "message" in step}
 
     def _refusal(self, reason: str, parameter: int = 0, acknowledge: bool = True) -> Outcome:
         return Outcome(self.known.errors.get(reason, 1), parameter, acknowledge)
@@ -183,8 +183,8 @@ class Program:
     def _identify(self) -> None:
         step = self.known.identification
         if step:
-            given = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
-            self.values.update(step.message, {n: given.get(r) or 0 for r, n in step.fields.items() if r in given})
+            values = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
+            self.values.update(step.message, {n: values.get(r) or 0 for r, n in step.fields.items() if r in values})
 
     def _statistics(self, message: Message) -> Raw:
         step = self.known.statistics
@@ -225,5 +225,5 @@ class Program:
         return bytes(raw[fields["mask"]]), int(raw[fields["period"]]) * role["period_unit_ms"]
 
     def _plan_log(self, now: int) -> None:
-        asked = self._log_setting()
-        self.log_at = now + asked[1] if asked and asked[1] else None
+        setting = self._log_setting()
+        self.log_at = now + setting[1] if setting and setting[1] else None

@@ -15,9 +15,9 @@ class Programs:
     """State of the operations. ``copy_to`` is the program that a copy replaces."""
 
     def __init__(
-        self, known: Facts, link: Link, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None
+        self, facts: Facts, link: Link, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None
     ) -> None:
-        self.known, self.link, self.storage, self.busy_ms = known, link, storage, busy_ms
+        self.known, self.link, self.storage, self.busy_ms = facts, link, storage, busy_ms
         self.copy_to, self.room = copy_to, room
         self.asked = 0  # program of the last request for information
         self.failed = False

@@ -60,13 +60,13 @@ def node_of(icd: Icd, name: str | None) -> Node:
 
     Raise `icdgen.errors.UserError`.
     """
-    able = [node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)]
+    candidates = [node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)]
     if name is None:
-        if len(able) == 1:
-            return able[0]
-        if not able:
+        if len(candidates) == 1:
+            return candidates[0]
+        if not candidates:
             raise UserError("no node of the ICD says how its messages are framed on a stream of bytes", FRAMING)
-        names = ", ".join(node.name for node in able)
+        names = ", ".join(node.name for node in candidates)
         raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}")
     node = find_node(icd, name)
     if not has_protocol(icd, node):
@@ -76,8 +76,8 @@ def node_of(icd: Icd, name: str | None) -> Node:
 
 def has_protocol(icd: Icd, node: Node) -> bool:
     """Return whether the ICD describes the protocol of the node on a byte stream."""
-    known = facts.of(icd, node)
-    return known.framing is not None or known.stream is not None
+    node_facts = facts.of(icd, node)
+    return node_facts.framing is not None or node_facts.stream is not None
 
 
 def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, control.Control]:
@@ -97,25 +97,25 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, con
     return line, controlled
 
 
-def run(icd: Icd, name: str | None, ways: list[Way], options: Options, tell: Callable[[str], None]) -> None:
+def run(icd: Icd, name: str | None, transports: list[Way], options: Options, tell: Callable[[str], None]) -> None:
     """Run the device until interrupted. Raise `icdgen.errors.UserError`."""
     line, controlled = build(icd, name, options)
-    if line.keeps_packets and any("udp" not in way[:2] for way in ways):
+    if line.keeps_packets and any("udp" not in transport[:2] for transport in transports):
         raise UserError("only packets delimit messages here, and a stream of bytes keeps none apart", "use --udp PORT")
-    asyncio.run(_run(line, controlled, ways, options.orders, tell))
+    asyncio.run(_run(line, controlled, transports, options.orders, tell))
 
 
 async def _run(
-    line: DeviceLine, controlled: control.Control, ways: list[Way], listens: bool, tell: Callable[[str], None]
+    line: DeviceLine, controlled: control.Control, ways: list[Way], reads_commands: bool, tell: Callable[[str], None]
 ) -> None:
-    server, kept = serve.Server(line, controlled), []
-    for way, *where in ways:
-        place, holder = await getattr(serve, way)(server, *where)
-        kept.append(holder)
-        tell(place)
+    server, holders = serve.Server(line, controlled), []
+    for transport, *arguments in ways:
+        address, holder = await getattr(serve, transport)(server, *arguments)
+        holders.append(holder)
+        tell(address)
     running = asyncio.create_task(server.run())
     waiting = [running]
-    if listens:
+    if reads_commands:
         waiting.append(asyncio.create_task(_listen(server, tell)))
     done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
     running.cancel()
@@ -148,14 +148,14 @@ async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
 
 def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
     """Return a file from a text ``TYPE:COUNTER=PATH``. Raise `icdgen.errors.UserError`."""
-    known = facts.of(icd, node)
+    node_facts = facts.of(icd, node)
     key, _, path = text.partition("=")
     kind, colon, counter = key.rpartition(":")
     number = numbers.integer(counter.strip())
-    type_ = _type(icd, known, kind.strip()) if path and colon else None
+    type_ = _type(icd, node_facts, kind.strip()) if path and colon else None
     if type_ is None or number is None or not (0 <= type_ <= 255 and 0 <= number <= 255):
         raise UserError(f"`{text}` is no file of the device", "TYPE:COUNTER=PATH, for instance 2:1=log.bin")
-    if known.index and type_ == known.index.file_type:
+    if node_facts.index and type_ == node_facts.index.file_type:
         raise UserError(f"`{text}`: the index file is made of the others", "leave it out")
     try:
         data = Path(path).read_bytes()
@@ -163,17 +163,17 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
     except OSError as error:
         raise unreadable(path, error, "check the path after the =") from None
     try:
-        packed = dos_time_pack(link_of(icd, known), changed)
+        packed = dos_time_pack(link_of(icd, node_facts), changed)
     except IcdError:
         packed = 0
     return (type_, number), File(data, packed)
 
 
-def _type(icd: Icd, known: facts.Facts, text: str) -> int | None:
+def _type(icd: Icd, node_facts: facts.Facts, text: str) -> int | None:
     """Return a file type from its number or name. Raise `icdgen.errors.UserError`."""
     from icdgen.values.entry import from_physical
 
-    load = known.files.download.load if known.files and known.files.download else None
+    load = node_facts.files.download.load if node_facts.files and node_facts.files.download else None
     fields = icd.longest_frame(load.message) if load else ()
     field = next((field for field in fields if load and field.name == load.fields.get("type")), None)
     if field is None:

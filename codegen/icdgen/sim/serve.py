@@ -188,7 +188,7 @@ async def pty(server: Server) -> tuple[str, object]:
 
 def _cannot(kind: str, host: str, port: int, error: OSError) -> UserError:
     """Return the error for an address that cannot be opened."""
-    taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
+    is_taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
     why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)
-    help = "port 0 takes a free one" if taken else "--host is an address of this machine"
+    help = "port 0 takes a free one" if is_taken else "--host is an address of this machine"
     return UserError(f"cannot listen on {kind} {host}:{port}: {why}", help)

@@ -35,8 +35,8 @@ class Storage:
         """Return the content of a file, or of the index file, or None."""
         if link.index_file and type_ == link.index_file.file_type:
             return write_index(link, [self._entry(link, key) for key in self.files])
-        found = self.files.get((type_, counter))
-        return found.data if found else None
+        file = self.files.get((type_, counter))
+        return file.data if file else None
 
     def _entry(self, link: Link, key: tuple[int, int]) -> IndexEntry:
         file = self.files[key]

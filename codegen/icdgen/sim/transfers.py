@@ -37,12 +37,12 @@ class Packet(NamedTuple):
 class Transfers:
     """State of all transfers of a program. ``busy_ms`` is the duration of slow steps."""
 
-    def __init__(self, known: Facts, link: Link, form: Files, storage: Storage, busy_ms: int) -> None:
-        self.known, self.link, self.form, self.storage, self.busy_ms = known, link, form, storage, busy_ms
+    def __init__(self, facts: Facts, link: Link, form: Files, storage: Storage, busy_ms: int) -> None:
+        self.known, self.link, self.form, self.storage, self.busy_ms = facts, link, form, storage, busy_ms
         self.pointer = 0
         self.block = b""
         self.loaded = self.bad = False
-        self.map = bytearray(known.hole_map.bytes if known.hole_map else 0)
+        self.map = bytearray(facts.hole_map.bytes if facts.hole_map else 0)
         self.received: dict[int, bytes] = {}
         self.failed = False
         self.busy: dict[str, int] = {}  # step -> time of its end
@@ -50,9 +50,9 @@ class Transfers:
         self.burst: list[int] = []  # positions of packets that the client will request
         self.pushed: list[Packet] = []  # unsolicited packets to send
         self.maps: dict[str, tuple[str, slice]] = {}  # message -> field, and range of the map
-        if holes := known.hole_map:
-            for at, one in enumerate(holes.messages):
-                self.maps[one.name] = holes.field, slice(at * holes.message_bytes, (at + 1) * holes.message_bytes)
+        if holes := facts.hole_map:
+            for index, message in enumerate(holes.messages):
+                self.maps[message.name] = holes.field, slice(index * holes.message_bytes, (index + 1) * holes.message_bytes)
         self.steps = form.steps
         takers: dict[str, Callable[[int, Raw], None]] = {
             "list.reset": self._reset_list,
@@ -76,9 +76,9 @@ class Transfers:
             "format.progress": lambda now: {"busy": self._is_busy("format.request", now)},
         }
         self.telecommands = {
-            one.message.name: (one, takers[name]) for name, one in self.steps.items() if name in takers
+            message.message.name: (message, takers[name]) for name, message in self.steps.items() if name in takers
         }
-        self.frames = [(one, givers[name]) for name, one in self.steps.items() if name in givers]
+        self.frames = [(message, givers[name]) for name, message in self.steps.items() if name in givers]
 
     def telecommand(self, now: int, message: Message, raw: Raw) -> None:
         """Process a telecommand of the transfers; ignore others. Raise `Refused`."""

@@ -46,17 +46,17 @@ class Values:
         Variable-length bytes and text get the length of the new value. An array gets
         all elements up to the last one that is set.
         """
-        before, given = self.raw(message), dict(raw)
+        current, new = self.raw(message), dict(raw)
         steps = [field.steps[0] for field in self.icd.longest_frame(message) if field.name in raw]
         for part in message.layout.parts:
-            octets, count = given.get(part.name), codec.size_of_values(part, {**before, **raw})
+            octets, count = new.get(part.name), codec.size_of_values(part, {**current, **raw})
             if isinstance(octets, bytes):
-                given[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
+                new[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
             elements = (step.element for step in steps if step.node is part.node)
             count = max([count, *(element + 1 for element in elements if element is not None)])
-            given.setdefault(part.counter, count - part.plus)
-        self.put(message, self.encode(message, {**before, **given}))
-        return given
+            new.setdefault(part.counter, count - part.plus)
+        self.put(message, self.encode(message, {**current, **new}))
+        return new
 
     def encode(self, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
         """Return the frame of these raw values. Raise `icdgen.codec.CodecError`."""
