@@ -23,7 +23,7 @@ from icdgen.protocol import facts
 from icdgen.recognize.envelopes import DIRECTIONS
 from icdgen.runtime_objects.links import link_of
 from icdgen.sim.computer import Computer
-from icdgen.sim.control import fitting, of_fields
+from icdgen.sim.control import fields_of, raw_value_of
 from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.settings import Settings
@@ -81,8 +81,8 @@ def simulator(icd: Icd, node: Node, frames: Frames, words: dict[str, list[list[s
         for row in words.get(message.name, ()) if message.telemetry_id is not None else ():
             try:
                 for name, value in (word.split("=", 1) for word in row):
-                    for own, one, given in of_fields(icd, node, message.name, name, value):
-                        line.computer.program.values.update(own, {one.name: fitting(own, one, given)})
+                    for own, one, given in fields_of(icd, node, message.name, name, value):
+                        line.computer.program.values.update(own, {one.name: raw_value_of(own, one, given)})
             except (UserError, codec.CodecError) as error:
                 said.append(str(error))
             said.append(_sent(line, len(said)))

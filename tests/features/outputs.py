@@ -28,7 +28,7 @@ from icdgen.logfile.log import open_log
 from icdgen.protocol import facts, logs
 from icdgen.recognize import recognize
 from icdgen.show import machine, people
-from icdgen.sim.control import fitting, of_fields
+from icdgen.sim.control import fields_of, raw_value_of
 from icdgen.sim.program import Program
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
@@ -238,8 +238,8 @@ def _simulator(subject: Subject) -> object:
         for words in subject.words.get(message.name, ()) if message.telemetry_id is not None else ():
             try:
                 for key, value in (word.split("=", 1) for word in words):
-                    for own, one, given in of_fields(icd, node, message.name, key, value):
-                        program.values.update(own, {one.name: fitting(own, one, given)})
+                    for own, one, given in fields_of(icd, node, message.name, key, value):
+                        program.values.update(own, {one.name: raw_value_of(own, one, given)})
             except (UserError, codec.CodecError) as error:
                 said.append(str(error))
             said.append(_answers(program, len(said)))
@@ -247,7 +247,7 @@ def _simulator(subject: Subject) -> object:
 
 
 def _answers(program: Program, now: int) -> list[bytes | None]:
-    return [program.frame(now, id) for id in program.known.telemetry]
+    return [program.frame(now, id) for id in program.facts.telemetry]
 
 
 def _log(subject: Subject) -> tuple[object, object]:

@@ -39,7 +39,7 @@ class Refusing(Port):
 
     def __init__(self, icd: Icd, node: str, id: int, code: int, times: int, **options) -> None:
         super().__init__(icd, node, **options)
-        framing = self.line.computer.program.known.framing
+        framing = self.line.computer.program.facts.framing
         self.good, self.bad = (uart.encode(framing, bytes((id, one))) for one in (0, code))
         self.times, self.acknowledged = times, 0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.loading import load
-from icdgen.sim.control import fitting, of_fields
+from icdgen.sim.control import fields_of, raw_value_of
 from icdgen.values.errors import BadValue
 
 ICD = """\
@@ -38,16 +38,16 @@ def icd(tmp_path_factory):
     ],
 )
 def test_values_of_an_array_come_as_a_list_and_of_an_element_as_a_number(icd, key, value, raw):
-    found = of_fields(icd, icd.node("demo"), "Heat", key, value)
-    assert {one.steps[-1].element: fitting(message, one, given) for message, one, given in found} == raw
+    found = fields_of(icd, icd.node("demo"), "Heat", key, value)
+    assert {one.steps[-1].element: raw_value_of(message, one, given) for message, one, given in found} == raw
 
 
 def test_a_wave_of_an_array_moves_each_element(icd):
     wave = {"wave": "sine", "min": 0, "max": 1}
-    found = of_fields(icd, icd.node("demo"), "Heat", "temperatures", wave)
+    found = fields_of(icd, icd.node("demo"), "Heat", "temperatures", wave)
     assert [(one.steps[-1].element, given) for _, one, given in found] == [(0, wave), (1, wave), (2, wave)]
 
 
 def test_too_few_values_are_refused(icd):
     with pytest.raises(BadValue, match="`temperatures` takes 3 values in brackets, 2 given"):
-        of_fields(icd, icd.node("demo"), "Heat", "temperatures", [1, 2])
+        fields_of(icd, icd.node("demo"), "Heat", "temperatures", [1, 2])

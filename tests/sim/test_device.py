@@ -231,7 +231,7 @@ def test_the_same_seed_brings_the_same_faults(seed):
 
         kinds = ["drop=20%", "corrupt=20%", "cut=20%", "repeat=20%", "noise=20%", "duplicate=20%", "late=20%"]
         faults = Faults(Random(seed), [parse(one) for one in kinds])
-        return [faults.spoil("reply", bytes(range(20))) for _ in range(200)]
+        return [faults.apply("reply", bytes(range(20))) for _ in range(200)]
 
     first = outcomes()
     assert first == outcomes()

@@ -69,7 +69,7 @@ def talking(node: str, values=None, spoil=lambda data: data, **options):
 def test_telemetry_that_comes_unasked_is_a_stream_of_messages(node):
     session, port, heard = talking(node, every=0.1)
     came = list(session.messages(seconds=0.35))
-    wanted = [message.name for message in port.line.unasked]
+    wanted = [message.name for message in port.line.unsolicited]
     assert [message.NAME for message in came] == wanted * 4 and len(wanted) >= 1
     assert all(isinstance(event, Arrived) for event in heard)
 
@@ -192,7 +192,7 @@ def test_packets_that_delimit_messages_need_a_way_that_keeps_them_apart():
         run.run(ICD, node, [("tcp", "127.0.0.1", 0)], run.Options(), print)
     session, port, heard = talking(node, every=0.1)
     assert list(session.messages(seconds=0.15))
-    assert sum(isinstance(event, Arrived) for event in heard) == 2 * len(port.line.unasked)
+    assert sum(isinstance(event, Arrived) for event in heard) == 2 * len(port.line.unsolicited)
 
 
 def test_a_value_of_no_field_of_the_envelope_is_refused():

@@ -9,7 +9,7 @@ import pytest
 from icdgen.errors import UserError
 from icdgen.icd.layout import overlay_of
 from icdgen.protocol import transfer
-from icdgen.sim.control import _check_wave, fitting
+from icdgen.sim.control import _check_wave, raw_value_of
 from icdgen.sim.values import Values
 from tests.sim.device import ICD
 from tests.sim.port import Refusing
@@ -61,7 +61,7 @@ def test_a_view_is_not_set_and_follows_what_is():
     values.update(both, {own.name: -2})
     assert values.raw(both)["Seen"] == -2
     view = values.icd.longest_frame(both)[-1]
-    for wrong in (lambda: fitting(both, view, "1"), lambda: _check_wave("step 1", view, {"wave": "sine"})):
+    for wrong in (lambda: raw_value_of(both, view, "1"), lambda: _check_wave("step 1", view, {"wave": "sine"})):
         with pytest.raises(UserError, match="an overlay field has no bits of its own"):
             wrong()
 

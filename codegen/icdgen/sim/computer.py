@@ -21,7 +21,7 @@ class Computer:
         self.program = Program(self.icd, node, self.storage, self.settings, now)
         self.boot_at = None
         if self._application(node):
-            wait = self.settings.boot_ms if self.settings.boot_ms is not None else self.program.known.boot_ms
+            wait = self.settings.boot_ms if self.settings.boot_ms is not None else self.program.facts.boot_ms
             self.boot_at = None if wait is None else now + wait
 
     def tick(self, now: int) -> None:
@@ -46,7 +46,7 @@ class Computer:
     def frame(self, now: int, id: int) -> bytes | None:
         """Return the frame with this id, or None if the program has none."""
         stop = self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
-        message = self.program.known.telemetry.get(id)
+        message = self.program.facts.telemetry.get(id)
         if message and message.name == stop:
             self.boot_at = None
         return self.program.frame(now, id)

@@ -5,10 +5,10 @@ They are given by options, by a script, or while it runs.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import shlex
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,12 +31,12 @@ WAVES = ("sine", "ramp", "steps", "noise")
 HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: value}}}`; see docs/guides/simulator.md"
 
 
-@dataclass
+@dataclasses.dataclass
 class Step:
     """A step of a script, ``at`` milliseconds after the start."""
 
     at: int
-    set: dict[str, dict[str, object]] = field(default_factory=dict)
+    set: dict[str, dict[str, object]] = dataclasses.field(default_factory=dict)
     faults: list[faults.Fault] | None = None
     log: bool = False
     restart: bool = False
@@ -62,7 +62,9 @@ class Control:
         values = self.line.computer.program.values
         for message, field, wave in self.moving:
             if message.name in values.frames:
-                values.update(message, {field.name: raw_of(field, at(wave, now / 1000, self.line.faults.random.random))})
+                values.update(
+                    message, {field.name: raw_of(field, at(wave, now / 1000, self.line.faults.random.random))}
+                )
 
     def do(self, now: int, step: Step) -> None:
         """Execute a step."""
@@ -78,7 +80,7 @@ class Control:
 
     def set(self, name: str, key: str, value: object) -> None:
         """Set a field of a frame now and at each start. Raise `icdgen.errors.UserError`."""
-        for message, field, element_value in of_fields(self.icd, self.node, name, key, value):
+        for message, field, element_value in fields_of(self.icd, self.node, name, key, value):
             self._set(message, field, element_value)
 
     def _set(self, message: Message, field: FrameField, value: object) -> None:
@@ -86,7 +88,7 @@ class Control:
         if isinstance(value, Mapping):
             self.moving.append((message, field, value))
             return
-        raw = {field.name: fitting(message, field, value)}
+        raw = {field.name: raw_value_of(message, field, value)}
         values = self.line.computer.program.values
         if message.name in values.frames:
             try:
@@ -103,7 +105,7 @@ class Control:
             raise BadValue(f"`{text}` is not of the form field=value", help)
         self.set(name, key, value)
 
-    def say(self, now: int, text: str) -> str:
+    def execute(self, now: int, text: str) -> str:
         """Execute a command line and return its response. Raise `icdgen.errors.UserError`."""
         try:
             words = shlex.split(text)
@@ -127,7 +129,7 @@ class Control:
         return "ok"
 
 
-def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, FrameField, object]]:
+def fields_of(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, FrameField, object]]:
     """Return a field of a frame and its value, or all elements of an array with their values.
 
     The values of an array are a list, or its text. A variable-length array may have a
@@ -169,7 +171,7 @@ def locate_message(icd: Icd, node: Node, name: str) -> Message:
     raise errors[0]
 
 
-def fitting(message: Message, field: FrameField, value: object) -> int | bytes:
+def raw_value_of(message: Message, field: FrameField, value: object) -> int | bytes:
     """Return the raw value of a user's value. Raise `icdgen.errors.UserError`."""
     if field.role in ("overlay", "derived"):
         raise UserError(
@@ -224,13 +226,15 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
         raise UserError(f"{where}: `set` is no mapping of messages to fields", HELP)
     for name, fields in values.items():
         for key, value in fields.items():
-            for message, field, element_value in of_fields(icd, node, str(name), str(key), value):
+            for message, field, element_value in fields_of(icd, node, str(name), str(key), value):
                 if isinstance(element_value, Mapping):
                     _check_wave(f"{where}, {name}, {key}", field, element_value)
                 else:
-                    fitting(message, field, element_value)
+                    raw_value_of(message, field, element_value)
     fault_texts = row.get("faults")
-    if fault_texts is not None and not (isinstance(fault_texts, list) and all(isinstance(field, str) for field in fault_texts)):
+    if fault_texts is not None and not (
+        isinstance(fault_texts, list) and all(isinstance(field, str) for field in fault_texts)
+    ):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)
     return Step(
         round(seconds * 1000),

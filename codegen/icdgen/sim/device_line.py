@@ -48,8 +48,8 @@ class DeviceLine:
         """Time at which `tick` must be called, or None."""
         return self.computer.deadline
 
-    def leave(self, now: int, on: str, data: bytes) -> None:
+    def queue(self, now: int, on: str, data: bytes) -> None:
         """Queue the bytes of a message, with the faults for messages of the kind ``on``."""
-        for delay, piece in self.faults.spoil(on, data):
+        for delay, piece in self.faults.apply(on, data):
             self._sent += 1
             heapq.heappush(self._due, (now + delay, self._sent, piece))

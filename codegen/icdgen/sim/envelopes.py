@@ -26,7 +26,7 @@ class EnvelopeLine(DeviceLine):
     def __init__(self, computer: Computer, faults: Faults, chosen: Mapping[str, int]) -> None:
         super().__init__(computer, faults)
         program = computer.program
-        self.form = need(program.known.stream, "stream")
+        self.form = need(program.facts.stream, "stream")
         self.keeps_packets = self.form.delimited_by == PACKET
         self.sender = Sender(program.link, "telemetry", chosen)
         self.decoder = StreamDecoder(program.link, "telecommand")
@@ -35,7 +35,7 @@ class EnvelopeLine(DeviceLine):
         self.replies: dict[str, str] = section.get("replies", {})
         answers = set(self.replies.values())
         messages = [variant.message for variants in self.ids.telemetry.values() for variant in variants]
-        self.unasked = [message for message in messages if message.name not in answers]
+        self.unsolicited = [message for message in messages if message.name not in answers]
         self._every = computer.settings.every_ms
         self._next = 0
 
@@ -43,7 +43,7 @@ class EnvelopeLine(DeviceLine):
         self.tick(now)
         for event in self.decoder.feed(data):
             if event.event == "message" and event.id is not None:
-                for _, received_data in self.faults.spoil("telecommand", event.data):
+                for _, received_data in self.faults.apply("telecommand", event.data):
                     if received_data == event.data or self.form.check is None:
                         self._telecommand(now, event.id, received_data)
             else:
@@ -56,7 +56,7 @@ class EnvelopeLine(DeviceLine):
             self.log(now)
 
     def log(self, now: int) -> None:
-        for message in self.unasked:
+        for message in self.unsolicited:
             self._send(now, "telemetry", message)
 
     @property
@@ -68,7 +68,7 @@ class EnvelopeLine(DeviceLine):
         message = codec.message_of_frame_if_any(
             program.icd, [variant.message for variant in self.ids.telecommand.get(id, ())], data
         )
-        if message is None or not self._is_taken(message, data):
+        if message is None or not self._is_valid(message, data):
             program.count("refused")
             return
         program.count("telecommands")
@@ -78,15 +78,15 @@ class EnvelopeLine(DeviceLine):
         if reply is not None:
             self._send(now + self.computer.settings.processing_ms, "reply", reply)
 
-    def _is_taken(self, message: Message, data: bytes) -> bool:
+    def _is_valid(self, message: Message, data: bytes) -> bool:
         """Return whether the telecommand has a valid length and valid values."""
         program = self.computer.program
         try:
             raw = codec.decode(program.icd.node(message.node), message, data)
         except codec.LengthError:
             return False  # a counter does not match the length
-        return program.misfit(message, raw) is None
+        return program.first_invalid(message, raw) is None
 
     def _send(self, now: int, on: str, message: Message) -> None:
         assert message.telemetry_id is not None
-        self.leave(now, on, self.sender.encode(message.telemetry_id, self.computer.program.current(now, message)))
+        self.queue(now, on, self.sender.encode(message.telemetry_id, self.computer.program.current(now, message)))

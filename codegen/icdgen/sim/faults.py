@@ -44,7 +44,7 @@ class Faults:
         """Return whether this message has the fault."""
         return any(f.kind == kind and on in f.on and self.random.random() < f.share for f in self.faults)
 
-    def spoil(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
+    def apply(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
         """Return the bytes of a message with faults: pieces and their delays in milliseconds."""
         if self.hits("drop", on):
             return []

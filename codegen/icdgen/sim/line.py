@@ -25,7 +25,7 @@ class Line(DeviceLine):
         super().__init__(computer, faults)
         # All programs of a device use its line and its framing.
         self.link = computer.program.link
-        self.decoder = UartDecoder(self.link, computer.program.known.longest_telecommand)
+        self.decoder = UartDecoder(self.link, computer.program.facts.longest_telecommand)
 
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
@@ -54,14 +54,14 @@ class Line(DeviceLine):
         return b"".join(super().pieces(now))
 
     def _message(self, now: int, message: bytes) -> None:
-        facts = self.computer.program.known
+        facts = self.computer.program.facts
         if facts.telemetry_ids.first <= message[0] <= facts.telemetry_ids.last:
-            for _, received in self.faults.spoil("request", message):
+            for _, received in self.faults.apply("request", message):
                 self._request(now, received)
             return
         form = facts.files.upload if facts.files else None
         upload = form is not None and form.packet.message.telecommand_id == message[0]
-        for _, received in self.faults.spoil("upload" if upload else "telecommand", message):
+        for _, received in self.faults.apply("upload" if upload else "telecommand", message):
             self._telecommand(now, received)
 
     def _request(self, now: int, message: bytes) -> None:
@@ -69,7 +69,7 @@ class Line(DeviceLine):
             return
         frame = self.computer.frame(now, message[0])
         if frame is not None:
-            form = self.computer.program.known.checksum
+            form = self.computer.program.facts.checksum
             checked = form is not None and UART in form.telemetry_always
             self._send(now, "reply", i2c_write(self.link, message[0], frame, checked))
 
@@ -84,7 +84,7 @@ class Line(DeviceLine):
             outcome = self.computer.take(now, message, UART)
         if outcome is None:
             return
-        form = program.known.acknowledge
+        form = program.facts.acknowledge
         if outcome.acknowledge and form:
             acknowledge = bytearray(form.length)
             acknowledge[form.id_at], acknowledge[form.error_at] = message[0], outcome.code
@@ -101,8 +101,8 @@ class Line(DeviceLine):
         pushed, transfers.pushed, transfers.burst = transfers.pushed, [], []
         head = bytes([transfers.form.packet_ids[UART]])
         for packet in pushed:
-            number = program.known.bytes_of(packet.number, transfers.form.counter_bytes)
+            number = program.facts.bytes_of(packet.number, transfers.form.counter_bytes)
             self._send(now, "packet", head + number + packet.data)
 
     def _send(self, now: int, on: str, message: bytes) -> None:
-        self.leave(now, on, uart_encode(self.link, message))
+        self.queue(now, on, uart_encode(self.link, message))

@@ -39,15 +39,15 @@ class Program:
 
     def __init__(self, icd: Icd, node: Node, storage: Storage, settings: Settings, now: int) -> None:
         self.icd, self.node, self.settings = icd, node, settings
-        self.known = facts.of(icd, node)
-        self.link = link_of(icd, self.known)
+        self.facts = facts.of(icd, node)
+        self.link = link_of(icd, self.facts)
         self.values = Values(icd, node)
-        form = self.known.files
-        self.transfers = Transfers(self.known, self.link, form, storage, settings.busy_ms) if form else None
+        form = self.facts.files
+        self.transfers = Transfers(self.facts, self.link, form, storage, settings.busy_ms) if form else None
         protocol = icd.protocol_of(node)
         copy_to = protocol.get("program_copy", {}).get("destination")
         room = protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
-        self.programs = Programs(self.known, self.link, storage, settings.busy_ms, copy_to, room)
+        self.programs = Programs(self.facts, self.link, storage, settings.busy_ms, copy_to, room)
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
         self.last = (0, True, 0, 0)  # id, processed, code and parameter of the last telecommand
@@ -80,14 +80,14 @@ class Program:
     def refuse(self, message: bytes) -> Outcome:
         """Reject a telecommand without processing it."""
         self.count("telecommands")
-        telecommand = self.known.telecommands.get(message[0])
+        telecommand = self.facts.telecommands.get(message[0])
         outcome = self._refusal("parameter", acknowledge=telecommand is None or telecommand.acknowledge)
         self.last = (message[0], True, outcome.code, outcome.parameter)
         return outcome
 
     def frame(self, now: int, id: int) -> bytes | None:
         """Return the frame with this id, or None."""
-        message = self.known.telemetry.get(id)
+        message = self.facts.telemetry.get(id)
         if message is None:
             return None
         self.count("requests")
@@ -117,17 +117,17 @@ class Program:
 
         Return None if the ICD has no such messages.
         """
-        setting, layout = self._log_setting(), self.known.mask
+        setting, layout = self._log_setting(), self.facts.mask
         if setting is None or layout is None:
             return None
         frames = []
         for slot in layout.selected(setting[0]):
-            message = self.known.telemetry.get(slot.id) if slot.id is not None else None
+            message = self.facts.telemetry.get(slot.id) if slot.id is not None else None
             data = self.current(now, message) if message else bytes([layout.fill]) * slot.length
             frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
         return LogMessage.encode(self.link, setting[0], frames)
 
-    def misfit(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
+    def first_invalid(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
         """Return the index of the first field with an invalid value, or None."""
         for index, field in enumerate(self.icd.longest_frame(message)):
             value = raw.get(field.name)  # optional fields may be missing
@@ -141,10 +141,10 @@ class Program:
         return None
 
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
-        telecommand = self.known.telecommands.get(message[0])
+        telecommand = self.facts.telecommands.get(message[0])
         if telecommand is None or telecommand.name in self.unsupported:
             return self._refusal("unknown_id", acknowledge=telecommand is None or telecommand.acknowledge)
-        data, form = message[1:], self.known.checksum
+        data, form = message[1:], self.facts.checksum
         if form and bus in form.telecommand_buses and len(data) == telecommand.length + form.bytes:
             data = data[: telecommand.length]
             if message != i2c_write(self.link, message[0], data, crc=True):
@@ -154,7 +154,7 @@ class Program:
         if len(data) != telecommand.length:
             return self._refusal("length")
         raw = codec.decode(self.icd.node(telecommand.node), telecommand, data)
-        if (index := self.misfit(telecommand, raw)) is not None:
+        if (index := self.first_invalid(telecommand, raw)) is not None:
             return self._refusal("parameter", index)
         if telecommand.kind == CONFIGURATION:
             self.values.put(telecommand, data)
@@ -167,7 +167,7 @@ class Program:
             return self._refusal("parameter", names.index(refused.field) if refused.field else 0)
         if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
-        code, reset = self.known.errors.get("none", 0), telecommand if telecommand.expects_reset else None
+        code, reset = self.facts.errors.get("none", 0), telecommand if telecommand.expects_reset else None
         return Outcome(code, acknowledge=telecommand.acknowledge and not reset, reset=reset)
 
     def _unsupported(self) -> set[str]:
@@ -178,16 +178,16 @@ class Program:
         return {step["message"] for step in section.values() if isinstance(step, dict) and "message" in step}
 
     def _refusal(self, reason: str, parameter: int = 0, acknowledge: bool = True) -> Outcome:
-        return Outcome(self.known.errors.get(reason, 1), parameter, acknowledge)
+        return Outcome(self.facts.errors.get(reason, 1), parameter, acknowledge)
 
     def _identify(self) -> None:
-        step = self.known.identification
+        step = self.facts.identification
         if step:
             values = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
             self.values.update(step.message, {n: values.get(r) or 0 for r, n in step.fields.items() if r in values})
 
     def _statistics(self, message: Message) -> Raw:
-        step = self.known.statistics
+        step = self.facts.statistics
         if step is None or step.message.name != message.name:
             return {}
         bits = {field.name: field.bits for field in self.icd.longest_frame(step.message)}
@@ -198,7 +198,7 @@ class Program:
         return result
 
     def _acknowledged(self, now: int, message: Message) -> Raw:
-        polled = self.known.polled
+        polled = self.facts.polled
         if polled is None or polled.message.name != message.name:
             return {}
         id, _, code, parameter = self.last
@@ -208,7 +208,7 @@ class Program:
     def _fetched(self, message: Message) -> bytes:
         assert self.transfers
         packet = self.transfers.fetch()
-        head = self.known.bytes_of(packet.number, self.transfers.form.counter_bytes)
+        head = self.facts.bytes_of(packet.number, self.transfers.form.counter_bytes)
         return (head + packet.data).ljust(message.length, bytes([self.transfers.form.fill]))[: message.length]
 
     def _log_role(self) -> dict[str, Any]:
@@ -219,7 +219,7 @@ class Program:
         """Return mask and period in milliseconds, or None."""
         role = self._log_role()
         message = self.values.messages.get(role.get("message", ""))
-        if message is None or not self.known.log_message:
+        if message is None or not self.facts.log_message:
             return None
         raw, fields = self.values.raw(message), role["fields"]
         return bytes(raw[fields["mask"]]), int(raw[fields["period"]]) * role["period_unit_ms"]

@@ -17,9 +17,9 @@ class Programs:
     def __init__(
         self, facts: Facts, link: Link, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None
     ) -> None:
-        self.known, self.link, self.storage, self.busy_ms = facts, link, storage, busy_ms
+        self.facts, self.link, self.storage, self.busy_ms = facts, link, storage, busy_ms
         self.copy_to, self.room = copy_to, room
-        self.asked = 0  # program of the last request for information
+        self.requested = 0  # program of the last request for information
         self.failed = False
         self.busy: dict[str, int] = {}  # operation -> time of its end
 
@@ -32,10 +32,10 @@ class Programs:
             if form.programs and program not in form.programs:
                 raise Refused(form.request.fields["program"])
             self.busy[name] = now + self.busy_ms
-            if form is self.known.program_copy:
+            if form is self.facts.program_copy:
                 self.failed = not self._copy(program)
             else:
-                self.asked = program
+                self.requested = program
 
     def answer(self, now: int, message: Message) -> Raw:
         """Return values of the fields that report the progress of an operation."""
@@ -43,17 +43,17 @@ class Programs:
             if form.progress.message.name == message.name:
                 busy = now < self.busy.get(name, now)
                 values: dict[str, int] = {"busy": int(busy), "ready": int(not busy)}
-                if form is self.known.program_copy:
+                if form is self.facts.program_copy:
                     values["error"] = int(self.failed and not busy)
                 else:
-                    data = b"" if busy else bytes(self.storage.programs.get(self.asked, b""))
+                    data = b"" if busy else bytes(self.storage.programs.get(self.requested, b""))
                     checksum = checksum_of(self.link, data) if data else 0
-                    values |= {"program": self.asked, "size": len(data), "checksum": checksum}
+                    values |= {"program": self.requested, "size": len(data), "checksum": checksum}
                 return {field: values[role] for role, field in form.progress.fields.items() if role in values}
         return {}
 
     def _forms(self) -> list[tuple[str, Operation]]:
-        forms = {"program_copy": self.known.program_copy, "program_information": self.known.program_information}
+        forms = {"program_copy": self.facts.program_copy, "program_information": self.facts.program_information}
         return [(name, form) for name, form in forms.items() if form]
 
     def _copy(self, program: int) -> bool:

@@ -86,10 +86,12 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, con
     storage = Storage(on_upload=_saver(options.uploads))
     storage.files.update(_file(icd, node, text) for text in options.files)
     settings = Settings(options.boot, options.busy, options.processing, options.strict, round(options.every * 1000))
-    spoil = faults.Faults(Random(options.seed), [faults.parse(fault) for fault in options.faults], options.late)
+    line_faults = faults.Faults(Random(options.seed), [faults.parse(fault) for fault in options.faults], options.late)
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
-    line: DeviceLine = EnvelopeLine(computer, spoil, chosen) if computer.program.known.stream else Line(computer, spoil)
+    line: DeviceLine = (
+        EnvelopeLine(computer, line_faults, chosen) if computer.program.facts.stream else Line(computer, line_faults)
+    )
     steps = control.read(options.script, icd, node) if options.script else []
     controlled = control.Control(icd, node, line, steps)
     for message, text in options.values:
@@ -139,7 +141,7 @@ async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
     threading.Thread(target=read, daemon=True).start()
     while (line := await lines.get()) is not None:
         try:
-            answer = server.say(line.strip())
+            answer = server.execute(line.strip())
         except UserError as error:
             answer = f"error: {error}" + (f"; {error.help}" if error.help else "")
         if answer:

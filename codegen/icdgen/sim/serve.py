@@ -16,7 +16,7 @@ from icdgen.sim.device_line import DeviceLine
 
 Send = Callable[[bytes], None]
 PIECE = 1400  # bytes of a stream in one datagram
-AGAIN = 1.0  # s between two attempts to connect
+RECONNECT_INTERVAL = 1.0  # s between two attempts to connect
 IDLE = 0.5  # s; longest sleep, as some systems notice an interrupt only afterwards
 
 
@@ -42,9 +42,9 @@ class Server:
         self._flush(now)
         self.wake.set()
 
-    def say(self, text: str) -> str:
+    def execute(self, text: str) -> str:
         """Execute a command and return its response. Raise `icdgen.errors.UserError`."""
-        answer = self.control.say(self.now, text)
+        answer = self.control.execute(self.now, text)
         self._flush(self.now)
         self.wake.set()
         return answer
@@ -77,12 +77,12 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         # The client has disconnected, or the simulator ends. Otherwise asyncio would print the cancellation.
         with suppress(OSError, asyncio.CancelledError):
-            await _served(server, reader, writer)
+            await _handle(server, reader, writer)
 
     try:
         listening = await asyncio.start_server(serve, host, port)
     except OSError as error:
-        raise _cannot("tcp", host, port, error) from None
+        raise _listen_error("tcp", host, port, error) from None
     return f"tcp://{host}:{listening.sockets[0].getsockname()[1]}", listening
 
 
@@ -121,7 +121,7 @@ async def udp(server: Server, host: str, port: int, connects: bool = False) -> t
             return f"to udp://{host}:{port}", transport
         transport, _ = await loop.create_datagram_endpoint(Protocol, (host, port))
     except OSError as error:
-        raise _cannot("udp", host, port, error) from None
+        raise _listen_error("udp", host, port, error) from None
     return f"udp://{host}:{transport.get_extra_info('sockname')[1]}", transport
 
 
@@ -129,19 +129,19 @@ async def connect(server: Server, kind: str, host: str, port: int) -> tuple[str,
     """Connect to a server, and reconnect when the connection is lost. Return its address."""
     if kind == "udp":
         return await udp(server, host, port, connects=True)
-    return f"to tcp://{host}:{port}", asyncio.create_task(_kept(server, host, port))
+    return f"to tcp://{host}:{port}", asyncio.create_task(_stay_connected(server, host, port))
 
 
-async def _kept(server: Server, host: str, port: int) -> None:
+async def _stay_connected(server: Server, host: str, port: int) -> None:
     """Connect, and reconnect when the connection is lost."""
     while True:
         with suppress(OSError):
             reader, writer = await asyncio.open_connection(host, port)
-            await _served(server, reader, writer)
-        await asyncio.sleep(AGAIN)
+            await _handle(server, reader, writer)
+        await asyncio.sleep(RECONNECT_INTERVAL)
 
 
-async def _served(server: Server, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def _handle(server: Server, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
     """Handle a connection until it ends."""
     send = writer.write
     server.clients.append(send)
@@ -186,7 +186,7 @@ async def pty(server: Server) -> tuple[str, object]:
     return os.ttyname(slave), (master, slave)
 
 
-def _cannot(kind: str, host: str, port: int, error: OSError) -> UserError:
+def _listen_error(kind: str, host: str, port: int, error: OSError) -> UserError:
     """Return the error for an address that cannot be opened."""
     is_taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
     why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)

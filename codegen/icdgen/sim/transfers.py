@@ -38,7 +38,7 @@ class Transfers:
     """State of all transfers of a program. ``busy_ms`` is the duration of slow steps."""
 
     def __init__(self, facts: Facts, link: Link, form: Files, storage: Storage, busy_ms: int) -> None:
-        self.known, self.link, self.form, self.storage, self.busy_ms = facts, link, form, storage, busy_ms
+        self.facts, self.link, self.form, self.storage, self.busy_ms = facts, link, form, storage, busy_ms
         self.pointer = 0
         self.block = b""
         self.loaded = self.bad = False
@@ -52,9 +52,11 @@ class Transfers:
         self.maps: dict[str, tuple[str, slice]] = {}  # message -> field, and range of the map
         if holes := facts.hole_map:
             for index, message in enumerate(holes.messages):
-                self.maps[message.name] = holes.field, slice(index * holes.message_bytes, (index + 1) * holes.message_bytes)
+                self.maps[message.name] = holes.field, slice(
+                    index * holes.message_bytes, (index + 1) * holes.message_bytes
+                )
         self.steps = form.steps
-        takers: dict[str, Callable[[int, Raw], None]] = {
+        handlers: dict[str, Callable[[int, Raw], None]] = {
             "list.reset": self._reset_list,
             "list.advance": self._advance,
             "download.load": self._load,
@@ -66,7 +68,7 @@ class Transfers:
             "erase.request": self._erase,
             "format.request": self._format,
         }
-        givers: dict[str, Callable[[int], Raw]] = {
+        providers: dict[str, Callable[[int], Raw]] = {
             "list.information": self._information,
             "download.ready": self._ready,
             "upload.initiated": lambda now: {"busy": self._is_busy("upload.initiate", now)},
@@ -76,9 +78,9 @@ class Transfers:
             "format.progress": lambda now: {"busy": self._is_busy("format.request", now)},
         }
         self.telecommands = {
-            message.message.name: (message, takers[name]) for name, message in self.steps.items() if name in takers
+            step.message.name: (step, handlers[name]) for name, step in self.steps.items() if name in handlers
         }
-        self.frames = [(message, givers[name]) for name, message in self.steps.items() if name in givers]
+        self.frames = [(step, providers[name]) for name, step in self.steps.items() if name in providers]
 
     def telecommand(self, now: int, message: Message, raw: Raw) -> None:
         """Process a telecommand of the transfers; ignore others. Raise `Refused`."""
@@ -114,16 +116,16 @@ class Transfers:
     def _is_busy(self, step: str, now: int) -> int:
         return int(now < self.busy.get(step, now))
 
-    def _work(self, step: str, now: int) -> None:
+    def _start(self, step: str, now: int) -> None:
         self.busy[step] = now + self.busy_ms
 
     def _reset_list(self, now: int, _: Raw) -> None:
         self.pointer = 0
-        self._work("list.reset", now)
+        self._start("list.reset", now)
 
     def _advance(self, now: int, _: Raw) -> None:
         self.pointer = min(self.pointer + 1, len(self.storage.files))
-        self._work("list.reset", now)
+        self._start("list.reset", now)
 
     def _information(self, now: int) -> Raw:
         files, busy = list(self.storage.files.items()), self._is_busy("list.reset", now)
@@ -135,7 +137,7 @@ class Transfers:
 
     def _load(self, now: int, values: Raw) -> None:
         self.block, self.loaded, self.bad, self.burst = b"", True, False, []
-        self._work("download.load", now)
+        self._start("download.load", now)
         content = self.storage.read(self.link, values["type"], values["counter"])  # type: ignore[arg-type]
         offset, length = int(values["offset"]), int(values["length"])
         if content is None or offset > len(content) or length > self.form.block_bytes:
@@ -148,7 +150,7 @@ class Transfers:
             return {"ready": 0, "error": 0, "checksum": 0, "length": 0}
         covered = self.block
         if self.form.download and self.form.download.checksum_covers_fill:
-            covered = b"".join(self._packet_at(at).data for at in range(self.known.packets_of(len(covered))))
+            covered = b"".join(self._packet_at(at).data for at in range(self.facts.packets_of(len(covered))))
         checksum = checksum_of(self.link, covered)
         return {"ready": 1, "error": int(self.bad), "checksum": checksum, "length": len(self.block)}
 
@@ -156,9 +158,9 @@ class Transfers:
         if self.form.download and values.get("length", 0) != self.form.download.message_length:
             self.bad = True
             raise Refused()
-        count = self.known.packets_of(len(self.block))
+        count = self.facts.packets_of(len(self.block))
         self.burst = list(range(count))
-        if not values.get("ignore_hole_map") and self.known.hole_map:
+        if not values.get("ignore_hole_map") and self.facts.hole_map:
             missing = HoleMap.from_bytes(self.link, count, bytes(self.map)).missing()
             self.burst = [number - self.form.first_packet for number in missing]
         self.pushed = [self._packet_at(at) for at in self.burst]
@@ -172,7 +174,7 @@ class Transfers:
         self.storage.programs[self._destination(values)] = bytearray()
         self.received, self.failed = {}, False
         self._clear_map()
-        self._work("upload.initiate", now)
+        self._start("upload.initiate", now)
 
     def _destination(self, values: Raw) -> int:
         destination = int(values["destination"])
@@ -185,12 +187,12 @@ class Transfers:
         self._clear_map()
 
     def _clear_map(self) -> None:
-        empty = 0x00 if not self.known.hole_map or self.known.hole_map.received else 0xFF
+        empty = 0x00 if not self.facts.hole_map or self.facts.hole_map.received else 0xFF
         self.map = bytearray([empty]) * len(self.map)
 
     def _packet(self, now: int, values: Raw) -> None:
         number = int(values["number"])
-        position, form = number - self.form.first_packet, self.known.hole_map
+        position, form = number - self.form.first_packet, self.facts.hole_map
         if not 0 <= position < self.form.block_packets:
             return
         self.received[position] = values["bytes"]  # type: ignore[assignment]
@@ -210,12 +212,12 @@ class Transfers:
         destination, offset = self._destination(values), int(values["offset"])
         room = self.form.upload.destination_bytes if self.form.upload else None
         self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length], room)
-        self._work("upload.finalize", now)
+        self._start("upload.finalize", now)
 
     def _erase(self, now: int, values: Raw) -> None:
         if values.get("all"):
             self.storage.files.clear()
-            self._work("erase.request", now)
+            self._start("erase.request", now)
         else:
             self.storage.files.pop((values["type"], values["counter"]), None)  # type: ignore[arg-type]
         self.pointer = 0
@@ -223,4 +225,4 @@ class Transfers:
     def _format(self, now: int, _: Raw) -> None:
         self.storage.files.clear()
         self.pointer = 0
-        self._work("format.request", now)
+        self._start("format.request", now)

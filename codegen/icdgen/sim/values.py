@@ -118,7 +118,7 @@ def _on_curve(field: FrameField, bound: Fraction) -> Iterable[int]:
 def raw_of(field: FrameField, value: float) -> int:
     """Return the raw value nearest to a physical one, limited to the range of the field."""
     if field.curve is not None:
-        return _held(field, field.curve, value)
+        return _raw_on_curve(field, field.curve, value)
     if field.type == "float":
         return codec.float_bits(field, value)
     exact = Fraction(value)
@@ -126,7 +126,7 @@ def raw_of(field: FrameField, value: float) -> int:
     return min(max(raw, field.raw_min), field.raw_max)
 
 
-def _held(field: FrameField, curve: Curve, value: float) -> int:
+def _raw_on_curve(field: FrameField, curve: Curve, value: float) -> int:
     """Return the raw value of a calibration, limited to its range; 0 without an inverse."""
     if not field.is_invertible:
         return 0
