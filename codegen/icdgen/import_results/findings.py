@@ -15,12 +15,12 @@ class Spot(NamedTuple):
     page: int | None = None
     line: int | None = None
     table: int | None = None
-    order: int | None = None  # of the table in the document, from 0: numbers may be missing or repeated
+    order: int | None = None  # index of the table in the document, as table numbers may be missing or repeated
     file: str = ""  # if several files are one source
 
     @property
     def place(self) -> str:
-        """``page 12``, ``line 482``, ``types.xml, line 3``; "" for the document as a whole."""
+        """Place such as ``page 12`` or ``types.xml, line 3``; empty for the whole document."""
         within = f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
         return ", ".join(filter(None, (self.file, within)))
 
@@ -34,7 +34,7 @@ class Trouble(NamedTuple):
     help: str = ""
     severity: str = "warning"  # "error" | "warning" | "note"
     sure: str = LIKELY
-    place: Place | None = None  # of the rule that gave it
+    place: Place | None = None  # place of the import rule
     also: tuple[Spot, ...] = ()  # further places with the same cause
 
     def is_about_table(self, order: int | None) -> bool:

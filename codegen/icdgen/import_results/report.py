@@ -1,4 +1,4 @@
-"""Reports of an import: what imports of manuals and of definitions have in common."""
+"""Reports of an import of a manual or of definitions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
 
 
 def where(file: str, spot: Spot) -> str:
-    """``manual.pdf, page 12``, ``manual.txt:482``"""
+    """Return a place such as ``manual.pdf, page 12`` or ``manual.txt:482``."""
     file = spot.file or file
     text = f"{file}:{spot.line}" if spot.line is not None else file
     return f"{text}, page {spot.page}" if spot.page is not None else text
@@ -45,14 +45,17 @@ def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> li
 
 
 def severities(troubles: Sequence[Trouble]) -> str:
-    """``findings: 2 errors, 1 note``"""
+    """Return the numbers of findings, such as ``findings: 2 errors, 1 note``."""
     times = Counter(t.severity for t in troubles)
     counts = ", ".join(count(times[s], s) for s in ("error", "warning", "note") if times[s])
     return f"findings: {counts or 'none'}"
 
 
 def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
-    """Return the content of each file and its changes; with ``dry`` those that writing would make."""
+    """Return the content of each file and its changes.
+
+    With ``dry``, the changes are those that writing would make.
+    """
     lines = []
     for target in targets:
         tree = target.tree

@@ -1,4 +1,7 @@
-"""The files of an import, new or laid over those that are there. Nothing is written before everything is ready."""
+"""Files of an import: new, or updated.
+
+No file is written before all are ready.
+"""
 
 from __future__ import annotations
 
@@ -16,21 +19,25 @@ from icdgen.import_results import update
 
 @dataclass
 class Target:
-    """A file to be written. ``changes`` is None where there was none before."""
+    """A file to write. ``changes`` is None for a new file."""
 
     path: Path
     text: str
     tree: dict[str, Any]
     changes: list[str] | None = None
     same: bool = False
-    refused: bool = False  # one is there, and was not to be updated
+    refused: bool = False  # the file exists, and no update is allowed
 
 
 def aim(
     trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False, told: frozenset[str] = frozenset()
 ) -> list[Target]:
-    """Prepares the files. Raises `UserError` where one exists and ``over`` does not allow to update it, unless none will
-    be written anyway (``dry``). ``told``: keys that the source itself gives, of those that people add to manuals."""
+    """Prepare the files.
+
+    ``told`` are keys that the source itself gives, of those that users add to manuals.
+    Raise `UserError` if a file exists and ``over`` does not allow an update, unless
+    ``dry`` is set.
+    """
     taken = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
     if taken and not over and not dry:
         raise UserError(
@@ -55,7 +62,7 @@ def aim(
 
 
 def check(targets: list[Target]) -> list[Finding]:
-    """Return the findings that `icdgen check` has for the files of an import, written or not."""
+    """Return the findings of `icdgen check` for the files of an import, written or not."""
     from icdgen.loading import load
 
     texts = {target.path: target.text.encode("utf-8") for target in targets}
@@ -63,7 +70,10 @@ def check(targets: list[Target]) -> list[Finding]:
 
 
 def write(targets: list[Target]) -> None:
-    """Writes the files, each as a whole, and beside them the schema that they name. Raises `UserError` if one can't be written."""
+    """Write each file completely, and the schema that they refer to.
+
+    Raise `UserError` if a file cannot be written.
+    """
     from icdgen.generation.write import replace
 
     files = {target.path: target.text.encode("utf-8") for target in targets if not target.same}

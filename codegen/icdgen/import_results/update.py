@@ -1,4 +1,7 @@
-"""A new reading of the manual laid over an ICD that exists: vendor's facts replaced, our own words and comments kept."""
+"""Update of an existing ICD with a new import.
+
+Facts of the vendor are replaced. Additions of users and comments are preserved.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from icdgen.icd import source
 from icdgen.icd.fmt import emit, read, scalars
 from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 
-# What people add to the manual's facts.
+# Keys that users add to the facts of a manual.
 _OURS = {
     "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions", "shares_id"),
     "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
@@ -26,14 +29,17 @@ _INNER = {"message": ("fields", "field"), "struct": ("fields", "field"), "enumer
 
 @dataclass
 class Updated:
-    """The new text of a file, and what changed in it, a line each."""
+    """The new text of a file, and its changes, one per line."""
 
     text: str
     changes: list[str] = field(default_factory=list)
 
 
 def update(text: str, name: str, tree: dict[str, Any], told: frozenset[str] = frozenset()) -> Updated:
-    """Raises `Findings` if the old text is no YAML. ``told``: keys of ours that the source gives, so that its go first."""
+    """Update a text. ``told`` are keys of users that the source gives and therefore replaces.
+
+    Raise `Findings` if the old text is not valid YAML.
+    """
     root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
     made = Updated("")
     for key, kind in _SECTIONS:
@@ -48,7 +54,7 @@ def update(text: str, name: str, tree: dict[str, Any], told: frozenset[str] = fr
 
 
 def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -> None:
-    """What the manual announces of all formulas of a kind of messages."""
+    """Update ``formula_for``, the formulas that the manual states for a kind of messages."""
     old = _child(root, "formula_for")
     before = _plain(old.value) if old is not None else None
     if before == words:
@@ -63,7 +69,7 @@ def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -
 
 
 def _replaced(root: Branch, key: str, value: dict[str, Any], changes: list[str]) -> None:
-    """A section that the source gives as a whole."""
+    """Replace a section that the source gives completely."""
     old = _child(root, key)
     if old is not None and _plain(old.value) == value:
         return
@@ -77,6 +83,7 @@ def _replaced(root: Branch, key: str, value: dict[str, Any], changes: list[str])
 def _section(
     root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str], told: frozenset[str]
 ) -> None:
+    """Update the items of a section."""
     old = _child(root, key)
     if not items and old is None:
         return
@@ -94,8 +101,10 @@ def _section(
 def _merged(
     old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str], told: frozenset[str]
 ) -> list[Child]:
-    """The items with what the old ones have of our own. Old ones stay in their order, new ones come after their
-    predecessor."""
+    """Return the items with the users' additions to the old ones.
+
+    Old items keep their order. New items follow their predecessor.
+    """
     pairs = _matched(old, items, kind)
     made: list[tuple[int, Child]] = []
     place = -1
@@ -118,7 +127,7 @@ def _merged(
 
 
 def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str], told: frozenset[str]) -> Child:
-    """One entry: the vendor's keys from ``item``, ours and the comments from the old one."""
+    """Return an item with the vendor's keys from ``item``, and users' keys and comments of ``old``."""
     assert isinstance(old.value, Branch)
     title = _title(kind, item)
     inner = _INNER.get(kind)
@@ -143,7 +152,7 @@ def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: lis
             if key not in ("source", "summary"):
                 changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_shown(value)}")
         elif key in _OURS[kind] and key not in told:
-            continue  # ours goes first
+            continue  # the user's value has precedence
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
         elif key == "also" and [s.get("table") for s in _plain(child.value)] == [s.get("table") for s in value]:
@@ -155,7 +164,10 @@ def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: lis
 
 
 def _matched(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[int, Child]:
-    """Index of the new item -> the old entry that it goes on from, each used once; the surest match first."""
+    """Return the old entry for the index of each new item that has one.
+
+    Each old entry is used once, with the most certain match.
+    """
     plain = [_plain(child.value) for child in old]
     free = {index for index, value in enumerate(plain) if isinstance(value, dict)}
     result: dict[int, Child] = {}
@@ -189,7 +201,7 @@ _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
 
 
 def _added(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
-    """Entries that are not there yet."""
+    """Add entries that are missing."""
     child = _child(root, key)
     there = child.value.children if child and isinstance(child.value, Branch) else []
     have = {_plain(one.value).get(by) for one in there}
@@ -230,6 +242,7 @@ def _title(kind: str, item: dict[str, Any]) -> str:
 
 
 def _shown(value: object) -> str:
+    """Return a value for the list of changes."""
     if isinstance(value, (dict, list)):
         return "..." if len(str(value)) > 60 else str(value)
     return f"`{value}`"

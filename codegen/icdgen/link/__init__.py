@@ -1,4 +1,7 @@
-"""Talking to a device: ports, and sessions over them of the Python runtime, which importing this makes importable."""
+"""Communication with devices: ports, and sessions of the Python runtime.
+
+Importing this package makes the runtime importable.
+"""
 
 from icdgen import shipped
 

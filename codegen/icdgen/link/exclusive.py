@@ -1,4 +1,7 @@
-"""Exclusive use of serial ports and terminals: two programs on one line take each other's replies."""
+"""Exclusive use of serial ports and terminals.
+
+Two programs on one line would receive each other's responses.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,14 @@ from icdgen.errors import UserError
 
 
 class PortError(UserError):
-    """The port cannot be opened, or is gone."""
+    """The port cannot be opened, or the connection is lost."""
 
 
 def lock_port(file: int, path: str) -> None:
-    """Lock an open serial port or terminal for this process until it is closed. Raises `PortError` that names the owner.
+    """Lock an open serial port or terminal for this process until it is closed.
 
-    The lock is `flock`, which pyserial (``exclusive=True``), picocom and others take as well.
+    The lock is `flock`, which pyserial (``exclusive=True``), picocom and others use as
+    well. Raise `PortError` that names the owner.
     """
     import fcntl
 
@@ -29,7 +33,7 @@ def lock_port(file: int, path: str) -> None:
 
 
 def busy(path: str) -> PortError:
-    """The error for a port that another program uses."""
+    """Return the error for a port that another program uses."""
     users = [f"{name} (process {pid})" for pid, name in users_of(path)]
     owner = f" by {', '.join(users)}" if users else " by another program"
     return PortError(
@@ -39,16 +43,22 @@ def busy(path: str) -> PortError:
 
 
 def users_of(path: str) -> list[tuple[int, str]]:
-    """Other processes that have locked the file, or else have it open, with their commands, as far as Linux shows them."""
+    """Return other processes that have locked the file, or otherwise have opened it.
+
+    Each has its id and command, as far as Linux shows them.
+    """
     target = os.path.realpath(path)
     others = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
-    # A simulator holds its own end of a pseudo-terminal open: only the owner of the lock is in the way.
+    # A simulator has opened its own end of a pseudo-terminal. Only the owner of the lock prevents the use.
     owners = _lock_owners(target)
     return [(pid, _command(pid)) for pid in sorted(set(others) & owners or owners or set(others))]
 
 
 def _lock_owners(path: str) -> set[int]:
-    """Process ids of the file's locks, of lines such as ``1: FLOCK  ADVISORY  WRITE 4711 00:18:3 0 EOF``."""
+    """Return the ids of processes with a lock on the file.
+
+    Lines of ``/proc/locks`` are like ``1: FLOCK  ADVISORY  WRITE 4711 00:18:3 0 EOF``.
+    """
     try:
         file = os.stat(path)
         lines = [line.split() for line in Path("/proc/locks").read_text(encoding="ascii").splitlines()]
@@ -70,7 +80,7 @@ def _has_open(pid: int, target: str) -> bool:
     try:
         return any(os.path.realpath(file) == target for file in Path(f"/proc/{pid}/fd").iterdir())
     except OSError:
-        return False  # it has ended, or belongs to another user
+        return False  # the process has ended, or belongs to another user
 
 
 def _command(pid: int) -> str:
@@ -81,5 +91,5 @@ def _command(pid: int) -> str:
     words = [word for word in words if word]
     if len(words) > 1 and os.path.basename(words[0]).startswith("python"):
         words = words[words.index("-m") + 1 :] if "-m" in words[:-1] else words[1:]
-    # Only program and subcommand: further words may be long, or secret.
+    # Only program and subcommand, as further arguments may be long or secret.
     return " ".join([os.path.basename(words[0]), *words[1:2]]) if words else "unknown"

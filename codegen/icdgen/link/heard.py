@@ -1,4 +1,4 @@
-"""What came over a line: messages by name, and a count of what was wrong."""
+"""Statistics of received telemetry: errors, missing and repeated messages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FAULTS = {
 
 
 class Heard:
-    """Counts what was wrong."""
+    """Counters of line errors, and missing and repeated messages."""
 
     def __init__(self, icd: Icd, node: Node) -> None:
         self.icd, self.known = icd, ids_of(icd, node).telemetry
@@ -26,7 +26,7 @@ class Heard:
         self.missing = self.repeated = 0
 
     def event(self, event: Event) -> None:
-        """Takes what happened."""
+        """Count an event."""
         if isinstance(event, LineError):
             self.faults[FAULTS.get(event.error, event.error.replace("_", " "))] += 1
         elif isinstance(event, Gap):
@@ -34,11 +34,11 @@ class Heard:
             self.repeated += event.missing == 0
 
     def message_of(self, id: int, data: bytes) -> Message | None:
-        """The message that came; None if it is none of those that have its id."""
+        """Return the message of this id that matches the data, or None."""
         return codec.message_of_frame_if_any(self.icd, [one.message for one in self.known.get(id, ())], data)
 
     def text(self) -> str:
-        """What was wrong, in a line; empty if nothing was."""
+        """Return the errors as one line for a report; empty without errors."""
         said = [f"{fault} ({times})" for fault, times in sorted(self.faults.items())]
         said += [f"messages missing ({self.missing})"] if self.missing else []
         said += [f"messages that came again ({self.repeated})"] if self.repeated else []

@@ -1,4 +1,4 @@
-"""The table of live telemetry."""
+"""Table of live telemetry."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from icdgen.values.frame import Frame, frame
 if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Event
 
-OLD_SECONDS = 5.0  # from then on the age of a value is shown, though nobody asked for it
+OLD_SECONDS = 5.0  # the age of an older value is shown, also of an unsolicited message
 COLUMNS = ("message", "field", "value", "unit", "remarks")
 
 
 class Monitor:
-    """The frames that are watched, as they came last."""
+    """The last frames of all monitored messages."""
 
     def __init__(self, icd: Icd, node: str, names: Sequence[str]) -> None:
         self.icd, self.node = icd, find_node(icd, node)
@@ -42,39 +42,42 @@ class Monitor:
                 raise UserError("it is not said what to show", "name messages: icdgen monitor NODE MESSAGE ...")
             self.messages.append(self.known.identification.message)
         self.last: dict[str, bytes] = {}
-        self.came_at: dict[str, float] = {}  # when, by time.monotonic()
-        self.awaited: set[str] = set()  # what has not come in this round yet
-        self.silent: set[str] = set()  # what was not answered in the last round, or did not come
-        self.faults: dict[int, str] = {}  # what was wrong with what came, by id
+        self.came_at: dict[str, float] = {}  # time of reception, by time.monotonic()
+        self.awaited: set[str] = set()  # messages not yet received in this round
+        self.silent: set[str] = set()  # messages not received in the last round
+        self.faults: dict[int, str] = {}  # last error of a message, by id
 
     @property
     def listens(self) -> bool:
-        """Whether telemetry comes unasked, in envelopes, so that a round is over when its time is."""
+        """Whether the node sends telemetry without requests, with header and trailer.
+
+        A round then ends after its time.
+        """
         return self.known.stream is not None
 
     @property
     def failed(self) -> bool:
-        """Whether something that is watched was not there in the last round."""
+        """Whether a monitored message was missing in the last round."""
         return bool(self.silent) or (self.listens and not self.messages and not self.last)
 
     def asked(self) -> Iterator[Message]:
-        """What has to be asked for."""
+        """Return the messages that must be requested."""
         rows = self.known.stream.telecommands if self.known.stream else ()
         asking = {row.reply for row in rows if row.least == 0}
         yield from (message for message in self.messages if not self.listens or message.telemetry_id in asking)
 
     def begin(self) -> None:
-        """A round begins."""
+        """Begin a round."""
         if self.listens:
             self.awaited = {message.name for message in self.messages}
 
     def end(self) -> None:
-        """A round is over: what has not come is silent."""
+        """End a round. Missing messages become silent."""
         if self.listens:
             self.silent = set(self.awaited)
 
     def took(self, message: Message, outcome: Outcome) -> None:
-        """What became of a request for the frame."""
+        """Record the outcome of a request."""
         if isinstance(outcome, Done):
             self._came(message, outcome.id, outcome.data)
         else:
@@ -91,12 +94,12 @@ class Monitor:
         self.came_at[message.name] = time.monotonic()
 
     def miss(self) -> None:
-        """There is no line: nothing was answered."""
+        """Record that there is no connection: all messages are silent."""
         self.silent = self.awaited = {message.name for message in self.messages}
         self.faults.clear()
 
     def event(self, event: Event) -> None:
-        """Takes what came unasked, and what was wrong with what came."""
+        """Record unsolicited telemetry and errors."""
         self.heard.event(event)
         if isinstance(event, Malformed):
             self.faults[event.id] = "wrong length"
@@ -113,7 +116,7 @@ class Monitor:
                     self._keep(message, one.data)
 
     def frames(self) -> Iterator[Frame]:
-        """What was answered, and what came unasked."""
+        """Return the received frames of messages that are not silent."""
         yield from (self._frame(name) for name in self._names() if name in self.last and name not in self.silent)
 
     def _frame(self, name: str) -> Frame:
@@ -121,7 +124,10 @@ class Monitor:
         return frame(self.icd, self.node, message, self.last[name])
 
     def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
-        """Frame, field, value, unit, remarks. What does not answer any more keeps its last values, with their age."""
+        """Return message, field, value, unit and remarks of each row.
+
+        A silent message shows its last values with their age.
+        """
         ids = {message.name: message.telemetry_id for message in self.messages}
         nothing = "nothing came" if self.listens else "no answer"
         for name in self._names():
@@ -144,14 +150,14 @@ class Monitor:
         return wanted + [name for name in list(self.last) if name not in wanted]
 
     def text(self) -> str:
-        """The table for a pipe, or for a single round."""
+        """Return the table for a pipe, or for a single round."""
         columns = [Column(title, right=title == "value") for title in COLUMNS]
         table = tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
         return "\n".join(filter(None, (table, self.heard.text())))
 
 
 def _age_text(seconds: float) -> str:
-    """For instance 12 s, 3 min, 2 h 5 min."""
+    """Return an age such as ``12 s``, ``3 min 20 s`` or ``2 h 5 min``."""
     minutes, hours = int(seconds // 60), int(seconds // 3600)
     if not minutes:
         return f"{int(seconds)} s"

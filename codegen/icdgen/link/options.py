@@ -1,4 +1,4 @@
-"""Options that `icdgen monitor` and `icdgen send` share, and the session that they mean."""
+"""Options of `icdgen monitor` and `icdgen send`, and the session that they define."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """--port, --crc, --address, --envelope, --timeout, --retries."""
+    """Add the options --port, --crc, --address, --envelope, --timeout and --retries."""
     options = [
         click.option(
             "--port",
@@ -58,7 +58,7 @@ def open_session(
     chosen: Sequence[str] = (),
     on_event: OnEvent | None = None,
 ) -> Iterator[BusSession]:
-    """A session with a node, of which ``known`` are the facts. Raises `icdgen.errors.UserError`."""
+    """Open a session with the node of ``known``. Raise `icdgen.errors.UserError`."""
     from icdgen.link.ports import open_port
     from icdgen.link.session import session
     from icdgen.runtime_objects.links import link_of
@@ -80,9 +80,9 @@ def open_session(
 
 
 def stranger(session: BusSession, faults: Mapping[int, str]) -> str | None:
-    """What is to be said if the node is another one than the ICD describes, or does not answer.
+    """Return a message if the node does not respond, or does not match the ICD.
 
-    ``faults``: what was wrong with what came, by id.
+    ``faults`` are the errors of received messages by id.
     """
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done

@@ -1,7 +1,7 @@
-"""Ports: where bytes or CAN packets go and come from.
+"""Ports for bytes or CAN packets.
 
-A port is named by a text: ``tcp://host:port``, ``udp://host:port``, the path of a terminal or the name of a serial
-port, ``can://interface/channel`` (of python-can).
+A port has a text: ``tcp://host:port``, ``udp://host:port``, the path of a terminal, the
+name of a serial port, or ``can://interface/channel`` (of python-can).
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/c
 
 
 class Port(Protocol):
-    """A stream of bytes. Times are seconds."""
+    """A byte stream. Times are in seconds."""
 
     def read(self, timeout: float) -> bytes:
-        """What has come, after ``timeout`` nothing. Raises `PortError`."""
+        """Return received bytes, or no bytes after ``timeout``. Raise `PortError`."""
 
     def write(self, data: bytes) -> None:
-        """Sends everything. Raises `PortError`."""
+        """Send all bytes. Raise `PortError`."""
 
     def close(self) -> None: ...
 
 
 @contextmanager
 def _failures(name: str, *kinds: type[Exception], help: str = "") -> Iterator[None]:
-    """Errors of these kinds become a `PortError` that begins with the name."""
+    """Convert exceptions of these kinds to a `PortError` that begins with the name."""
     try:
         yield
     except kinds as error:
@@ -52,7 +52,10 @@ def _failures(name: str, *kinds: type[Exception], help: str = "") -> Iterator[No
 
 
 class Socket:
-    """TCP or UDP. ``piece``: bytes of a datagram at most, for what is cut at any place."""
+    """A TCP or UDP socket.
+
+    ``piece`` is the maximum length of a datagram. Longer data is split.
+    """
 
     def __init__(self, kind: str, host: str, port: int, piece: int = MOST_OF_A_PACKET) -> None:
         self.piece = piece
@@ -140,7 +143,7 @@ class Terminal:
 
 
 class Serial:
-    """A serial port, by pyserial."""
+    """A serial port, with pyserial."""
 
     def __init__(self, name: str, settings: dict[str, Any]) -> None:
         serial = _library("serial", "pyserial")
@@ -154,7 +157,7 @@ class Serial:
                     parity=str(settings.get("parity", "none"))[0].upper(),
                     stopbits=settings.get("stop_bits", 1),
                     write_timeout=WRITE_TIMEOUT,
-                    exclusive=True,  # Windows always opens ports so
+                    exclusive=True,  # always the case on Windows
                 )
             except self.errors as error:
                 if _is_in_use(error):
@@ -176,7 +179,7 @@ class Serial:
 
 
 class Can:
-    """A CAN bus, by python-can. What goes and comes are packets."""
+    """A CAN bus, with python-can. It transfers packets."""
 
     def __init__(self, interface: str, channel: str, bit_rate: int) -> None:
         self.can = _library("can", "python-can")
@@ -187,7 +190,10 @@ class Can:
             self.bus = self.can.Bus(interface=interface, channel=channel, bitrate=bit_rate)
 
     def receive(self, timeout: float) -> CanPacket | None:
-        """The next packet with a 29-bit identifier, after ``timeout`` none. Raises `PortError`."""
+        """Return the next packet with a 29-bit identifier, or None after ``timeout``.
+
+        Raise `PortError`.
+        """
         with _failures(self.name, *self.errors):
             found = self.bus.recv(max(timeout, 0))
         if found is None or not found.is_extended_id or found.is_error_frame or found.is_remote_frame:
@@ -204,7 +210,10 @@ class Can:
 
 
 def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
-    """The port. ``protocol`` is the ICD's section: baud rate and the like. Raises `icdgen.errors.UserError`."""
+    """Open a port. ``protocol`` is the section of the ICD, with settings such as baud rate.
+
+    Raise `icdgen.errors.UserError`.
+    """
     scheme, separator, rest = text.partition("://")
     whole = protocol.get("stream", {}).get("delimited_by") == "none"
     if whole and scheme != "udp":
@@ -230,7 +239,7 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
 
 
 def address(text: str) -> tuple[str, int]:
-    """Host and port of ``tcp://HOST:PORT``. Raises `PortError`."""
+    """Return host and port of ``tcp://HOST:PORT``. Raise `PortError`."""
     try:
         parts = urlsplit(text)
         host, port = parts.hostname, parts.port
@@ -257,10 +266,10 @@ def _is_pty(path: str) -> bool:
 
 
 def _is_in_use(error: Exception) -> bool:
-    """Whether pyserial failed because another program has the port."""
+    """Return whether pyserial failed because another program uses the port."""
     if getattr(error, "errno", None) in (errno.EAGAIN, errno.EBUSY):
         return True
-    # pyserial reports a lock that it does not get by text alone, and Windows an open port as a denied access.
+    # pyserial reports a lock of another program only by its text. Windows reports an open port as access denied.
     return "exclusively lock" in str(error) or (os.name == "nt" and "PermissionError" in str(error))
 
 

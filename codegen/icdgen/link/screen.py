@@ -1,4 +1,4 @@
-"""The live table of `icdgen monitor` on a terminal, which scrolls where the terminal has fewer lines than the table."""
+"""The live table of `icdgen monitor` on a terminal. It scrolls if it does not fit."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from rich.segment import Segment
     from rich.table import Table
 
-PAGE_SECONDS = 5.0  # how long a page is shown where there is no keyboard
-KEY_SECONDS = 0.2  # between two looks whether the screen is closed
+PAGE_SECONDS = 5.0  # duration of a page without a keyboard
+KEY_SECONDS = 0.2  # interval for checking whether the screen is closed
 _LINES = {"\x1b[A": -1, "k": -1, "\x1bOA": -1, "\x1b[B": 1, "\x1bOB": 1, "j": 1}
 _PAGES = {"\x1b[5~": -1, "b": -1, "\x1b[6~": 1, " ": 1}
 _ENDS = {
@@ -35,7 +35,7 @@ _ENDS = {
 
 
 class Screen:
-    """A table that stays in its place. Nothing happens unless ``live``."""
+    """A table at a fixed position of the terminal. Without ``live``, it does nothing."""
 
     def __init__(self, monitor: Monitor, live: bool) -> None:
         self.monitor, self.live = monitor, None
@@ -60,7 +60,7 @@ class Screen:
             self.live.stop()
 
     def show(self) -> None:
-        """Draws the table anew."""
+        """Draw the table."""
         if self.live:
             self.live.refresh()
 
@@ -114,7 +114,10 @@ class Screen:
 
 
 class _Keyboard:
-    """Keys of the terminal, given to ``on_key`` by a thread of its own. Not open where there is no terminal to read from."""
+    """Keyboard of the terminal. A thread passes the keys to ``on_key``.
+
+    It is not open if standard input is not a terminal.
+    """
 
     def __init__(self, on_key: Any) -> None:
         self.on_key, self.is_open = on_key, False
@@ -123,7 +126,7 @@ class _Keyboard:
         self.before: Any = None
 
     def open(self) -> None:
-        """Read single keys from now on, if we are the program in the foreground."""
+        """Read single keys from now on, if this is the program in the foreground."""
         with suppress(ImportError, OSError, ValueError, AttributeError):
             import termios
             import tty
@@ -139,7 +142,7 @@ class _Keyboard:
             self.thread.start()
 
     def close(self) -> None:
-        """Give the terminal back as it was."""
+        """Restore the settings of the terminal."""
         if self.is_open:
             import termios
 
@@ -166,7 +169,7 @@ class _Keyboard:
 
 
 def _keys(text: str) -> Iterator[str]:
-    """Keys of what a terminal sent: characters, and escape sequences such as ``ESC [ 5 ~``."""
+    """Split the input of a terminal into characters and escape sequences such as ``ESC [ 5 ~``."""
     import re
 
     yield from re.findall(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", text, re.DOTALL)

@@ -1,4 +1,4 @@
-"""A session with a device over a port: requests, each with an outcome."""
+"""Sessions with a device over a port."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OnEvent = Callable[[Event], object]
 
 
 class CanSession(BusSession):
-    """Over a CAN bus."""
+    """A session over a CAN bus."""
 
     def __init__(
         self, link: Link, port: Can, crc: bool, address: int, settings: Settings, on_event: OnEvent | None
@@ -46,10 +46,11 @@ def session(
     on_event: OnEvent | None = None,
     values: Mapping[str, int] | None = None,
 ) -> Iterator[BusSession]:
-    """A session that closes the port at its end; ``on_event`` is told of what comes unasked, such as logs; ``values``: what we
-    put into fields of the envelope.
+    """Open a session, which closes the port at its end.
 
-    Raises `icdgen.errors.UserError` for a request that the ICD does not allow on this bus.
+    ``on_event`` is called with unsolicited events such as logs. ``values`` are the
+    values of frame fields that the sender chooses. Raise `icdgen.errors.UserError` for
+    a request that the ICD does not allow on this bus.
     """
     try:
         if isinstance(port, Can):
