@@ -54,7 +54,7 @@ def severities(troubles: Sequence[Trouble]) -> str:
 def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
     """Return the content of each file and its changes.
 
-    With ``dry``, the changes are those that writing would make.
+    With ``dry``, return the changes that writing would make.
     """
     lines = []
     for target in targets:

@@ -30,24 +30,24 @@ class Target:
 
 
 def aim(
-    trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False, told: frozenset[str] = frozenset()
+    trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False, given_keys: frozenset[str] = frozenset()
 ) -> list[Target]:
     """Prepare the files.
 
-    ``told`` are keys that the source itself gives, of those that users add to manuals.
+    ``given_keys`` are keys that the source itself gives, of those that users add to manuals.
     Raise `UserError` if a file exists and ``over`` does not allow an update, unless
     ``dry`` is set.
     """
-    taken = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
-    if taken and not over and not dry:
+    existing = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
+    if existing and not over and not dry:
         raise UserError(
-            f"{', '.join(str(p) for p in taken)} already there",
+            f"{', '.join(str(p) for p in existing)} already there",
             "--update lays what was read over them and keeps errata, identifiers and summaries; or choose another --out",
         )
     targets = []
     for name, tree in trees.items():
         path = out / f"{name}.yaml"
-        if path not in taken:
+        if path not in existing:
             targets.append(Target(path, emit.text(tree), tree))
             continue
         try:
@@ -56,8 +56,8 @@ def aim(
             raise unreadable(path, error) from None
         except UnicodeDecodeError:
             raise UserError(f"{path} is not UTF-8", "save it as UTF-8, or move it away") from None
-        made = update.update(old, str(path), tree, told)
-        targets.append(Target(path, made.text, tree, made.changes, made.text == old, not over))
+        updated = update.update(old, str(path), tree, given_keys)
+        targets.append(Target(path, updated.text, tree, updated.changes, updated.text == old, not over))
     return targets
 
 

@@ -35,22 +35,22 @@ class Updated:
     changes: list[str] = field(default_factory=list)
 
 
-def update(text: str, name: str, tree: dict[str, Any], told: frozenset[str] = frozenset()) -> Updated:
-    """Update a text. ``told`` are keys of users that the source gives and therefore replaces.
+def update(text: str, name: str, tree: dict[str, Any], given_keys: frozenset[str] = frozenset()) -> Updated:
+    """Update a text. ``given_keys`` are keys of users that the source gives and therefore replaces.
 
     Raise `Findings` if the old text is not valid YAML.
     """
     root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
-    made = Updated("")
+    updated = Updated("")
     for key, kind in _SECTIONS:
-        _section(root, key, kind, tree.get(key, []), made.changes, told)
+        _section(root, key, kind, tree.get(key, []), updated.changes, given_keys)
     if "protocol" in tree:
-        _replaced(root, "protocol", tree["protocol"], made.changes)
-    _announced(root, tree.get("formula_for"), made.changes)
-    _added(root, "units", "symbol", tree.get("units", []), made.changes)
-    _added(root, "missing", "name", tree.get("missing", []), made.changes)
-    made.text = emit.of(root)
-    return made
+        _replaced(root, "protocol", tree["protocol"], updated.changes)
+    _announced(root, tree.get("formula_for"), updated.changes)
+    _added(root, "units", "symbol", tree.get("units", []), updated.changes)
+    _added(root, "missing", "name", tree.get("missing", []), updated.changes)
+    updated.text = emit.of(root)
+    return updated
 
 
 def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -> None:
@@ -81,7 +81,7 @@ def _replaced(root: Branch, key: str, value: dict[str, Any], changes: list[str])
 
 
 def _section(
-    root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str], told: frozenset[str]
+    root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str], given_keys: frozenset[str]
 ) -> None:
     """Update the items of a section."""
     old = _child(root, key)
@@ -93,40 +93,42 @@ def _section(
         return
     if not isinstance(old.value, Branch):
         old.value = Branch(False, False, 0)
-    old.value.children = _merged(old.value.children, items, kind, "", changes, told)
+    old.value.children = _merged(old.value.children, items, kind, "", changes, given_keys)
     if not old.value.children:
         root.children.remove(old)
 
 
 def _merged(
-    old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str], told: frozenset[str]
+    old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str], given_keys: frozenset[str]
 ) -> list[Child]:
     """Return the items with the users' additions to the old ones.
 
     Old items keep their order. New items follow their predecessor.
     """
     pairs = _matched(old, items, kind)
-    made: list[tuple[int, Child]] = []
+    placed_items: list[tuple[int, Child]] = []
     place = -1
     placed: dict[int, int] = {}
     for index, item in enumerate(items):
         before = pairs.get(index)
         if before is None:
             changes.append(f"+ {where}{kind} {_title(kind, item)}")
-            made.append((place, Child(NOTHING, emit.branch(item))))
+            placed_items.append((place, Child(NOTHING, emit.branch(item))))
             continue
         place = old.index(before)
         placed[index] = place
-        made.append((place, _merge(before, item, kind, where, changes, told)))
-    kept = {id(child) for child in pairs.values()}
+        placed_items.append((place, _merge(before, item, kind, where, changes, given_keys)))
+    matched_ids = {id(child) for child in pairs.values()}
     for child in old:
-        if id(child) not in kept:
+        if id(child) not in matched_ids:
             changes.append(f"- {where}{kind} {_title(kind, _plain(child.value))}")
     ascending = all(a < b for a, b in pairwise(placed.values()))
-    return [child for _, child in (made if ascending else sorted(made, key=lambda m: m[0]))]
+    return [child for _, child in (placed_items if ascending else sorted(placed_items, key=lambda m: m[0]))]
 
 
-def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str], told: frozenset[str]) -> Child:
+def _merge(
+    old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str], given_keys: frozenset[str]
+) -> Child:
     """Return an item with the vendor's keys from ``item``, and users' keys and comments of ``old``."""
     assert isinstance(old.value, Branch)
     title = _title(kind, item)
@@ -142,7 +144,7 @@ def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: lis
         child: Child | None = before.get(key)  # type: ignore[no-redef]
         if inner and key == inner[0]:
             children = child.value.children if child is not None and isinstance(child.value, Branch) else []
-            lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes, told)
+            lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes, given_keys)
             if child is None:
                 child = Child(Text(key, key))
                 result.children.append(child)
@@ -151,7 +153,7 @@ def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: lis
             result.children.append(Child(Text(key, key), emit.node(value)))
             if key not in ("source", "summary"):
                 changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_shown(value)}")
-        elif key in _OURS[kind] and key not in told:
+        elif key in _OURS[kind] and key not in given_keys:
             continue  # the user's value has precedence
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
@@ -171,17 +173,17 @@ def _matched(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[i
     plain = [_plain(child.value) for child in old]
     free = {index for index, value in enumerate(plain) if isinstance(value, dict)}
     result: dict[int, Child] = {}
-    for same in _MATCHES[kind]:
-        waiting: dict[object, list[int]] = {}
+    for key_of in _MATCHES[kind]:
+        unmatched: dict[object, list[int]] = {}
         for index in sorted(free):
-            if (key := same(plain[index])) is not None:
-                waiting.setdefault(key, []).append(index)
+            if (key := key_of(plain[index])) is not None:
+                unmatched.setdefault(key, []).append(index)
         for index, item in enumerate(items):
-            key = same(item)
-            if index not in result and key is not None and waiting.get(key):
-                taken = waiting[key].pop(0)
-                result[index] = old[taken]
-                free.discard(taken)
+            key = key_of(item)
+            if index not in result and key is not None and unmatched.get(key):
+                position = unmatched[key].pop(0)
+                result[index] = old[position]
+                free.discard(position)
     return result
 
 
@@ -203,9 +205,9 @@ _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
 def _added(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
     """Add entries that are missing."""
     child = _child(root, key)
-    there = child.value.children if child and isinstance(child.value, Branch) else []
-    have = {_plain(one.value).get(by) for one in there}
-    new = [item for item in items if item[by] not in have]
+    children = child.value.children if child and isinstance(child.value, Branch) else []
+    existing = {_plain(entry.value).get(by) for entry in children}
+    new = [item for item in items if item[by] not in existing]
     if not new:
         return
     changes += [f"+ {key} {item[by]}" for item in new]

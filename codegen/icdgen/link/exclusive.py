@@ -48,10 +48,10 @@ def users_of(path: str) -> list[tuple[int, str]]:
     Each has its id and command, as far as Linux shows them.
     """
     target = os.path.realpath(path)
-    others = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
+    pids = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
     # A simulator has opened its own end of a pseudo-terminal. Only the owner of the lock prevents the use.
     owners = _lock_owners(target)
-    return [(pid, _command(pid)) for pid in sorted(set(others) & owners or owners or set(others))]
+    return [(pid, _command(pid)) for pid in sorted(set(pids) & owners or owners or set(pids))]
 
 
 def _lock_owners(path: str) -> set[int]:

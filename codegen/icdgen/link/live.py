@@ -110,10 +110,10 @@ class Monitor:
             if message and (not self.messages or message in self.messages):
                 self._came(message, event.id, event.data)
         elif isinstance(event, Log):
-            for one in event.log.frames:
-                message = self.known.telemetry.get(one.id) if one.id is not None else None
-                if message and message.length == len(one.data):
-                    self._keep(message, one.data)
+            for log_frame in event.log.frames:
+                message = self.known.telemetry.get(log_frame.id) if log_frame.id is not None else None
+                if message and message.length == len(log_frame.data):
+                    self._keep(message, log_frame.data)
 
     def frames(self) -> Iterator[Frame]:
         """Return the received frames of messages that are not silent."""
@@ -129,11 +129,11 @@ class Monitor:
         A silent message shows its last values with their age.
         """
         ids = {message.name: message.telemetry_id for message in self.messages}
-        nothing = "nothing came" if self.listens else "no answer"
+        absence = "nothing came" if self.listens else "no answer"
         for name in self._names():
             remarks = []
             if name in self.silent:
-                remarks.append(self.faults.get(ids.get(name) or 0, nothing))
+                remarks.append(self.faults.get(ids.get(name) or 0, absence))
             if name not in self.last:
                 if remarks:
                     yield name, "", "", "", remarks[0]
@@ -146,8 +146,8 @@ class Monitor:
                 yield name if number == 0 else "", row.field.name, row.text, row.field.unit_symbol, of_row
 
     def _names(self) -> list[str]:
-        wanted = [message.name for message in self.messages]
-        return wanted + [name for name in list(self.last) if name not in wanted]
+        names = [message.name for message in self.messages]
+        return names + [name for name in list(self.last) if name not in names]
 
     def text(self) -> str:
         """Return the table for a pipe, or for a single round."""

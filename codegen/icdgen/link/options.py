@@ -49,7 +49,7 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @contextmanager
 def open_session(
     icd: Icd,
-    known: Facts,
+    facts: Facts,
     port: str,
     crc: bool,
     address: int,
@@ -58,25 +58,27 @@ def open_session(
     chosen: Sequence[str] = (),
     on_event: OnEvent | None = None,
 ) -> Iterator[BusSession]:
-    """Open a session with the node of ``known``. Raise `icdgen.errors.UserError`."""
+    """Open a session with the node that ``facts`` describe. Raise `icdgen.errors.UserError`."""
     from icdgen.link.ports import open_port
     from icdgen.link.session import session
     from icdgen.runtime_objects.links import link_of
 
-    node, is_can = known.node, port.startswith("can://")
-    if (known.can if is_can else known.framing or known.stream) is None:
+    node, is_can = facts.node, port.startswith("can://")
+    if (facts.can if is_can else facts.framing or facts.stream) is None:
         what = "CAN" if is_can else "a stream of bytes"
         raise UserError(
             f"the ICD does not say how to talk to {node.name} over {what}", "see docs/reference/protocol.md"
         )
-    if known.can and not 0 <= address < 1 << known.can.parts["source"].bits:
-        raise UserError(f"--address {address} does not fit", f"{known.can.parts['source'].bits} bits hold it")
-    link = link_of(icd, known)
-    given = {"reply_timeout": timeout, "retries": retries}
-    settings = link.settings._replace(**{key: value for key, value in given.items() if value is not None})
-    values = values_of(known, chosen)
-    with session(link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event, values) as opened:
-        yield opened
+    if facts.can and not 0 <= address < 1 << facts.can.parts["source"].bits:
+        raise UserError(f"--address {address} does not fit", f"{facts.can.parts['source'].bits} bits hold it")
+    link = link_of(icd, facts)
+    options = {"reply_timeout": timeout, "retries": retries}
+    settings = link.settings._replace(**{key: value for key, value in options.items() if value is not None})
+    values = values_of(facts, chosen)
+    with session(
+        link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event, values
+    ) as opened_session:
+        yield opened_session
 
 
 def stranger(session: BusSession, faults: Mapping[int, str]) -> str | None:
@@ -95,10 +97,10 @@ def stranger(session: BusSession, faults: Mapping[int, str]) -> str | None:
     if not isinstance(outcome, Done):
         fault = faults.get(link.identification.telemetry)
         return f"the device answers, but: {fault}" if fault else "the device does not answer"
-    found = identify(link, outcome.data)
-    if found.matches:
+    identity = identify(link, outcome.data)
+    if identity.matches:
         return None
     return (
-        f"the device says node type {found.node_type}, interface version {found.interface_version}; "
+        f"the device says node type {identity.node_type}, interface version {identity.interface_version}; "
         f"the ICD is that of node type {link.node_type}, interface version {link.interface_version}"
     )

@@ -195,10 +195,10 @@ class Can:
         Raise `PortError`.
         """
         with _failures(self.name, *self.errors):
-            found = self.bus.recv(max(timeout, 0))
-        if found is None or not found.is_extended_id or found.is_error_frame or found.is_remote_frame:
+            message = self.bus.recv(max(timeout, 0))
+        if message is None or not message.is_extended_id or message.is_error_frame or message.is_remote_frame:
             return None
-        return CanPacket(found.arbitration_id, bytes(found.data))
+        return CanPacket(message.arbitration_id, bytes(message.data))
 
     def send(self, packet: CanPacket) -> None:
         message = self.can.Message(arbitration_id=packet.id, data=packet.data, is_extended_id=True)
@@ -214,19 +214,19 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
 
     Raise `icdgen.errors.UserError`.
     """
-    scheme, separator, rest = text.partition("://")
-    whole = protocol.get("stream", {}).get("delimited_by") == "none"
-    if whole and scheme != "udp":
+    scheme, separator, remainder = text.partition("://")
+    is_packet = protocol.get("stream", {}).get("delimited_by") == "none"
+    if is_packet and scheme != "udp":
         raise PortError(f"{text} keeps no packets apart, and only they delimit messages here", "udp://HOST:PORT does")
     if separator:
-        makers: dict[str, Callable[[], Port | Can]] = {
+        openers: dict[str, Callable[[], Port | Can]] = {
             "tcp": lambda: Socket("tcp", *address(text)),
-            "udp": lambda: Socket("udp", *address(text), MOST_OF_A_DATAGRAM if whole else MOST_OF_A_PACKET),
-            "can": lambda: _can(rest, protocol.get("can", {})),
+            "udp": lambda: Socket("udp", *address(text), MOST_OF_A_DATAGRAM if is_packet else MOST_OF_A_PACKET),
+            "can": lambda: _can(remainder, protocol.get("can", {})),
         }
-        if scheme not in makers:
+        if scheme not in openers:
             raise PortError(f"there is no port `{text}`", f"a port is named so: {FORMS}")
-        return makers[scheme]()
+        return openers[scheme]()
     if _is_pty(text):
         return Terminal(text)
     if text.isdecimal() and not os.path.exists(text):
@@ -250,19 +250,19 @@ def address(text: str) -> tuple[str, int]:
     return host, port
 
 
-def _can(rest: str, section: dict[str, Any]) -> Can:
-    interface, separator, channel = rest.partition("/")
+def _can(path: str, section: dict[str, Any]) -> Can:
+    interface, separator, channel = path.partition("/")
     if not separator or not interface or not channel:
-        raise PortError(f"`can://{rest}` is no CAN bus", "can://INTERFACE/CHANNEL, as python-can names them")
+        raise PortError(f"`can://{path}` is no CAN bus", "can://INTERFACE/CHANNEL, as python-can names them")
     return Can(interface, channel, section.get("bit_rate", 500_000))
 
 
 def _is_pty(path: str) -> bool:
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return False
-    return stat.S_ISCHR(found.st_mode) and os.path.realpath(path).startswith("/dev/pts/")
+    return stat.S_ISCHR(status.st_mode) and os.path.realpath(path).startswith("/dev/pts/")
 
 
 def _is_in_use(error: Exception) -> bool:
