@@ -28,18 +28,18 @@ def test_a_device_that_stops_answering_leaves_its_last_values_and_their_age(monk
     monkeypatch.setattr(live.time, "monotonic", lambda: now)
     monitor = watched("146")
     (message,) = monitor.messages
-    monitor.took(message, Timeout(message.telemetry_id, 3))
+    monitor.record(message, Timeout(message.telemetry_id, 3))
     assert [row[4] for row in monitor.rows()] == ["no answer"]
-    monitor.took(message, Done(id=message.telemetry_id, attempts=1, data=bytes((1, 0)) + bytes(message.length - 2)))
+    monitor.record(message, Done(id=message.telemetry_id, attempts=1, data=bytes((1, 0)) + bytes(message.length - 2)))
     fresh = [row[:4] for row in monitor.rows()]
     assert not any(row[4] for row in monitor.rows()) and not monitor.failed
     for seconds, age in ((12, "12 s"), (200, "3 min 20 s"), (7500, "2 h 5 min")):
         now = 100.0 + seconds
-        monitor.took(message, Timeout(message.telemetry_id, 3))
+        monitor.record(message, Timeout(message.telemetry_id, 3))
         rows = list(monitor.rows())
         assert [row[:4] for row in rows] == fresh and rows[0][4] == f"no answer; last value, {age} old"
     assert monitor.failed and not list(monitor.frames())
-    monitor.miss()
+    monitor.disconnected()
     assert [row[:4] for row in monitor.rows()] == fresh
 
 

@@ -140,7 +140,7 @@ def import_(
             say(_explanation(result, table))
             sys.exit(0)
         if not explore and (folder is None or vocabulary.rules):
-            result.targets = targets.aim(trees, out, update, dry_run)
+            result.targets = targets.prepare(trees, out, update, dry_run)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
@@ -208,7 +208,7 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
         with progress.working(f"reading {files[0][0] if len(files) == 1 else f'{len(files)} definitions'}"):
             reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
         trees = {name: tree for read in reads for name, tree in read.trees.items()}
-        aimed = targets.aim(trees, out, update, dry_run, run.TOLD)
+        aimed = targets.prepare(trees, out, update, dry_run, run.TOLD)
     except Findings as error:
         _refuse(error, files[0][0], form)
         sys.exit(1)

@@ -49,7 +49,7 @@ def monitor(
     lost connection is opened again when possible. Exit status: 1 if a frame had no response in the last round.
     """
     from icdgen.link.live import Monitor
-    from icdgen.link.options import open_session, stranger
+    from icdgen.link.options import identity_problem, open_session
     from icdgen.link.ports import PortError
     from icdgen.link.screen import Screen
     from icdgen.values.find import find_named
@@ -63,10 +63,10 @@ def monitor(
     with Screen(watched, live) as screen:
         while not rounds.over:
             try:
-                with open_session(icd, watched.known, **options, on_event=watched.event) as session:
+                with open_session(icd, watched.facts, **options, on_event=watched.event) as session:
                     reached = True
-                    if strange := stranger(session, watched.faults):
-                        say(f"icdgen: {strange}", err=True)
+                    if problem := identity_problem(session, watched.faults):
+                        say(f"icdgen: {problem}", err=True)
                     elif lost:
                         say("icdgen: the line is back", err=True)
                     lost = False
@@ -79,7 +79,7 @@ def monitor(
                 if not lost:
                     say(f"icdgen: {error}; trying again", err=True)
                 lost = True
-                rounds.miss(screen)
+                rounds.disconnected(screen)
     sys.exit(1 if watched.failed else 0)
 
 
@@ -104,9 +104,9 @@ class _Rounds:
         # The wall clock can jump; rounds must not.
         end = time.monotonic() + self.every
         self.watched.begin()
-        for message in self.watched.asked():
+        for message in self.watched.requested():
             assert message.telemetry_id is not None
-            self.watched.took(message, session.start(Request("telemetry", message.telemetry_id)))
+            self.watched.record(message, session.start(Request("telemetry", message.telemetry_id)))
             screen.show()
         if not self.watched.listens:
             self._print(screen)
@@ -118,9 +118,9 @@ class _Rounds:
             screen.show()
             self._print(screen)
 
-    def miss(self, screen: Screen) -> None:
+    def disconnected(self, screen: Screen) -> None:
         """Process a round without connection, and wait for the next one."""
-        self.watched.miss()
+        self.watched.disconnected()
         screen.show()
         self._print(screen)
         if not self.over:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Refused, Timeout
 
     from icdgen.icd.model import Icd, Node
-    from icdgen.link.heard import Heard
+    from icdgen.link.line_statistics import LineStatistics
     from icdgen.protocol.facts import Facts
     from icdgen.values.frame import Frame
 
@@ -40,7 +40,7 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     from icdgen_runtime.wire.events import Done
 
     from icdgen import tables
-    from icdgen.link.heard import Heard
+    from icdgen.link.line_statistics import LineStatistics
     from icdgen.link.options import open_session
     from icdgen.protocol import facts
     from icdgen.values.encode import encode
@@ -55,11 +55,11 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     if frame.message.hazard and not yes and not _is_confirmed(frame):
         say(f"{frame.message.name}: not sent", err=True)
         sys.exit(1)
-    heard, protocol_facts = Heard(icd, node), facts.of(icd, node)
-    with open_session(icd, protocol_facts, **options, on_event=heard.event) as session:
+    statistics, protocol_facts = LineStatistics(icd, node), facts.of(icd, node)
+    with open_session(icd, protocol_facts, **options, on_event=statistics.event) as session:
         outcome = session.start(Request("telecommand", frame.message.telecommand_id, frame.data))
     ok = isinstance(outcome, Done)
-    reply = _reply(icd, node, protocol_facts, frame, heard, outcome.data) if isinstance(outcome, Done) else None
+    reply = _reply(icd, node, protocol_facts, frame, statistics, outcome.data) if isinstance(outcome, Done) else None
     if form == "json":
         response = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
         response["reply"] = reply.to_json() if reply else None
@@ -72,7 +72,7 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
             say(to_text(reply, tables.width_of(sys.stdout)).rstrip())
     else:
         say(f"{_sent(frame)}: {_failed(icd, node, outcome)}", err=True)
-    if what := heard.text():
+    if what := statistics.text():
         say(f"icdgen: {what}", err=True)
     sys.exit(0 if ok else 1)
 
@@ -103,13 +103,15 @@ def _sent(frame: Frame) -> str:
     return f"{frame.message.name} with {constant_texts}" if constant_texts else frame.message.name
 
 
-def _reply(icd: Icd, node: Node, protocol_facts: Facts, sent: Frame, heard: Heard, data: bytes) -> Frame | None:
+def _reply(
+    icd: Icd, node: Node, protocol_facts: Facts, sent: Frame, statistics: LineStatistics, data: bytes
+) -> Frame | None:
     """Return the telemetry that responds to the telecommand; None without a response."""
     from icdgen.values.frame import frame
 
     rows = protocol_facts.stream.telecommands if protocol_facts.stream else ()
     id = next((row.reply for row in rows if row.id == sent.message.telecommand_id), None)
-    message = heard.message_of(id, data) if id is not None else None
+    message = statistics.message_of(id, data) if id is not None else None
     return frame(icd, node, message, data) if message else None
 
 

@@ -29,7 +29,7 @@ class Target:
     refused: bool = False  # the file exists, and no update is allowed
 
 
-def aim(
+def prepare(
     trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False, given_keys: frozenset[str] = frozenset()
 ) -> list[Target]:
     """Prepare the files.

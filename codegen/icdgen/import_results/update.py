@@ -15,7 +15,7 @@ from icdgen.icd.fmt import emit, read, scalars
 from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 
 # Keys that users add to the facts of a manual.
-_OURS = {
+_USER_KEYS = {
     "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions", "shares_id"),
     "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
     "struct": ("identifier", "summary"),
@@ -43,24 +43,24 @@ def update(text: str, name: str, tree: dict[str, Any], given_keys: frozenset[str
     root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
     updated = Updated("")
     for key, kind in _SECTIONS:
-        _section(root, key, kind, tree.get(key, []), updated.changes, given_keys)
+        _update_section(root, key, kind, tree.get(key, []), updated.changes, given_keys)
     if "protocol" in tree:
-        _replaced(root, "protocol", tree["protocol"], updated.changes)
-    _announced(root, tree.get("formula_for"), updated.changes)
-    _added(root, "units", "symbol", tree.get("units", []), updated.changes)
-    _added(root, "missing", "name", tree.get("missing", []), updated.changes)
+        _replace_section(root, "protocol", tree["protocol"], updated.changes)
+    _update_formula_for(root, tree.get("formula_for"), updated.changes)
+    _add_missing(root, "units", "symbol", tree.get("units", []), updated.changes)
+    _add_missing(root, "missing", "name", tree.get("missing", []), updated.changes)
     updated.text = emit.of(root)
     return updated
 
 
-def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -> None:
+def _update_formula_for(root: Branch, words: dict[str, Any] | None, changes: list[str]) -> None:
     """Update ``formula_for``, the formulas that the manual states for a kind of messages."""
     old = _child(root, "formula_for")
     before = _plain(old.value) if old is not None else None
     if before == words:
         return
     changes.append(
-        f"~ formula_for {_shown(before) if before else '(absent)'} -> {_shown(words) if words else '(absent)'}"
+        f"~ formula_for {_value_text(before) if before else '(absent)'} -> {_value_text(words) if words else '(absent)'}"
     )
     if old is not None:
         root.children.remove(old)
@@ -68,7 +68,7 @@ def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -
         root.children.append(Child(Text("formula_for", "formula_for"), emit.branch(words)))
 
 
-def _replaced(root: Branch, key: str, value: dict[str, Any], changes: list[str]) -> None:
+def _replace_section(root: Branch, key: str, value: dict[str, Any], changes: list[str]) -> None:
     """Replace a section that the source gives completely."""
     old = _child(root, key)
     if old is not None and _plain(old.value) == value:
@@ -80,7 +80,7 @@ def _replaced(root: Branch, key: str, value: dict[str, Any], changes: list[str])
         old.value = emit.branch(value)
 
 
-def _section(
+def _update_section(
     root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str], given_keys: frozenset[str]
 ) -> None:
     """Update the items of a section."""
@@ -93,19 +93,19 @@ def _section(
         return
     if not isinstance(old.value, Branch):
         old.value = Branch(False, False, 0)
-    old.value.children = _merged(old.value.children, items, kind, "", changes, given_keys)
+    old.value.children = _merge_items(old.value.children, items, kind, "", changes, given_keys)
     if not old.value.children:
         root.children.remove(old)
 
 
-def _merged(
+def _merge_items(
     old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str], given_keys: frozenset[str]
 ) -> list[Child]:
     """Return the items with the users' additions to the old ones.
 
     Old items keep their order. New items follow their predecessor.
     """
-    pairs = _matched(old, items, kind)
+    pairs = _matches(old, items, kind)
     placed_items: list[tuple[int, Child]] = []
     place = -1
     placed: dict[int, int] = {}
@@ -136,15 +136,15 @@ def _merge(
     result = Branch(True, old.value.flow, old.value.column, tail=old.value.tail)
     before = {_name(child): child for child in old.value.children}
     for key, child in before.items():
-        if key in _OURS[kind] or key in item:
+        if key in _USER_KEYS[kind] or key in item:
             result.children.append(child)
         else:
-            changes.append(f"~ {where}{kind} {title}: {key} {_shown(_plain(child.value))} -> (absent)")
+            changes.append(f"~ {where}{kind} {title}: {key} {_value_text(_plain(child.value))} -> (absent)")
     for key, value in item.items():
         child: Child | None = before.get(key)  # type: ignore[no-redef]
         if inner and key == inner[0]:
             children = child.value.children if child is not None and isinstance(child.value, Branch) else []
-            lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes, given_keys)
+            lines = _merge_items(children, value, inner[1], f"{where}{kind} {title}: ", changes, given_keys)
             if child is None:
                 child = Child(Text(key, key))
                 result.children.append(child)
@@ -152,20 +152,20 @@ def _merge(
         elif child is None:
             result.children.append(Child(Text(key, key), emit.node(value)))
             if key not in ("source", "summary"):
-                changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_shown(value)}")
-        elif key in _OURS[kind] and key not in given_keys:
+                changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_value_text(value)}")
+        elif key in _USER_KEYS[kind] and key not in given_keys:
             continue  # the user's value has precedence
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
         elif key == "also" and [s.get("table") for s in _plain(child.value)] == [s.get("table") for s in value]:
             child.value = emit.branch([{**a, **b} for a, b in zip(_plain(child.value), value, strict=True)])
         elif _plain(child.value) != value:
-            changes.append(f"~ {where}{kind} {title}: {key} {_shown(_plain(child.value))} -> {_shown(value)}")
+            changes.append(f"~ {where}{kind} {title}: {key} {_value_text(_plain(child.value))} -> {_value_text(value)}")
             child.value = emit.node(value)
     return Child(old.key, result, old.before, old.trailing)
 
 
-def _matched(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[int, Child]:
+def _matches(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[int, Child]:
     """Return the old entry for the index of each new item that has one.
 
     Each old entry is used once, with the most certain match.
@@ -202,7 +202,7 @@ _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
 }
 
 
-def _added(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
+def _add_missing(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
     """Add entries that are missing."""
     child = _child(root, key)
     children = child.value.children if child and isinstance(child.value, Branch) else []
@@ -243,7 +243,7 @@ def _title(kind: str, item: dict[str, Any]) -> str:
     return f"`{item.get('name')}`" + (f" ({'/'.join(ids)})" if ids else "")
 
 
-def _shown(value: object) -> str:
+def _value_text(value: object) -> str:
     """Return a value for the list of changes."""
     if isinstance(value, (dict, list)):
         return "..." if len(str(value)) > 60 else str(value)

@@ -27,12 +27,12 @@ def lock_port(file: int, path: str) -> None:
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise busy(path) from None
+        raise busy_error(path) from None
     except OSError:
         pass  # this kind of file has no locks
 
 
-def busy(path: str) -> PortError:
+def busy_error(path: str) -> PortError:
     """Return the error for a port that another program uses."""
     users = [f"{name} (process {pid})" for pid, name in users_of(path)]
     owner = f" by {', '.join(users)}" if users else " by another program"

@@ -12,7 +12,7 @@ from icdgen_runtime.wire.events import Arrived, Done, LineError, Log, Malformed,
 from icdgen import tables
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
-from icdgen.link.heard import FAULTS, Heard
+from icdgen.link.line_statistics import FAULTS, LineStatistics
 from icdgen.protocol import facts
 from icdgen.tables import Column
 from icdgen.values.find import find_message, find_node
@@ -30,19 +30,19 @@ class Monitor:
 
     def __init__(self, icd: Icd, node: str, names: Sequence[str]) -> None:
         self.icd, self.node = icd, find_node(icd, node)
-        self.known = facts.of(icd, self.node)
-        self.heard = Heard(icd, self.node)
+        self.facts = facts.of(icd, self.node)
+        self.statistics = LineStatistics(icd, self.node)
         self.messages: list[Message] = []
         for name in names:
             message = find_message(icd, node, name, "telemetry")
             if message not in self.messages:
                 self.messages.append(message)
         if not names and not self.listens:
-            if self.known.identification is None:
+            if self.facts.identification is None:
                 raise UserError("it is not said what to show", "name messages: icdgen monitor NODE MESSAGE ...")
-            self.messages.append(self.known.identification.message)
+            self.messages.append(self.facts.identification.message)
         self.last: dict[str, bytes] = {}
-        self.came_at: dict[str, float] = {}  # time of reception, by time.monotonic()
+        self.received_at: dict[str, float] = {}  # time of reception, by time.monotonic()
         self.awaited: set[str] = set()  # messages not yet received in this round
         self.silent: set[str] = set()  # messages not received in the last round
         self.faults: dict[int, str] = {}  # last error of a message, by id
@@ -53,16 +53,16 @@ class Monitor:
 
         A round then ends after its time.
         """
-        return self.known.stream is not None
+        return self.facts.stream is not None
 
     @property
     def failed(self) -> bool:
         """Whether a monitored message was missing in the last round."""
         return bool(self.silent) or (self.listens and not self.messages and not self.last)
 
-    def asked(self) -> Iterator[Message]:
+    def requested(self) -> Iterator[Message]:
         """Return the messages that must be requested."""
-        rows = self.known.stream.telecommands if self.known.stream else ()
+        rows = self.facts.stream.telecommands if self.facts.stream else ()
         asking = {row.reply for row in rows if row.least == 0}
         yield from (message for message in self.messages if not self.listens or message.telemetry_id in asking)
 
@@ -76,14 +76,14 @@ class Monitor:
         if self.listens:
             self.silent = set(self.awaited)
 
-    def took(self, message: Message, outcome: Outcome) -> None:
+    def record(self, message: Message, outcome: Outcome) -> None:
         """Record the outcome of a request."""
         if isinstance(outcome, Done):
-            self._came(message, outcome.id, outcome.data)
+            self._received(message, outcome.id, outcome.data)
         else:
             self.silent.add(message.name)
 
-    def _came(self, message: Message, id: int, data: bytes) -> None:
+    def _received(self, message: Message, id: int, data: bytes) -> None:
         self.awaited.discard(message.name)
         self.silent.discard(message.name)
         self.faults.pop(id, None)
@@ -91,27 +91,27 @@ class Monitor:
 
     def _keep(self, message: Message, data: bytes) -> None:
         self.last[message.name] = data
-        self.came_at[message.name] = time.monotonic()
+        self.received_at[message.name] = time.monotonic()
 
-    def miss(self) -> None:
+    def disconnected(self) -> None:
         """Record that there is no connection: all messages are silent."""
         self.silent = self.awaited = {message.name for message in self.messages}
         self.faults.clear()
 
     def event(self, event: Event) -> None:
         """Record unsolicited telemetry and errors."""
-        self.heard.event(event)
+        self.statistics.event(event)
         if isinstance(event, Malformed):
             self.faults[event.id] = "wrong length"
         elif isinstance(event, LineError) and event.id is not None and event.error in FAULTS:
             self.faults[event.id] = FAULTS[event.error]
         elif isinstance(event, Arrived):
-            message = self.heard.message_of(event.id, event.data)
+            message = self.statistics.message_of(event.id, event.data)
             if message and (not self.messages or message in self.messages):
-                self._came(message, event.id, event.data)
+                self._received(message, event.id, event.data)
         elif isinstance(event, Log):
             for log_frame in event.log.frames:
-                message = self.known.telemetry.get(log_frame.id) if log_frame.id is not None else None
+                message = self.facts.telemetry.get(log_frame.id) if log_frame.id is not None else None
                 if message and message.length == len(log_frame.data):
                     self._keep(message, log_frame.data)
 
@@ -138,7 +138,7 @@ class Monitor:
                 if remarks:
                     yield name, "", "", "", remarks[0]
                 continue
-            age = time.monotonic() - self.came_at[name]
+            age = time.monotonic() - self.received_at[name]
             if name in self.silent or age >= OLD_SECONDS:
                 remarks.append(f"last value, {_age_text(age)} old")
             for number, row in enumerate(self._frame(name).rows):
@@ -153,7 +153,7 @@ class Monitor:
         """Return the table for a pipe, or for a single round."""
         columns = [Column(title, right=title == "value") for title in COLUMNS]
         table = tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
-        return "\n".join(filter(None, (table, self.heard.text())))
+        return "\n".join(filter(None, (table, self.statistics.text())))
 
 
 def _age_text(seconds: float) -> str:

@@ -81,7 +81,7 @@ def open_session(
         yield opened_session
 
 
-def stranger(session: BusSession, faults: Mapping[int, str]) -> str | None:
+def identity_problem(session: BusSession, faults: Mapping[int, str]) -> str | None:
     """Return a message if the node does not respond, or does not match the ICD.
 
     ``faults`` are the errors of received messages by id.

@@ -20,7 +20,7 @@ from urllib.parse import urlsplit
 from icdgen_runtime.wire.can import CanPacket
 
 from icdgen.link.exclusive import PortError as PortError
-from icdgen.link.exclusive import busy, lock_port
+from icdgen.link.exclusive import busy_error, lock_port
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
@@ -161,7 +161,7 @@ class Serial:
                 )
             except self.errors as error:
                 if _is_in_use(error):
-                    raise busy(name) from None
+                    raise busy_error(name) from None
                 raise
 
     def read(self, timeout: float) -> bytes:

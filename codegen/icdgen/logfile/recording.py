@@ -15,7 +15,7 @@ from icdgen import codec
 from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
-from icdgen.link.heard import FAULTS
+from icdgen.link.line_statistics import FAULTS
 from icdgen.logfile.rows import Done
 from icdgen.protocol import facts
 from icdgen.protocol.envelope import PACKET

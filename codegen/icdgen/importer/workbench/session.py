@@ -212,7 +212,7 @@ class Session:
                 raise UserError(text, "start the workbench with another --profile") from None
             self.saved = self.text
             # A profile with errors is saved, so that no work is lost. Its last valid result must not become an ICD.
-            aimed = targets.aim(self.trees, self.out, over=True) if self.trees and not self.errors else []
+            aimed = targets.prepare(self.trees, self.out, over=True) if self.trees and not self.errors else []
             targets.write(aimed)
             checked = targets.check(aimed)
             return {

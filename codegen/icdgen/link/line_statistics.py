@@ -17,11 +17,11 @@ FAULTS = {
 """Descriptions of decoder errors."""
 
 
-class Heard:
+class LineStatistics:
     """Counters of line errors, and missing and repeated messages."""
 
     def __init__(self, icd: Icd, node: Node) -> None:
-        self.icd, self.known = icd, ids_of(icd, node).telemetry
+        self.icd, self.ids = icd, ids_of(icd, node).telemetry
         self.faults: Counter[str] = Counter()
         self.missing = self.repeated = 0
 
@@ -35,7 +35,7 @@ class Heard:
 
     def message_of(self, id: int, data: bytes) -> Message | None:
         """Return the message of this id that matches the data, or None."""
-        return codec.message_of_frame_if_any(self.icd, [variant.message for variant in self.known.get(id, ())], data)
+        return codec.message_of_frame_if_any(self.icd, [variant.message for variant in self.ids.get(id, ())], data)
 
     def text(self) -> str:
         """Return the errors as one line for a report; empty without errors."""
