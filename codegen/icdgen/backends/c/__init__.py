@@ -50,7 +50,7 @@ class CBackend:
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List all files: the support header, the wire layer, then the files of each node."""
         prefixed = with_prefix(icd, self.packages.c_prefix)
-        yield from with_short_names(self._files(prefixed, render), lambda: self.identifiers(prefixed))
+        yield from with_short_names(self._files(prefixed, render), self.identifiers(prefixed))
 
     def _files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         from icdgen.describe.links import links_of  # imported late: rules on names do not need it

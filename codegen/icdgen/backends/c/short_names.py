@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from hashlib import sha256
 from pathlib import PurePosixPath
 
@@ -36,15 +36,13 @@ def _short(text: str) -> str:
 
 
 def with_short_names(
-    files: Iterable[tuple[PurePosixPath, str]], identifiers: Callable[[], Iterable[Identifier]]
+    files: Iterable[tuple[PurePosixPath, str]], identifiers: Iterable[Identifier]
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """List C files with shorter names. ``identifiers`` is called once, and only if a file has long names."""
-    short: dict[str, str] | None = None
+    """List C files with shorter names. ``identifiers`` are all names that the headers declare."""
+    short = short_names(identifiers)
     for path, text in files:
-        if _LONG.search(text):
-            short = short_names(identifiers()) if short is None else short
-            text = _replaced(text, short)
-        yield path, text
+        # Few ICDs have such names, and the search takes longer than the text of a file.
+        yield path, _replaced(text, short) if short else text
 
 
 def _replaced(text: str, short: dict[str, str]) -> str:
