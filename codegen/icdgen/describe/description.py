@@ -274,6 +274,7 @@ class Composite(Named[WithFields]):
         """Orders of the array whose element this struct is."""
         self.using_node = node
         """Node whose code reads and writes it. It can use structs of other nodes."""
+        self._walks: dict[Into, tuple[FieldDescription, ...]] = {}
 
     @cached_property
     def comment(self) -> Comment:
@@ -320,20 +321,21 @@ class Composite(Named[WithFields]):
             return self.declared_members
         return tuple(member for member in self.declared_members if not member.model.is_read_only)
 
-    @cached_property
+    @property
     def fields(self) -> tuple[FieldDescription, ...]:
         """All scalars of `members`: each element of an array and each field of a struct."""
-        return tuple(self.walk(Into.ALL_ARRAYS))
+        return self.walk(Into.ALL_ARRAYS)
 
     @property
     def last_part(self) -> VariablePartDescription | None:
         """Last part of variable length; None for structs and messages of one length."""
         return None
 
-    def walk(self, into: Into) -> Iterator[FieldDescription]:
-        """List the fields of `members` in the order of the ICD, as far as `into` goes."""
-        for member in self.members:
-            yield from member.walk(into)
+    def walk(self, into: Into) -> tuple[FieldDescription, ...]:
+        """Return the fields of `members` in the order of the ICD, as far as `into` goes."""
+        if into not in self._walks:
+            self._walks[into] = tuple(field for member in self.members for field in member.walk(into))
+        return self._walks[into]
 
     def element_struct_of(self, array: FieldDescription, struct: StructDescription) -> StructDescription:
         """Return the struct of the elements of an array, in the orders in effect there."""

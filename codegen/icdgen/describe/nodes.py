@@ -241,12 +241,19 @@ class NodeDescription:
 
     def shares_ids(self, direction: str) -> bool:
         """Return whether messages of the direction share an id."""
-        return direction in self._directions_with_shared_ids
+        return bool(self._sharing[direction])
 
     def shares_id(self, direction: str, message: MessageDescription) -> bool:
         """Return whether a message shares its id with another one of the direction."""
-        shared = (under_id.messages for under_id in self._ids[direction] if under_id.is_shared)
-        return any(candidate.message is message for candidates in shared for candidate in candidates)
+        return message in self._sharing[direction]
+
+    @cached_property
+    def _sharing(self) -> dict[str, frozenset[MessageDescription]]:
+        """Messages of each direction that share their id with another one."""
+        return {
+            direction: frozenset(row.message for under_id in ids if under_id.is_shared for row in under_id.messages)
+            for direction, ids in self._ids.items()
+        }
 
     @cached_property
     def messages_by_id(self) -> Ids:
@@ -260,10 +267,6 @@ class NodeDescription:
             "telecommand": tuple(self._under("set_id", id, variants) for id, variants in telecommands.items()),
             "telemetry": tuple(self._under("get_id", id, variants) for id, variants in telemetry.items()),
         }
-
-    @cached_property
-    def _directions_with_shared_ids(self) -> frozenset[str]:
-        return frozenset(direction for direction, ids in self._ids.items() if any(under.is_shared for under in ids))
 
     def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> MessagesOfId:
         candidates = []
