@@ -74,12 +74,9 @@ def excess(message: MessageDescription) -> list[str]:
 def _tests(message: MessageDescription, is_last_part: bool, lines_of: _Lines) -> list[str]:
     lines = []
     for field in message.walk(Into.STRUCTS):
-        if field.is_in_last_part == is_last_part:
-            lines += _statements(
-                field,
-                lines_of,
-                elements(message.last_part) if is_last_part and message.last_part else f"{field.count}u",
-            )
+        if field.needs_range_check and field.is_in_last_part == is_last_part:
+            count = elements(message.last_part) if is_last_part and message.last_part else f"{field.count}u"
+            lines += _statements(field, lines_of, count)
     return lines
 
 
