@@ -91,13 +91,11 @@ class Assumptions:
 def byte_table(crc: Crc) -> list[int]:
     """Return the register after each of the 256 bytes, most significant bit first, if it was 0 before."""
     top, mask = 1 << crc.width - 1, (1 << crc.width) - 1
-    table = []
-    for byte in range(256):
-        register = 0
-        for position in reversed(range(8)):
-            is_odd = bool(register & top) != bool(byte >> position & 1)
-            register = register << 1 & mask ^ (crc.polynomial if is_odd else 0)
-        table.append(register)
+    table, register = [0], crc.polynomial
+    for _ in range(8):
+        # `register` is the entry of the byte 1 << n, and the entry of a ^ b is entry a ^ entry b.
+        table += [entry ^ register for entry in table]
+        register = register << 1 & mask ^ (crc.polynomial if register & top else 0)
     return table
 
 
