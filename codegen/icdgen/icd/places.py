@@ -184,7 +184,7 @@ def places_in(layout: Layout) -> tuple[NodePlace, ...]:
 
     A count that follows from the length of the frame comes directly after its array.
     """
-    return places_of(layout)
+    return _places(layout, UNDECLARED)
 
 
 @cached_by_owner
@@ -199,8 +199,12 @@ def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:
     return tuple(scalar for scalar in scalars_in(layout) if not scalar.is_read_only)
 
 
-def places_of(layout: Layout, outer: Orders = UNDECLARED) -> tuple[NodePlace, ...]:
-    """Return the places of the nodes of a layout, as `places_in`, but with orders inherited from `outer`; not cached."""
+def places_of(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
+    """Return the places of the nodes of a layout, as `places_in`, but with orders inherited from `outer`."""
+    return places_in(layout) if outer == UNDECLARED else _places(layout, outer)
+
+
+def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
     orders = layout.orders.within(outer)
     places = [_place(node, orders, smallest_raw=layout.smallest_raw(node.name)) for node in layout.fixed]
     for part in layout.parts:
