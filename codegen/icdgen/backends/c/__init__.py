@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
 _SPELLING = (
     byte_count, call, comment, described, head, length_text, like, literal, prose, names.client_function, names.constant,
-    names.enumerator, names.enumerator_of, names.getter, names.setter, C_NAMES.symbol, sentence, text_comment, words,
+    names.enumerator, names.enumerator_of, names.getter, names.selector, names.setter, C_NAMES.symbol, sentence,
+    text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """Functions with which templates spell names and text."""

@@ -77,6 +77,13 @@ def enumerator_of(direction: str, message: MessageDescription) -> str:
     return f"{direction}_is_{message.name}".upper()
 
 
+def selector(node: NodeDescription, direction: str, message: MessageDescription, id_name: str) -> str:
+    """Constant that selects a message in ``demo_telemetry_t``: that of its id, or an enumerator if messages share ids."""
+    if node.shares_ids(direction):
+        return enumerator_of(f"{node.name}_{direction}", message)
+    return constant(message, id_name)
+
+
 def getter(composite: Composite[Any], name: str) -> str:
     """``demo_status_rate_deg_per_s``: the function that returns a value by its name in snake case."""
     return f"{stem(composite)}_{name}"
