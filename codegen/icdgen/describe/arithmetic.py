@@ -11,6 +11,8 @@ from typing import NamedTuple
 from icdgen.describe.integer_scale import IntegerScale, computable, integer_bits, integer_scale, within
 from icdgen.describe.steps import EXACT_DOUBLE, EXACT_SINGLE, Steps
 from icdgen.describe.storage import Storage
+from icdgen.frozen import dataclass
+from icdgen.once import cached_property
 
 _INT64_MAX = (1 << 63) - 1
 _BITS_IN_DOUBLE = 32
@@ -38,7 +40,8 @@ class Int64Terms(NamedTuple):
     is_negated: bool
 
 
-class Arithmetic(NamedTuple):
+@dataclass(frozen=True)
+class Arithmetic:
     """Arithmetic of a scale for raw values in an integer: physical = (raw*p + c) / q."""
 
     steps: Steps
@@ -72,7 +75,7 @@ class Arithmetic(NamedTuple):
         p, c, q = self.steps.terms
         return Int64Terms(-p, -c, q, True) if c > _INT64_MAX else Int64Terms(p, c, q, False)
 
-    @property
+    @cached_property
     def integers(self) -> IntegerAccess | None:
         """The integer accessors; None if the values are not whole thousandths or millionths, or a step may overflow."""
         scale = integer_scale(self.steps)

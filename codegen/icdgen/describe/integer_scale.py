@@ -74,8 +74,7 @@ def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
 
 def within(bits: int, *values: int) -> bool:
     """Return whether a signed integer can store the values and their negatives."""
-    most = (1 << bits - 1) - 1
-    return all(-most <= value <= most for value in values)
+    return max(map(abs, values)) <= (1 << bits - 1) - 1
 
 
 def part_of_unit(field: NodePlace, per: int) -> tuple[str, str]:

@@ -56,7 +56,7 @@ class ScalarDescription(Named[NodePlace]):
         """Line of the ICD that declares it; of an element, the line of its array."""
         return self.model.node
 
-    @property
+    @cached_property
     def arithmetic(self) -> Arithmetic | None:
         """Arithmetic of its scale; None without a scale."""
         return None if self.steps is None else arithmetic_of(self.steps, self.storage)

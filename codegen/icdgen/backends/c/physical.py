@@ -78,7 +78,7 @@ def double_value(field: FieldDescription, raw: str) -> str:
     if field.curve is not None:
         return f"icdgen_curve(ICDGEN_CAST(double, {raw}), curve, {len(field.curve.pieces)}u)"
     assert field.arithmetic is not None
-    steps, storage = field.arithmetic
+    steps, storage = field.arithmetic.steps, field.storage
     kind = _kind(storage, 64)
     if steps.is_wide:
         return f"icdgen_wide_physical_{kind}({raw}, &scale)"
