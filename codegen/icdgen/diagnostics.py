@@ -47,6 +47,13 @@ class Fix(NamedTuple):
     text: str
 
 
+class Remedy(NamedTuple):
+    """Help for a mistake; ``fix`` is the correct key or value as YAML, if it is known."""
+
+    help: str
+    fix: str = ""
+
+
 class Related(NamedTuple):
     """A second place of a finding, such as the first of two equal names, with a label."""
 

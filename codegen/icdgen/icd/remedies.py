@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
+from icdgen.diagnostics import Remedy
 from icdgen.suggest import close_to
 
 _QUOTES = "put the text in quotes"
@@ -51,13 +52,6 @@ _SCIENTIFIC = re.compile(r"(-?)([0-9]*)(?:\.([0-9]*))?(?:[eE](?=[-+]?([0-9]+)\Z)
 _BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)")
 _BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(r"[^'\"{}\[\],]+")
 _RENAMED = re.compile(r"`(\w+):`")
-
-
-class Remedy(NamedTuple):
-    """Help for a mistake; ``fix`` is the correct key or value as YAML, if it is known."""
-
-    help: str
-    fix: str = ""
 
 
 def of_syntax(problem: str, line: str, column: int) -> str:

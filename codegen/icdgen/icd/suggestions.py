@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from icdgen.icd.fmt.scalars import quoted_if_needed
-from icdgen.icd.remedies import Remedy
+from icdgen.diagnostics import Remedy
 from icdgen.suggest import close_to
 
 
@@ -17,4 +16,7 @@ def suggestion(name: str, names: Iterable[str], otherwise: str) -> Remedy:
 
 def yaml_text(text: str) -> str:
     """Return a text as YAML, in quotes if it needs them in flow style (between braces)."""
+    # Imported late: only a file with a mistake needs it.
+    from icdgen.icd.fmt.scalars import quoted_if_needed
+
     return quoted_if_needed(text, True)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from icdgen.diagnostics import Place
-from icdgen.icd.remedies import Remedy
+from icdgen.diagnostics import Place, Remedy
 
 LONGEST = 60
 VERBATIM = "names are the manual's, to the letter"
