@@ -84,7 +84,7 @@ class _LinkBuilder:
             "longest": facts.longest,
             "longest_data": facts.longest_data,
             "telemetry_ids": (facts.telemetry_ids.first, facts.telemetry_ids.last),
-            "settings": self.part(facts.client, "client"),
+            "settings": self.part(facts.client),
             "errors": self.commented_rest(facts.errors, "errors"),
             "commands": {each.id: self.sent(each) for each in self.description.telecommands},
             "frames": {each.id: each.message.length for each in self.description.telemetry},
@@ -93,23 +93,23 @@ class _LinkBuilder:
         }
         time = {name: _flat("TimePart", part) for name, part in facts.time.items()}
         optional = {
-            "framing": self.part(facts.framing, "uart.framing"),
-            "acknowledge": self.part(facts.acknowledge, "uart.acknowledge"),
+            "framing": self.part(facts.framing),
+            "acknowledge": self.part(facts.acknowledge),
             "polled": self.commented_rest(self.polled(), "i2c.acknowledge"),
             "i2c_address": facts.i2c_address,
             "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
             "checksum": self.checksum(),
-            "crc16": self.part(facts.crc16, "crc16"),
+            "crc16": self.part(facts.crc16),
             "mask": self.mask(),
-            "log_file": self.part(facts.log_file, "telemetry_log"),
-            "log_message": self.part(facts.log_message, "unsolicited_log"),
+            "log_file": self.part(facts.log_file),
+            "log_message": self.part(facts.log_message),
             "time": self.commented_rest(time or None, "msdos_time"),
             "index_file": self.index(),
             "hole_map": self.hole_map(),
             "files": self.files(),
-            "program_copy": self.part(facts.program_copy, "program_copy"),
-            "program_information": self.part(facts.program_information, "program_information"),
+            "program_copy": self.part(facts.program_copy),
+            "program_information": self.part(facts.program_information),
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
@@ -118,23 +118,18 @@ class _LinkBuilder:
         }
         return _call("Link", **parts, **{key: part for key, part in optional.items() if part is not None})
 
-    def commented(self, value: object, section: str, key: str) -> object:
-        """Return a value, with the reason as a comment if it is an assumption of the ICD."""
-        why = self.assumed.why(section, key)
-        return Commented(value, (f"Assumed: {why}",)) if why else value
-
     def commented_rest(self, value: object, section: str) -> object:
         """Return a value, with the reasons for assumptions of a section that no comment of its keys has."""
-        reasons = self.assumed.of_section(section) if value is not None else []
-        return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons)) if reasons else value
+        return _commented(value, self.assumed.of_section(section) if value is not None else [])
 
-    def part(self, part: object, section: str, **computed: object) -> object:
+    def part(self, part: object, **computed: object) -> object:
         """Return the call for a part of the link: its declared facts, then the keywords of ``computed``."""
         if part is None:
             return None
-        return self.commented_rest(_call(type_name(type(part)), **self.declared(part, section), **computed), section)
+        call = _call(type_name(type(part)), **self.declared(part), **computed)
+        return _commented(call, self.assumed.of_part(part))
 
-    def declared(self, part: object, section: str) -> dict[str, object]:
+    def declared(self, part: object) -> dict[str, object]:
         """Return the declared facts of a part that have a value."""
         values: dict[str, object] = {}
         for fact in facts_of(part):
@@ -142,7 +137,7 @@ class _LinkBuilder:
             if isinstance(value, Step):
                 value = self.step(value)
             if value is not None:
-                values[fact.name] = self.commented(value, section, fact.key.partition(".")[0])
+                values[fact.name] = _explained(value, self.assumed.why_fact(part, fact))
         return values
 
     def polled(self) -> Call | None:
@@ -159,17 +154,17 @@ class _LinkBuilder:
             return None
         parts = {role: _flat("CanPart", part) for role, part in can.parts.items()}
         computed = {
-            "parts": self.commented(parts, "can", "identifier"),
+            "parts": _explained(parts, self.assumed.why("can", "identifier")),
             "types": can.types,
             "extended_types": can.extended_types,
         }
-        computed |= {"extended": self.part(can.extended, "can.extended")} if can.extended else {}
-        return self.part(can, "can", **computed)
+        computed |= {"extended": self.part(can.extended)} if can.extended else {}
+        return self.part(can, **computed)
 
     def checksum(self) -> object:
         """Return the call for the checksum of messages."""
         form = self.facts.checksum
-        return self.part(form, "crc8", crc=_call("CrcForm", **self.declared(form.crc, "crc8"))) if form else None
+        return self.part(form, crc=_call("CrcForm", **self.declared(form.crc))) if form else None
 
     def mask(self) -> object:
         """Return the call for the log mask."""
@@ -179,13 +174,13 @@ class _LinkBuilder:
         bits = {
             bit: _row("LogBit", row.bit, row.id, row.length, row.name or "") for bit, row in sorted(mask.bits.items())
         }
-        return self.part(mask, "log_mask", bits=bits)
+        return self.part(mask, bits=bits)
 
     def index(self) -> object:
         """Return the call for the index of files."""
         index = self.facts.index
         fields = {role: (field.at, field.bytes) for role, field in index.fields.items()} if index else {}
-        return self.part(index, "index_file", fields=fields)
+        return self.part(index, fields=fields)
 
     def hole_map(self) -> object:
         """Return the call for the map of missing packets."""
@@ -194,7 +189,6 @@ class _LinkBuilder:
             return None
         return self.part(
             self.facts.hole_map,
-            "file_transfer.hole_map",
             telecommands=tuple(field.message.model.telecommand_id for field in pieces),
             telemetry=tuple(field.message.model.telemetry_id for field in pieces),
             attribute=pieces[0].name,
@@ -207,9 +201,11 @@ class _LinkBuilder:
             return None
         return self.part(
             files,
-            "file_transfer",
-            packet_ids={bus: self.commented(id, "file_transfer.download", bus) for bus, id in files.packet_ids.items()},
-            **{name: self.part(part, f"file_transfer.{name}") for name, part in files.procedures.items()},
+            packet_ids={
+                bus: _explained(id, self.assumed.why("file_transfer.download", bus))
+                for bus, id in files.packet_ids.items()
+            },
+            **{name: self.part(part) for name, part in files.procedures.items()},
         )
 
     def step(self, step: Step) -> Call:
@@ -232,6 +228,16 @@ class _LinkBuilder:
             _call("Assumption", section=each.section, key=each.key, value=_plain(each.value), why=str(each.why))
             for each in self.facts.assumptions
         )
+
+
+def _explained(value: object, why: str) -> object:
+    """Return a value, with the reason as a comment if it is an assumption of the ICD."""
+    return Commented(value, (f"Assumed: {why}",)) if why else value
+
+
+def _commented(value: object, reasons: list[tuple[str, str]]) -> object:
+    """Return a value, with keys and reasons as comments."""
+    return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons)) if reasons else value
 
 
 def _stream(form: Stream) -> Call:

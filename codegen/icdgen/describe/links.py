@@ -69,15 +69,22 @@ class Assumptions:
     """Assumed facts of a node's protocol, with reasons. Each reason is returned once, so that code shows it in one place."""
 
     def __init__(self, facts: Facts) -> None:
+        self._sections = {id(part): section for section, part in facts.parts.items()}
+        if facts.checksum is not None:
+            self._sections[id(facts.checksum.crc)] = "crc8"
         self._left = {(assumption.section, assumption.key): assumption.why for assumption in facts.assumptions}
 
     def why(self, section: str, key: str) -> str:
         """Return why the value of a key is assumed; empty if it is not, or if the reason was returned before."""
         return self._left.pop((section, key), "")
 
-    def why_fact(self, section: str, fact: Fact) -> str:
-        """Return why a declared fact is assumed; empty if it is not."""
-        return self.why(section, fact.key.partition(".")[0]) if fact.key else ""
+    def why_fact(self, part: object, fact: Fact) -> str:
+        """Return why a declared fact of a part is assumed; empty if it is not."""
+        return self.why(self._sections[id(part)], fact.key.partition(".")[0]) if fact.key else ""
+
+    def of_part(self, part: object) -> list[tuple[str, str]]:
+        """Return key and reason of the other assumptions of the section of a part."""
+        return self.of_section(self._sections[id(part)])
 
     def of_section(self, section: str) -> list[tuple[str, str]]:
         """Return key and reason of the other assumptions of a section."""

@@ -81,6 +81,19 @@ class Facts:
     assumptions: tuple[Assumption, ...]
 
     @property
+    def parts(self) -> dict[str, object]:
+        """Described parts with declared facts, by their sections of the ICD."""
+        parts = {
+            "client": self.client, "uart.framing": self.framing, "uart.acknowledge": self.acknowledge, "can": self.can,
+            "can.extended": self.can and self.can.extended, "crc8": self.checksum, "crc16": self.crc16,
+            "log_mask": self.mask, "telemetry_log": self.log_file, "unsolicited_log": self.log_message,
+            "index_file": self.index, "file_transfer": self.files, "file_transfer.hole_map": self.hole_map,
+            **{f"file_transfer.{name}": part for name, part in (self.files.procedures if self.files else {}).items()},
+            "program_copy": self.program_copy, "program_information": self.program_information,
+        }  # fmt: skip
+        return {section: part for section, part in parts.items() if part is not None}
+
+    @property
     def owners(self) -> list[str]:
         """Names of the nodes that define the messages: the node itself, then included
         nodes.

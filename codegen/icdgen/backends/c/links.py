@@ -126,8 +126,8 @@ class _Tables:
             Row(settings, "ms for a reply, retries, ms between polls, ms of polling"),
             Row(self.array("errors", "icd_error_code_t", map(_error_code, codes)), "error codes"),
             Row(f"{len(codes)}u, {facts.errors.get('none', 0)}u", "how many; no error"),
-            Row(self.part("framing", facts.framing, "uart.framing"), "framing of the UART"),
-            Row(self.part("acknowledge", facts.acknowledge, "uart.acknowledge"), "acknowledges on the UART"),
+            Row(self.part("framing", facts.framing), "framing of the UART"),
+            Row(self.part("acknowledge", facts.acknowledge), "acknowledges on the UART"),
             Row(or_none(facts.i2c_address), "I2C address"),
             Row(boolean(facts.i2c_repeated_start), "I2C: a read may follow its write without a stop"),
             Row(or_none(facts.boot_ms), "boot time in ms"),
@@ -140,17 +140,15 @@ class _Tables:
             Row(self.named_step("identification", link.identification), "identification"),
             Row(self.stream(), "envelope"),
         ]
-        assumptions = (
-            f"{key}: {why}" for section, key, why in self.assumed.others() if not section.startswith("message ")
-        )
-        self.add("link", "icd_link_t", rows, map(plain, assumptions))
+        assumed = ((key, why) for section, key, why in self.assumed.others() if not section.startswith("message "))
+        self.add("link", "icd_link_t", rows, assumed)
         return self.tables
 
     def logs(self) -> Iterator[Row]:
         facts = self.facts_of_link
         yield Row(self.log_mask(), "mask of logs")
-        yield Row(self.part("log_file", facts.log_file, "telemetry_log"), "log files")
-        yield Row(self.part("log_message", facts.mask and facts.log_message, "unsolicited_log"), "unsolicited logs")
+        yield Row(self.part("log_file", facts.log_file), "log files")
+        yield Row(self.part("log_message", facts.mask and facts.log_message), "unsolicited logs")
 
     def of_files(self) -> Iterator[Row]:
         facts = self.facts_of_link
@@ -159,8 +157,8 @@ class _Tables:
         yield Row(self.hole_map(), "hole map")
         yield Row(self.files(), "file transfer")
         yield from (Row(self.procedure(name), name) for name in PROCEDURES)
-        yield Row(self.part("program_copy", facts.program_copy, "program_copy"), "program copy")
-        information = self.part("program_information", facts.program_information, "program_information")
+        yield Row(self.part("program_copy", facts.program_copy), "program copy")
+        information = self.part("program_information", facts.program_information)
         yield Row(information, "program information")
 
     def optional(self, what: str, rows: Iterable[Row]) -> Iterator[Row]:
@@ -187,9 +185,9 @@ class _Tables:
             f"{{{sent.id}u, {flags}, {sent.message.length}u}}", plain(sent.message.name), " || ".join(conditions)
         )
 
-    def add(self, name: str, type: str, rows: Iterable[str | Row], assumed: Iterable[str] = ()) -> str:
-        """Declare a table, with a comment on assumed facts."""
-        about = " ".join(f"Assumed {text}" for text in assumed)
+    def add(self, name: str, type: str, rows: Iterable[str | Row], assumed: Iterable[tuple[str, str]] = ()) -> str:
+        """Declare a table, with a comment on assumed facts: their keys and reasons."""
+        about = " ".join(f"Assumed {plain(f'{key}: {why}')}" for key, why in assumed)
         self.tables.append(Table(comment([about], STEP) if about else "", type, name, list(map(str, rows))))
         return f"&{name}"
 
@@ -203,15 +201,11 @@ class _Tables:
         rows = in_rows(numbers, count)
         return self.add(f"{name}[]", type, rows).strip("&[]") if rows else "NULL"
 
-    def part(self, name: str, part: object, section: str, *further: Row) -> str:
+    def part(self, name: str, part: object, *further: Row) -> str:
         """Declare the table of a part: its facts, then further rows. Return NULL for None."""
         if part is None:
             return "NULL"
-        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *further], self.assumed_in(section))
-
-    def assumed_in(self, section: str) -> list[str]:
-        """Return the assumed facts of a section, with reasons."""
-        return [plain(f"{key}: {why}") for key, why in self.assumed.of_section(section)]
+        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *further], self.assumed.of_part(part))
 
     def facts(self, name: str, part: object) -> list[Row]:
         """Return a row for each declared fact."""
@@ -273,14 +267,13 @@ class _Tables:
         return self.part(
             "can",
             can,
-            "can",
             *(
                 Row(f"{{{can.parts[role].bits}u, {can.parts[role].shift}u}}", f"{role}: bits, shift")
                 for role in CAN_PARTS
             ),
             Row(f"{{{types}}}", "types"),
             Row(f"{{{extended_types}}}", "types of messages of several packets"),
-            Row(self.part("can_extended", form, "can.extended"), "messages of several packets"),
+            Row(self.part("can_extended", form), "messages of several packets"),
         )
 
     def crc(self, name: str, parameters: Crc, is_crc: bool = True) -> str:
@@ -296,9 +289,7 @@ class _Tables:
     def checksum(self) -> str:
         checksum = self.facts_of_link.checksum
         return (
-            self.part("checksum", checksum, "crc8", Row(f"{_CRC}{{{self.crc('crc8', checksum.crc)}}}"))
-            if checksum
-            else "NULL"
+            self.part("checksum", checksum, Row(f"{_CRC}{{{self.crc('crc8', checksum.crc)}}}")) if checksum else "NULL"
         )
 
     def crc16(self) -> str:
@@ -327,7 +318,7 @@ class _Tables:
             Row(check, "checksum"),
             Row(f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}", "messages"),
         ]
-        return self.add("stream", "icd_stream_form_t", parts, self.assumed_in("stream"))
+        return self.add("stream", "icd_stream_form_t", parts, self.assumed.of_section("stream"))
 
     def log_mask(self) -> str:
         mask = self.facts_of_link.mask
@@ -339,7 +330,7 @@ class _Tables:
             id, length = (row.id, row.length) if row else (None, mask.slot_bytes)
             text = f"bit {bit}" + (f": {plain(row.name)}" if row and row.name else "")
             rows.append(Row(f"{{{or_none(id)}, {length}u}}", text))
-        return self.part("log_mask", mask, "log_mask", Row(self.array("log_bits", "icd_log_bit_t", rows)))
+        return self.part("log_mask", mask, Row(self.array("log_bits", "icd_log_bit_t", rows)))
 
     def time(self) -> str:
         rows = [
@@ -351,7 +342,7 @@ class _Tables:
         form = self.link.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         rows = (Row(f"{{{span.at}u, {span.bytes}u}}", name) for name, span in fields)
-        return self.part("index_entry", form, "index_file", *rows)
+        return self.part("index_entry", form, *rows)
 
     def hole_map(self) -> str:
         rows = []
@@ -361,16 +352,16 @@ class _Tables:
             rows.append(Row(f"{{{ids}, {message.length}u, {field.model.at // 8}u}}", plain(message.name)))
         messages = self.array("hole_maps", "icd_hole_map_message_t", rows)
         further = Row(f"{len(rows)}u, {messages}", "messages")
-        return self.part("hole_map", self.facts_of_link.hole_map, "file_transfer.hole_map", further)
+        return self.part("hole_map", self.facts_of_link.hole_map, further)
 
     def files(self) -> str:
         files = self.facts_of_link.files
         ids = ", ".join(or_none(files.packet_ids.get(bus)) for bus in BUSES) if files else ""
-        return self.part("files", files, "file_transfer", Row(f"{{{ids}}}", "ids of download packets"))
+        return self.part("files", files, Row(f"{{{ids}}}", "ids of download packets"))
 
     def procedure(self, name: str) -> str:
         """Declare the table of a procedure of file transfer."""
-        return self.part(name, getattr(self.facts_of_link.files, name, None), f"file_transfer.{name}")
+        return self.part(name, getattr(self.facts_of_link.files, name, None))
 
 
 def _error_code(code: tuple[str, int]) -> str:

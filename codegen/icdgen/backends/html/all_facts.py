@@ -47,7 +47,9 @@ def of_code(relations: Relations, facts: Facts) -> list[Part]:
     """
     why = {(assumption.section, assumption.key): assumption.why for assumption in facts.assumptions}
     parts = []
-    for path, thing in _things(facts):
+    for path, thing in facts.parts.items():
+        if isinstance(thing, Crc):
+            continue  # CRC parameters have their own tables
         rows = []
         for fact in facts_of(thing):
             value = getattr(thing, fact.name)
@@ -66,8 +68,7 @@ def with_others(relations: Relations, facts: Facts, parts: list[Part], section: 
     content: names, units and texts.
     """
     urls = {message.name: relations.links.message(message) for message in relations.icd.messages_of(facts.node)}
-    read = {f"{path}.{fact.key}" for path, thing in _things(facts) for fact in facts_of(thing)}
-    # CRC parameters have their own tables.
+    read = {f"{path}.{fact.key}" for path, thing in facts.parts.items() for fact in facts_of(thing)}
     read |= {f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)}
     parts_by_anchor = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
     for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):
@@ -121,18 +122,6 @@ def _entry(row: Mapping[str, Any]) -> Row:
 
 def _part(path: str, rows: list[Row]) -> Part:
     return Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows)
-
-
-def _things(facts: Facts) -> list[tuple[str, object]]:
-    named = {
-        "client": facts.client, "uart.framing": facts.framing, "uart.acknowledge": facts.acknowledge, "can": facts.can,
-        "can.extended": facts.can and facts.can.extended, "crc8": facts.checksum, "log_mask": facts.mask,
-        "telemetry_log": facts.log_file, "unsolicited_log": facts.log_message, "index_file": facts.index,
-        "file_transfer": facts.files, "file_transfer.hole_map": facts.hole_map,
-        **{f"file_transfer.{name}": procedure for name, procedure in (facts.files.procedures if facts.files else {}).items()},
-        "program_copy": facts.program_copy, "program_information": facts.program_information,
-    }  # fmt: skip
-    return [(path, thing) for path, thing in named.items() if thing is not None]
 
 
 def value_text(fact: Fact, value: object) -> str:

@@ -85,12 +85,12 @@ class _Literal:
             part("telemetry_ids", flat("Ids", **members(facts.telemetry_ids))),
             part("telecommands", rows(map(_form, link.telecommands))),
             part("telemetry", rows(map(_form, link.telemetry))),
-            part("client", self.struct(facts.client, "client") or ""),
+            part("client", self.struct(facts.client) or ""),
             part("errors", rows(codes)),
-            part("framing", some(self.struct(facts.framing, "uart.framing"))),
+            part("framing", some(self.struct(facts.framing))),
             part(
                 "acknowledge",
-                some(self.struct(facts.acknowledge, "uart.acknowledge")),
+                some(self.struct(facts.acknowledge)),
                 self.assumed.why("uart.acknowledge", "data"),
             ),
             part("i2c_address", some(facts.i2c_address)),
@@ -98,25 +98,25 @@ class _Literal:
             part("polled", some(_polled(link.polled))),
             part("can", some(self.can())),
             part("checksum", some(self.checksum())),
-            part("crc16", some(self.struct(facts.crc16, "crc16"))),
+            part("crc16", some(self.struct(facts.crc16))),
             part("mask", some(self.mask())),
-            part("log_file", some(self.struct(facts.log_file, "telemetry_log"))),
+            part("log_file", some(self.struct(facts.log_file))),
             part(
                 "log_message",
-                some(self.struct(facts.log_message, "unsolicited_log")),
+                some(self.struct(facts.log_message)),
                 self.assumed.why("unsolicited_log", "framed"),
             ),
             part("time", some(self.time())),
             part("index", some(self.index())),
             part("files", some(self.files())),
-            part("program_copy", some(self.struct(facts.program_copy, "program_copy"))),
-            part("program_information", some(self.struct(facts.program_information, "program_information"))),
+            part("program_copy", some(self.struct(facts.program_copy))),
+            part("program_information", some(self.struct(facts.program_information))),
             part("identification", some(_step(link.identification, "telemetry"))),
             part("boot_ms", some(facts.boot_ms)),
             part("stream", some(stream_of(facts.stream) if facts.stream else None)),
         )
 
-    def struct(self, declared: object, section: str, *further: Item) -> Brackets | None:
+    def struct(self, declared: object, *further: Item) -> Brackets | None:
         """Return the facts of a part as a struct, with further items."""
         if declared is None:
             return None
@@ -125,7 +125,7 @@ class _Literal:
             value = getattr(declared, fact.name)
             step = _step(self.description.step(value), fact.direction) if isinstance(value, Step) else None
             items.append(
-                part(member_name(fact), step or value_of(fact, declared), self.assumed.why_fact(section, fact))
+                part(member_name(fact), step or value_of(fact, declared), self.assumed.why_fact(declared, fact))
             )
         return struct(type_name(type(declared)), *items, *further)
 
@@ -134,12 +134,12 @@ class _Literal:
         if can is None:
             return None
         parts = (part(_RENAMED.get(role, role), flat("CanPart", **members(can.parts[role]))) for role in CAN_PARTS)
-        extended = self.struct(can.extended, "can.extended", part("types", _can_types(can.extended_types)))
-        return self.struct(can, "can", *parts, part("types", _can_types(can.types)), part("extended", some(extended)))
+        extended = self.struct(can.extended, part("types", _can_types(can.extended_types)))
+        return self.struct(can, *parts, part("types", _can_types(can.types)), part("extended", some(extended)))
 
     def checksum(self) -> Brackets | None:
         form = self.facts.checksum
-        return self.struct(form, "crc8", part("crc", self.struct(form.crc, "crc8") or "")) if form else None
+        return self.struct(form, part("crc", self.struct(form.crc) or "")) if form else None
 
     def mask(self) -> Brackets | None:
         mask = self.facts.mask
@@ -150,7 +150,7 @@ class _Literal:
             for _, row in sorted(mask.bits.items())
             if row.id is not None
         )
-        return self.struct(mask, "log_mask", part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")))
+        return self.struct(mask, part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")))
 
     def time(self) -> Brackets | None:
         parts = [part(name, flat("TimePart", **members(time_part))) for name, time_part in self.description.time]
@@ -160,7 +160,7 @@ class _Literal:
         form = self.description.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
         spans = (part(_RENAMED.get(name, name), flat("Span", **members(span))) for name, span in fields)
-        return self.struct(form, "index_file", *spans)
+        return self.struct(form, *spans)
 
     def files(self) -> Brackets | None:
         """Return the facts of file transfer, with the procedures that the ICD describes completely."""
@@ -172,10 +172,9 @@ class _Literal:
         )
         return self.struct(
             form,
-            "file_transfer",
             part("packet_ids", struct("PerBus", *ids)),
             part("hole_map", some(self.hole_map())),
-            *(part(name, some(self.struct(getattr(form, name), f"file_transfer.{name}"))) for name in PROCEDURES),
+            *(part(name, some(self.struct(getattr(form, name)))) for name in PROCEDURES),
         )
 
     def hole_map(self) -> Brackets | None:
@@ -186,7 +185,7 @@ class _Literal:
                 return None
             ids = {"set_id": message.telecommand_id, "get_id": message.telemetry_id}
             messages.append(flat("MapMessage", **ids, length=message.length, piece=_span(field)))
-        return self.struct(self.facts.hole_map, "file_transfer.hole_map", part("messages", rows(messages)))
+        return self.struct(self.facts.hole_map, part("messages", rows(messages)))
 
 
 def _form(sent: SentMessage) -> Brackets:
