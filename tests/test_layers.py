@@ -12,7 +12,7 @@ from tests.conftest import ROOT
 
 PACKAGE = ROOT / "codegen" / "icdgen"
 LAYERS = [  # what stands in one row does not know each other
-    "diagnostics errors fingerprints frozen naming once shipped suggest tables",
+    "diagnostics errors fingerprints frozen naming once shipped suggest tables wording",
     "cache config icd render",
     "codec layout reports",
     "protocol",

@@ -129,7 +129,7 @@ def import_(
         with progress.pages("reading") as show:
             result, trees = run.run(manual, vocabulary, show, jobs, descriptions, pages)
         if folder is not None:
-            from icdgen.icd.rules.wording import count
+            from icdgen.wording import count
 
             paths = table_files.write(result.tables, folder, result.document)
             say(

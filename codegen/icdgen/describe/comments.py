@@ -27,6 +27,7 @@ from icdgen.icd.erratum import Erratum
 from icdgen.icd.layout import LayoutNode, Scalar, VariablePart
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
+from icdgen.wording import listing
 
 _LISTED = 6
 """Largest number of names that a sentence lists."""
@@ -162,14 +163,9 @@ def _used(users: Mapping[str, Sequence[str]]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Return `listed` of the first names, and the number of others if there are many."""
+    """Return a list of the first names, and the number of others if there are many."""
     few = names if len(names) <= _LISTED else [*names[: _LISTED - 1], f"{len(names) - _LISTED + 1} others"]
-    return listed(few)
-
-
-def listed(names: Sequence[str]) -> str:
-    """Return names in a sentence: ``Status, Set Mode and Limits``."""
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return listing(few)
 
 
 def member_comment(member: Member, elsewhere: Mapping[str, str]) -> Comment:

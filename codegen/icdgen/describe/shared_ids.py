@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from icdgen.describe.comments import listed, words
+from icdgen.describe.comments import words
 from icdgen.describe.numbers import length_text, value_text
 from icdgen.icd.model import Message
 from icdgen.icd.variants import Ids, Variant, common_length, is_narrower
+from icdgen.wording import listing
 
 
 def sharing(ids: Ids, message: Message) -> str:
@@ -24,7 +25,7 @@ def _sentence(own: Variant, group: tuple[Variant, ...]) -> str:
     other_variants = [variant for variant in group if variant is not own]
     has = [length_text(own.message)] if common_length(group) is None else []
     has += (f"{words(field.name)} {value_text(field.const or 0)}" for field in own.constants)
-    clauses = [f"has {listed(has)}"] if has else []
+    clauses = [f"has {listing(has)}"] if has else []
     if any(is_narrower((variant.message, variant.node), (own.message, own.node)) for variant in other_variants):
         clauses.append("is what none of the others is")
-    return f"{listed([words(variant.message.name) for variant in other_variants])}, and {' and '.join(clauses)}."
+    return f"{listing([words(variant.message.name) for variant in other_variants])}, and {' and '.join(clauses)}."

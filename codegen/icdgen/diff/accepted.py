@@ -16,8 +16,8 @@ from icdgen.diff.compare import RULES
 from icdgen.diff.where import Where
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map
-from icdgen.icd.rules.wording import quote
 from icdgen.suggest import close_to
+from icdgen.wording import quote
 
 NAME = ".icdgen-accepted.yaml"
 STALE = "DIF901"

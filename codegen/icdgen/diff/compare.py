@@ -25,7 +25,7 @@ from icdgen.diff.match import match
 from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair
 from icdgen.diff.rule import REGISTERED, Check, CheckResult, Rule
 from icdgen.icd.model import Icd
-from icdgen.icd.rules.wording import listing, quote
+from icdgen.wording import listing, quote
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
 # (kind of pair, presence) -> check -> default code

@@ -16,7 +16,7 @@ from icdgen.diff.wording import read_as, some
 from icdgen.icd.formula import RAW
 from icdgen.icd.lines import lines
 from icdgen.icd.model import Message
-from icdgen.icd.rules.wording import quote
+from icdgen.wording import quote
 
 YES, PARTLY, NO = "yes", "partly", "no"
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from icdgen.diff.change import Change
 from icdgen.diff.layers import LAYERS
-from icdgen.icd.rules.wording import count, listing
+from icdgen.wording import count, listing
 
 MAJOR, MINOR, PATCH, NONE = "major", "minor", "patch", "none"
 

@@ -10,7 +10,7 @@ from icdgen.describe.numbers import bit_range, factor_text, points_text
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.lines import Line
-from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.wording import count, listing, quote
 
 MOST = 4  # maximum number of names before the remaining ones are counted
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from icdgen.diagnostics import Finding
-from icdgen.icd.rules.wording import count
 from icdgen.import_results.findings import Spot, Trouble
 from icdgen.import_results.targets import Target
 from icdgen.reports.excerpt import printable
+from icdgen.wording import count
 
 _COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
 

@@ -7,12 +7,12 @@ from collections import Counter
 from collections.abc import Sequence
 
 from icdgen.diagnostics import Finding
-from icdgen.icd.rules.wording import count
 from icdgen.import_results import report as shared
 from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY
 from icdgen.importer.model import BACKGROUND, UNKNOWN
 from icdgen.importer.run import Result
 from icdgen.importer.words import table_name
+from icdgen.wording import count
 
 
 def report(result: Result, colour: bool = False) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from icdgen.diagnostics import Finding, Lines, Place
 from icdgen.reports.excerpt import corrected, excerpt, printable, shown
+from icdgen.wording import count
 
 COLOURS = {
     "error": "\x1b[1;31m",
@@ -37,9 +38,9 @@ def _summary(findings: list[Finding]) -> str:
     counts = Counter(finding.severity for finding in findings)
     if not counts:
         return "no findings"
-    numbers = [_count(counts[severity], severity) for severity in ("error", "warning", "note") if counts[severity]]
+    numbers = [count(counts[severity], severity) for severity in ("error", "warning", "note") if counts[severity]]
     files = {finding.place.file for finding in findings}
-    return f"{', '.join(numbers)} in {_count(len(files), 'file')}"
+    return f"{', '.join(numbers)} in {count(len(files), 'file')}"
 
 
 def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
@@ -86,10 +87,6 @@ class _Rows:
         below = marks.replace(marks.strip(), self._paint(role, f"{marks.strip()} {label}".rstrip()))
         text = f"{self.indent} {bar}\n" if begin else ""
         return text + f"{number} {bar} {line}".rstrip() + f"\n{self.indent} {bar} {below}\n"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}" + ("" if number == 1 else "s")
 
 
 def _plain(role: str, text: str) -> str:

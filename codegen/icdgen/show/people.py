@@ -13,7 +13,6 @@ from icdgen.icd.erratum import Erratum
 from icdgen.icd.lines import lines as icd_lines
 from icdgen.icd.located import yaml_text
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node, Struct
-from icdgen.icd.rules.wording import count
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.protocol import facts as protocol_facts
@@ -21,6 +20,7 @@ from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
 from icdgen.values.errors import NotFound
 from icdgen.values.find import by_name, describe, find_message, find_named, find_node
+from icdgen.wording import count
 
 _FIGURES = ("type", "version", "commands", "telemetry", "settings", "fields", "errata", "notes")
 _NODES = [

@@ -14,10 +14,10 @@ from icdgen_runtime.wire.stream import stream_encode
 from icdgen.describe.ids import pair_bytes
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message
-from icdgen.icd.rules.wording import count
 from icdgen.protocol.envelope import COBS, CRC, DATA, GIVEN, HDLC, LENGTH, PACKET, SLIP, Check, Stream
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
+from icdgen.wording import count
 
 ENDS = {
     LENGTH: "where its length says",

@@ -17,7 +17,7 @@ from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in
-from icdgen.icd.rules.wording import count
+from icdgen.wording import count
 
 if TYPE_CHECKING:
     from icdgen.render import Renderer

@@ -13,7 +13,7 @@ from icdgen.backends.html.repeats import Repeat, Repeats
 from icdgen.describe.numbers import byte_range
 from icdgen.icd.model import Message
 from icdgen.icd.places import NodePlace, scalars_in
-from icdgen.icd.rules.wording import count
+from icdgen.wording import count
 
 _LONG = 16  # messages with more fields have sections; four flags count as one field
 _SHARE = 10  # fields of a section

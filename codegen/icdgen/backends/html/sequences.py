@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.texts import BUSES, capitalized, clip
 from icdgen.icd.model import Node
-from icdgen.icd.rules.wording import count
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Download, Step
+from icdgen.wording import count
 
 TOP, ROW = 40, 46
 _TEXT, _NOTE = 50, 62  # characters that fit between the lifelines

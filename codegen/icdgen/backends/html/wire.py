@@ -19,9 +19,9 @@ from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html import envelopes
 from icdgen.icd.model import Message
-from icdgen.icd.rules.wording import count
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Framing
+from icdgen.wording import count
 
 _SHOWN = 24  # maximum number of shown data bytes
 

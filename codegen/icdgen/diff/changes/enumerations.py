@@ -10,7 +10,7 @@ from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import other_senses, same_sense
 from icdgen.diff.wording import some
 from icdgen.icd.model import Enum
-from icdgen.icd.rules.wording import quote
+from icdgen.wording import quote
 
 
 @rule("DIF204", "field")

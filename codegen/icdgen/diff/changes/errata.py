@@ -8,7 +8,7 @@ from icdgen.diff.context import Context
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.rules.wording import listing
+from icdgen.wording import listing
 
 _PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held", "is_note")
 

@@ -11,7 +11,7 @@ from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.wording import ids, some
 from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import Message
-from icdgen.icd.rules.wording import count, quote
+from icdgen.wording import count, quote
 
 DIRECTIONS = {"telecommand": "telecommand_id", "telemetry": "telemetry_id"}
 

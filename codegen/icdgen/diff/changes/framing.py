@@ -11,7 +11,7 @@ from icdgen.diff.facts import AROUND, PART, facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.annex import Loggable
-from icdgen.icd.rules.wording import quote
+from icdgen.wording import quote
 
 LONGEST = 80
 

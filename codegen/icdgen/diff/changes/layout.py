@@ -13,8 +13,8 @@ from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, read_as, some, span, type_of
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Message
-from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
+from icdgen.wording import count, listing, quote
 
 
 @rule("DIF107", "message")

@@ -10,7 +10,7 @@ from icdgen.diff.generated import Name, is_renamed, may_rename
 from icdgen.diff.pairs import EnumPair, FieldPair, IdentifiedPair, MemberPair, MessagePair, NodePair, Pair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.lines import Line
-from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.wording import count, listing, quote
 
 MOST = 2  # maximum number of names shown for each language
 

@@ -19,7 +19,7 @@ from icdgen.icd.curve import Curve
 from icdgen.icd.formula import RAW, Scale
 from icdgen.icd.layout import Limits, Special
 from icdgen.icd.lines import Line
-from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.wording import count, listing, quote
 
 
 @rule("DIF201", "field")

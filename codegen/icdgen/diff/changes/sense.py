@@ -9,7 +9,7 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import extends, same_sense
 from icdgen.icd.model import Message
-from icdgen.icd.rules.wording import quote
+from icdgen.wording import quote
 
 
 @rule("DIF212", "message")

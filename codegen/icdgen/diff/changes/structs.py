@@ -19,7 +19,7 @@ from icdgen.diff.wording import bits
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import places_in
-from icdgen.icd.rules.wording import count, quote
+from icdgen.wording import count, quote
 
 
 class _Declared(NamedTuple):

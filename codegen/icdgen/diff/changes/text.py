@@ -23,7 +23,7 @@ from icdgen.diff.where import Places, Where
 from icdgen.icd.layout import LayoutNode, struct_layout_of
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Member, Message, Node, Struct
-from icdgen.icd.rules.wording import quote
+from icdgen.wording import quote
 
 Described: TypeAlias = Node | Message | Line | Enum | Member | Struct | LayoutNode
 """Things with a summary."""

@@ -10,8 +10,8 @@ from icdgen.diff.compatibility import Direction
 from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.report import Report
 from icdgen.diff.reports.groups import groups
-from icdgen.icd.rules.wording import count
 from icdgen.reports.excerpt import shown
+from icdgen.wording import count
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]<>#|~@])")
 _CODE = re.compile(r"`([^`]*)`")

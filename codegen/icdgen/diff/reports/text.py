@@ -11,8 +11,8 @@ from icdgen.diff.compatibility import Direction
 from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.report import Report
 from icdgen.diff.reports.groups import groups
-from icdgen.icd.rules.wording import count
 from icdgen.reports.excerpt import printable, shown
+from icdgen.wording import count
 
 RESET = "\x1b[0m"
 COLOURS = {

@@ -8,7 +8,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, quote
+from icdgen.wording import count, quote
 
 CAN = "can"
 

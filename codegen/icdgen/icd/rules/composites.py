@@ -11,10 +11,11 @@ from icdgen.icd.model import Message, Node, Part
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import VERBATIM, line_of, listing, quote
+from icdgen.icd.rules.wording import VERBATIM, line_of
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 from icdgen.icd.wire_ids import number
+from icdgen.wording import listing, quote
 
 _KEYS = ("bits", "type", "enum", "unit", "formula", "points", "outside")
 _IDS = ("id", "set_id", "get_id")

@@ -9,8 +9,8 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.model import Struct
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import quote
 from icdgen.icd.trees import mappings
+from icdgen.wording import quote
 
 # Keys of fields that cannot be optional, with words for messages.
 _NEVER = (

@@ -13,8 +13,8 @@ from icdgen.icd.model import Message
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.layout import is_read
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import quote
 from icdgen.icd.trees import mappings
+from icdgen.wording import quote
 
 _HELP = "a formula is made of numbers, the names of fields, + - * / and powers: `Lon + Lon HP`, `Voltage*Current/1000`, `W*10^W_SF`"
 

@@ -14,9 +14,10 @@ from icdgen.icd.model import Enum, Member, Message, Node, Struct
 from icdgen.icd.places import places_in, scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD
+from icdgen.wording import quote
 
 T = TypeVar("T")
 Aliased: TypeAlias = Message | LayoutNode | Enum | Member | Struct

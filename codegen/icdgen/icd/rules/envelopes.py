@@ -10,9 +10,10 @@ from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, listing, of_wide_value, quote
+from icdgen.icd.rules.wording import line_of, of_wide_value
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings
+from icdgen.wording import count, listing, quote
 
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
 PARTS = ("header", "trailer")

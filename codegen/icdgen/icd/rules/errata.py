@@ -8,8 +8,9 @@ from icdgen.diagnostics import Place
 from icdgen.icd.fault import Fault
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, rule
-from icdgen.icd.rules.wording import count, line_of
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.suggestions import suggestion
+from icdgen.wording import count
 
 
 @rule("ICD084", needs_complete=True, runs_last=True)

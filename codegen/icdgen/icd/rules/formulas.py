@@ -12,7 +12,7 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context, is_overlay
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, quote
+from icdgen.wording import count, quote
 
 SCALED = ("uint", "int", "float")
 _POINTS = "a table goes from one raw value to the next: `points: [[0, -40], [512, 20.5], [1023, 125]]`"

@@ -12,7 +12,8 @@ from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.declarations import DUPLICATE_NAMES, declared
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, listing, quote
+from icdgen.icd.rules.wording import line_of
+from icdgen.wording import listing, quote
 
 # C++ can include the headers, so its reserved words cannot be names in C either.
 _WITH_CXX = {"c": "C/C++"}

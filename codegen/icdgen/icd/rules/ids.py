@@ -14,8 +14,9 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.duplicates import brings_together, together
 from icdgen.icd.rules.protocol_limits import section_in_effect
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, listing, quote
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import mappings
+from icdgen.wording import count, listing, quote
 
 LINKED_BITS = 8  # width of ids on the links of a protocol section, other than `stream`
 

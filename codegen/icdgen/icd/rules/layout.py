@@ -16,7 +16,8 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, places_in, scalars_in
 from icdgen.icd.rules.context import Context, Owner, is_overlay
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, quote
+from icdgen.icd.rules.wording import line_of
+from icdgen.wording import count, quote
 
 _INTEGER = (frozenset(range(1, 65)), "1 to 64 bits")
 WIDTHS = {

@@ -12,7 +12,7 @@ from icdgen.icd.layout import Limits, Scalar
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.values import NUMBERS
-from icdgen.icd.rules.wording import quote
+from icdgen.wording import quote
 
 LIMITS = ("min", "above", "max", "below")
 

@@ -10,8 +10,9 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import KEYS_OF_IDS, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, quote
+from icdgen.icd.rules.wording import line_of
 from icdgen.suggest import close_to
+from icdgen.wording import count, quote
 
 
 def _telemetry(ctx: Context, node: Node) -> dict[int, Message]:

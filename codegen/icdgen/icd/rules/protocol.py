@@ -11,8 +11,9 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, quote
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import at_path, mappings
+from icdgen.wording import count, quote
 
 # Input of the check value of a CRC, in the Rocksoft model and the catalogues that
 # follow it.

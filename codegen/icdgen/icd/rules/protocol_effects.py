@@ -16,8 +16,8 @@ from icdgen.icd.rules.protocol_limits import roles_occur_once
 from icdgen.icd.rules.protocol_names import FIELDS
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, quote
 from icdgen.icd.trees import at_path, mappings, named
+from icdgen.wording import count, quote
 
 BUSES = ("uart", "i2c", "can")
 INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")

@@ -12,8 +12,9 @@ from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, KEYS_OF_IDS, Message, 
 from icdgen.icd.rules.context import Context, own_fact, section_of
 from icdgen.icd.rules.protocol_sizes import numbers, of_one_number
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, listing, of_wide_value, quote
+from icdgen.icd.rules.wording import line_of, of_wide_value
 from icdgen.icd.trees import at_path, mappings
+from icdgen.wording import count, listing, quote
 
 BYTE = 255
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")

@@ -13,8 +13,9 @@ from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import roles_occur_once, section_in_effect
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, quote
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import at_path, mappings
+from icdgen.wording import count, quote
 
 ACKNOWLEDGE_ROLES = ("id", "error")
 # Keys of the CAN message types for data in each direction, in one packet and in several

@@ -15,9 +15,10 @@ from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import VERBATIM, quote
+from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import at_path, mappings, named
+from icdgen.wording import quote
 
 T = TypeVar("T")
 

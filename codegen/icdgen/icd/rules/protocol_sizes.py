@@ -10,8 +10,8 @@ from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context, own_fact
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count as counted
 from icdgen.icd.trees import at_path, mappings
+from icdgen.wording import count as counted
 
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 

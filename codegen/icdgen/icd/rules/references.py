@@ -10,10 +10,10 @@ from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import quote
 from icdgen.icd.suggestions import suggestion, yaml_text
 from icdgen.icd.units import SPELLINGS, similar_unit
 from icdgen.suggest import close_to
+from icdgen.wording import quote
 
 
 @rule("ICD040")

@@ -13,9 +13,10 @@ from icdgen.icd.rules.context import Context, is_overlay
 from icdgen.icd.rules.duplicates import duplicate_names
 from icdgen.icd.rules.references import undeclared
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.rules.wording import line_of
 from icdgen.icd.trees import mappings
 from icdgen.suggest import close_to
+from icdgen.wording import quote
 
 # Keys of a line that uses a struct.
 _KEYS_OF_USES = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary", "aliases"})

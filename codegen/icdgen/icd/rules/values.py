@@ -12,8 +12,8 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Derived, LayoutNode, Scalar
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, quote
 from icdgen.icd.trees import mappings
+from icdgen.wording import count, quote
 
 NUMBERS = ("uint", "int", "enum")
 

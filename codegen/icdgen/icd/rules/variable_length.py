@@ -12,8 +12,8 @@ from icdgen.icd.model import Message
 from icdgen.icd.places import places_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, quote
 from icdgen.icd.trees import mappings, named
+from icdgen.wording import count, quote
 
 
 @rule("ICD120")

@@ -11,10 +11,10 @@ import re
 from typing import Any
 
 from icdgen.icd.fmt.scalars import quoted_if_needed
-from icdgen.icd.rules.wording import count
 from icdgen.importer.document import SourceTable
 from icdgen.importer.source_tables import kinds, name_of
 from icdgen.importer.words import plain
+from icdgen.wording import count
 
 SAMPLES = 3  # cells shown of a column
 MOST_NUMBERS = 12
