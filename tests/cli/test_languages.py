@@ -42,3 +42,39 @@ def test_a_model_that_was_checked_for_one_language_is_checked_again_for_another(
 def test_commands_that_generate_no_code_ask_no_language(icdgen, restrict):
     assert icdgen("show", "--icd", restrict, "demo", "146").status == 0
     assert icdgen("decode", "--icd", restrict, "demo", "146", "000000").status == 0
+
+
+@pytest.fixture
+def named(monkeypatch):
+    """Languages whose names were listed, once for each message."""
+    from icdgen.backends.c.symbols import CNames
+    from icdgen.backends.python.symbols import PythonNames
+    from icdgen.backends.rust.symbols import RustNames
+
+    languages: list[str] = []
+    for language, policy in (("c", CNames), ("python", PythonNames), ("rust", RustNames)):
+
+        def fields(self, composite, fields, language=language, original=policy.fields):
+            languages.append(language)
+            return original(self, composite, fields)
+
+        monkeypatch.setattr(policy, "fields", fields)
+    return languages
+
+
+@pytest.mark.parametrize("language", ["c", "python", "rust"])
+def test_generating_a_language_lists_the_names_of_that_language_only(icdgen, demo, named, language):
+    assert icdgen("--lang", language, "--out", "out", demo).status == 0
+    assert set(named) == {language}
+
+
+def test_a_check_lists_the_names_of_all_languages(icdgen, demo, named):
+    assert icdgen("check", demo).status == 0
+    assert set(named) == {"c", "python", "rust"}
+
+
+@pytest.mark.parametrize("words", [("show", "demo", "146"), ("decode", "demo", "146", "000000")])
+def test_commands_that_generate_no_code_list_no_names(icdgen, demo, named, words):
+    command, *arguments = words
+    assert icdgen(command, "--icd", demo, *arguments).status == 0
+    assert named == []

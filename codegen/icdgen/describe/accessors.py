@@ -56,17 +56,19 @@ class Accessor(NamedTuple):
 
 def accessors_of(field: FieldDescription, *kinds: Kind) -> Iterator[Accessor]:
     """List the accessors of the physical value of a field, as far as a language has these kinds of them."""
-    return (accessor for accessor in _accessors(field) if accessor.kind in kinds)
-
-
-def _accessors(field: FieldDescription) -> Iterator[Accessor]:
-    if field.has_physical:
-        yield Accessor(field, "text" if field.is_text else "double", field.physical_name, field.is_settable)
+    if not field.has_physical:
+        return
+    kind: Kind = "text" if field.is_text else "double"
+    if kind in kinds:
+        yield Accessor(field, kind, field.physical_name, field.is_settable)
     # Calibrations are computed in doubles only.
-    if field.steps is not None and field.arithmetic is not None:
+    if field.steps is None or field.arithmetic is None:
+        return
+    if "single" in kinds:
         yield Accessor(field, "single", f"{field.physical_name}_f32", False)
-        scale = field.integer_scale
-        if scale is not None:
-            kind: Kind = "long integer" if field.arithmetic.integers is None else "integer"
+    scale = field.integer_scale
+    if scale is not None:
+        kind = "long integer" if field.arithmetic.integers is None else "integer"
+        if kind in kinds:
             name = f"{field.declared_name}_{part_of_unit(field.model, scale.per)[0]}"
             yield Accessor(field, kind, name, field.is_settable, scale)

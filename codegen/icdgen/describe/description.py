@@ -268,7 +268,7 @@ class Composite(Named[WithFields]):
     def __init__(
         self, declared: Declarations, model: WithFields, node: Node, kind: str, outer: Orders = UNDECLARED
     ) -> None:
-        super().__init__(model, node.vocabulary, f"{kind} `{model.name}`")
+        super().__init__(model, model, node.vocabulary, f"{kind} `{model.name}`")
         self._declared, self.node = declared, node
         self.outer_orders = outer
         """Orders of the array whose element this struct is."""

@@ -48,7 +48,7 @@ class EnumDescription(Named[Enum]):
     """Enumeration of ``node``. Its ``storage`` can store every value, with or without a name."""
 
     def __init__(self, enum: Enum, node: Node, bits: int, icd: Icd) -> None:
-        super().__init__(enum, node.vocabulary, f"enumeration `{enum.name}`")
+        super().__init__(enum, enum, node.vocabulary, f"enumeration `{enum.name}`")
         self.icd, self.node, self.storage = icd, node, Storage(holding(bits), enum.signed)
 
     @cached_property
@@ -88,13 +88,8 @@ class MemberDescription(Named[Member]):
     """Value of an enumeration that has a name: a member, or the first or last value of a range (``declared``)."""
 
     def __init__(self, member: Member, enum: EnumDescription, declared: Member) -> None:
-        super().__init__(member, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
-        self._enum, self._declared = enum, declared
-
-    @property
-    def part(self) -> Member:
-        """Member that the ICD declares."""
-        return self._declared
+        super().__init__(member, declared, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
+        self._enum = enum
 
     @cached_property
     def comment(self) -> Comment:

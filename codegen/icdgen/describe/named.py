@@ -9,6 +9,7 @@ from icdgen.icd.identifiers import Identifier
 from icdgen.icd.layout import LayoutNode
 from icdgen.icd.model import Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
+from icdgen.once import cached_property
 
 Part = Message | Struct | LayoutNode | Enum | Member
 Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
@@ -17,22 +18,20 @@ Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 class Named(Generic[Model]):
     """Part of the ICD (``model``) with a name: ``words`` of its identifier, and ``name``, the words in snake case.
 
-    Findings call it ``owner``, for instance "enumeration `Mode`".
+    Findings call it ``owner``, for instance "enumeration `Mode`". ``part`` is the object of the model that declares it.
     """
 
-    def __init__(self, model: Model, vocabulary: tuple[str, ...], owner: str) -> None:
+    def __init__(self, model: Model, part: Part, vocabulary: tuple[str, ...], owner: str) -> None:
         self.model: Model = model
-        self.owner = owner
+        self.part, self.owner = part, owner
         self.words = naming.words(model.identifier or model.name, vocabulary)
         self.name = naming.snake(self.words)
 
-    @property
-    def part(self) -> Part:
-        """Object of the model that the names of the part identify."""
-        assert not isinstance(self.model, NodePlace)
-        return self.model
+    @cached_property
+    def camel_name(self) -> str:
+        """Words in camel case: ``EstimatedRollAngle``."""
+        return naming.camel(self.words)
 
     def identifier(self, scope: str, name: str, role: str = "") -> Identifier:
         """Return a name that generated code declares for the part."""
-        part = self.part
-        return Identifier(scope, name, self.owner, part.source, role, part)
+        return Identifier(scope, name, self.owner, self.part.source, role, self.part)

@@ -276,12 +276,12 @@ class NodeDescription:
             candidates.append(MessageOfId(message, name, layout.constant_bytes(variant)))
         return MessagesOfId(id, tuple(candidates), common_length(variants))
 
-    @property
+    @cached_property
     def is_linked(self) -> bool:
         """Whether the ICD describes the link of the node."""
         return bool(self._description.icd.protocol_of(self.model))
 
-    @property
+    @cached_property
     def has_client(self) -> bool:
         """Whether its link has messages with an id of one byte: only these have a client, procedures and logs."""
         return self.is_linked and "stream" not in self._description.icd.protocol_of(self.model)

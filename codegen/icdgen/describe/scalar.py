@@ -11,7 +11,7 @@ from icdgen.describe.integer_scale import IntegerScale, integer_scale
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.icd.curve import Curve
-from icdgen.icd.layout import LayoutNode, Orders
+from icdgen.icd.layout import Orders
 from icdgen.icd.pieces import Piece, pieces_at
 from icdgen.icd.places import NodePlace
 from icdgen.once import cached_property
@@ -39,7 +39,7 @@ class ScalarDescription(Named[NodePlace]):
         owner: str,
         node_orders: Orders,
     ) -> None:
-        super().__init__(place, vocabulary, owner)
+        super().__init__(place, place.node, vocabulary, owner)
         self.enum, self.node_orders = enum, node_orders
         self.storage = enum.storage if enum is not None else storage_of(place.bits, place.is_signed)
         self.steps, self.curve = steps.steps(place), place.curve
@@ -50,11 +50,6 @@ class ScalarDescription(Named[NodePlace]):
         # Names carry the unit, so that code with a wrong unit is visible where it is written.
         unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
         self.physical_name = f"{self.declared_name}_{unit}"
-
-    @property
-    def part(self) -> LayoutNode:
-        """Line of the ICD that declares it; of an element, the line of its array."""
-        return self.model.node
 
     @cached_property
     def arithmetic(self) -> Arithmetic | None:

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, FieldDescription
 from icdgen.describe.enums import EnumDescription, MemberDescription
 from icdgen.describe.nodes import Description, MessageDescription, NodeDescription
@@ -66,22 +65,15 @@ class NamingPolicy:
         return ()
 
     def composite(self, composite: Composite[Any]) -> Symbols:
-        """Names of a message or struct. `field` has the names of its fields."""
+        """Names of a message or struct. `fields` has the names of its fields."""
         return ()
 
-    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
-        """Names of a field, an overlay field or a derived value: the member, its getters and setters."""
-        return ()
+    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
+        """Names of fields, overlay fields and derived values: members, getters, setters and constants.
 
-    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
-        """Names of a constant of a field."""
+        ``composite`` can be another message than that of the fields: the diff compares them under the name of an old one.
+        """
         return ()
-
-    def symbols_of_field(self, composite: Composite[Any], field: FieldDescription) -> Iterator[Identifier]:
-        """List the names of a field and of its constants."""
-        yield from self.field(composite, field)
-        for constant in field.constants:
-            yield from self.constant(composite, field, constant)
 
     def symbol(self, part: NodeDescription | Part, role: str) -> str:
         """Return the name of a part in a role. Raises `KeyError` if the table has no such name."""
@@ -111,8 +103,7 @@ def symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifi
             yield from policy.link(node)
         for composite in node.composites:
             yield from policy.composite(composite)
-            for field in composite.declared_members:
-                yield from policy.symbols_of_field(composite, field)
+            yield from policy.fields(composite, composite.declared_members)
         for direction in node.directions:
             for message, _ in direction.messages:
                 yield from policy.message_of_direction(node, direction.kind, message)

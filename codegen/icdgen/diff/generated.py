@@ -88,7 +88,7 @@ def symbols_in(owner: DeclaredPart, declared: DeclaredPart, part: Part) -> Itera
             members = (member for member in declared.members if member.part is part)
             identifiers = (identifier for member in members for identifier in policy.member(owner, member))
         elif isinstance(owner, Composite) and isinstance(declared, Composite):
-            identifiers = policy.symbols_of_field(owner, declared.member_for[id(part)])
+            identifiers = policy.fields(owner, (declared.member_for[id(part)],))
         yield from ((language, identifier) for identifier in identifiers if identifier.part is part)
 
 

@@ -273,6 +273,8 @@ class Layout:
 
     def smallest_raw(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
+        if not self.sequence:
+            return 0
         return max((part.low for part in self.parts if part.counter == counter), default=0)
 
 

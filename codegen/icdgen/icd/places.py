@@ -33,6 +33,8 @@ from icdgen.once import cached_by_owner, cached_property
 
 # A struct has no scalar; this one makes `NodePlace.type` of a struct "struct".
 _NO_SCALAR = Scalar(name="", type="struct", bits=0)
+# A tuple: `isinstance` would build the union `Overlay | Derived` in each of very many calls.
+_READ_ONLY = (Overlay, Derived)
 
 
 # Compared by identity, as `places_in` caches the objects; comparing paths of nodes
@@ -116,7 +118,7 @@ class NodePlace(OfScalar):
     @property
     def is_read_only(self) -> bool:
         """Whether the node is an overlay field or a derived value, so it owns no bits."""
-        return isinstance(self.node, Overlay | Derived)
+        return isinstance(self.node, _READ_ONLY)
 
     @property
     def derived(self) -> Derivation | None:

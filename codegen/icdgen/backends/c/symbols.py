@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from icdgen.backends import Identifier
@@ -10,7 +11,6 @@ from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
 from icdgen.describe.accessors import accessors_of
 from icdgen.describe.arrays import all_struct_arrays
-from icdgen.describe.constants import Constant
 from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
@@ -106,20 +106,21 @@ class CNames(NamingPolicy):
         for part in contained_messages(composite):
             yield composite.identifier(FILE, f"{stem}_{part_name(part.message)}")
 
-    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
-        if field.model.is_read_only:
-            yield field.identifier(FILE, names.getter(composite, field.name))
-        else:
-            yield field.identifier(f"members of {names.stem(composite)}_t", field.name)
-        if field.model.conditions:
-            yield field.identifier(FILE, names.has(composite, field.name))
-        for accessor in accessors_of(field, "text", "double", "integer"):
-            yield field.identifier(FILE, names.getter(composite, accessor.name))
-            if accessor.is_settable:
-                yield field.identifier(FILE, names.setter(composite, accessor.name))
-
-    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
-        yield field.identifier(FILE, names.constant(composite, constant.name))
+    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
+        members = f"members of {names.stem(composite)}_t"
+        for field in fields:
+            if field.model.is_read_only:
+                yield field.identifier(FILE, names.getter(composite, field.name))
+            else:
+                yield field.identifier(members, field.name)
+            if field.model.conditions:
+                yield field.identifier(FILE, names.has(composite, field.name))
+            for accessor in accessors_of(field, "text", "double", "integer"):
+                yield field.identifier(FILE, names.getter(composite, accessor.name))
+                if accessor.is_settable:
+                    yield field.identifier(FILE, names.setter(composite, accessor.name))
+            for constant in field.constants:
+                yield field.identifier(FILE, names.constant(composite, constant.name))
 
 
 C_NAMES = CNames()

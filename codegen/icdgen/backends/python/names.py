@@ -10,7 +10,6 @@ from zlib import crc32
 from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.description import Composite
-from icdgen.naming import camel
 
 RESERVED = frozenset(keyword.kwlist)
 
@@ -43,7 +42,7 @@ def accessors_in_python(field: FieldDescription) -> Iterator[Accessor]:
 
 def class_name(one: Composite[Any] | EnumDescription) -> str:
     """``EstimatedAttitudeAngles``"""
-    return camel(one.words)
+    return one.camel_name
 
 
 def module_name(one: Composite[Any] | EnumDescription) -> str:

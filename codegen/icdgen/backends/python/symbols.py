@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
 from icdgen.describe import EnumDescription, FieldDescription, NodeDescription
-from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Part, Symbols
@@ -46,26 +46,19 @@ class PythonNames(NamingPolicy):
         if not isinstance(composite.model, Message):  # messages have files in every language
             yield composite.identifier(self._files(composite.node.name), names.module_name(composite))
 
-    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
-        if field.model.is_count:
-            return
+    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
         scope = self._members(composite)
-        yield from _in_class(field, scope, field.name)
-        for accessor in names.accessors_in_python(field):
-            yield from _in_class(field, scope, accessor.name)
-
-    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
-        return _in_class(field, self._members(composite), names.constant_name(constant.name))
+        for field in fields:
+            values = (
+                () if field.model.is_count else (field.name, *(each.name for each in names.accessors_in_python(field)))
+            )
+            for text in (*values, *(names.constant_name(constant.name) for constant in field.constants)):
+                yield field.identifier(scope, text)
+                if text in names.IN_MESSAGE:
+                    yield Identifier(scope, text, names.IN_MESSAGE[text].format(text), None)
 
     def _files(self, node: str) -> str:
         return f"files of {self._package}.{node}"
 
     def _members(self, part: Part) -> str:
         return f"members of {self._package}.{part.node.name}.{names.class_name(part)}"
-
-
-def _in_class(field: FieldDescription, scope: str, text: str) -> Symbols:
-    """Name of a field in the class of its message, and what the class uses under this name."""
-    yield field.identifier(scope, text)
-    if text in names.IN_MESSAGE:
-        yield Identifier(scope, text, names.IN_MESSAGE[text].format(text), None)

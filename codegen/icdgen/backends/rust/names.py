@@ -36,7 +36,7 @@ CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 
 def type_name(one: Composite[Any] | EnumDescription | MemberDescription) -> str:
     """``EstimatedAttitudeAngles``; of a member, the name of its variant: ``NoControl``."""
-    return camel(one.words)
+    return one.camel_name
 
 
 def field_name(field: FieldDescription) -> str:
@@ -96,6 +96,11 @@ def raw_type(field: FieldDescription) -> str:
 def has(field: FieldDescription) -> str:
     """``has_rate``: the method that tells whether a field is there."""
     return f"has_{field.name}"
+
+
+def constant_name(name: str) -> str:
+    """``TIMEOUT_NO_TIMEOUT``: constant of a message with this name in snake case."""
+    return name.upper()
 
 
 def setter(name: str) -> str:

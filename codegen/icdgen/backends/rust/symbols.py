@@ -9,7 +9,6 @@ from icdgen.backends import Identifier
 from icdgen.backends.rust import arrays, names
 from icdgen.backends.rust.physical import accessors_in_rust
 from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
-from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Symbols
@@ -72,21 +71,22 @@ class RustNames(NamingPolicy):
             yield composite.identifier(methods, arrays.reader(name))
             yield composite.identifier(methods, arrays.writer(name))
 
-    def field(self, composite: Composite[Any], field: FieldDescription) -> Symbols:
-        scope, is_read_only = _scope(composite), field.model.is_read_only
-        methods, name = f"methods of {scope}", names.field_name(field)
-        if composite.last_part is not None and (field.is_in_last_part or field.is_in_earlier_part):
-            yield field.identifier(methods, name)
-        yield field.identifier(methods if is_read_only else f"fields of {scope}", name)
-        if field.model.conditions:
-            yield field.identifier(methods, names.has(field))
-        for accessor in accessors_in_rust(field):
-            yield field.identifier(methods, accessor.name)
-            if accessor.is_settable:
-                yield field.identifier(methods, names.setter(accessor.name))
-
-    def constant(self, composite: Composite[Any], field: FieldDescription, constant: Constant) -> Symbols:
-        yield field.identifier(f"constants of {_scope(composite)}", constant.name.upper())
+    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
+        scope, has_variable_parts = _scope(composite), composite.last_part is not None
+        members, methods, constants = f"fields of {scope}", f"methods of {scope}", f"constants of {scope}"
+        for field in fields:
+            name, is_read_only = names.own_name(field), field.model.is_read_only
+            if has_variable_parts and (field.is_in_last_part or field.is_in_earlier_part):
+                yield field.identifier(methods, name)
+            yield field.identifier(methods if is_read_only else members, name)
+            if field.model.conditions:
+                yield field.identifier(methods, names.has(field))
+            for accessor in accessors_in_rust(field):
+                yield field.identifier(methods, accessor.name)
+                if accessor.is_settable:
+                    yield field.identifier(methods, names.setter(accessor.name))
+            for constant in field.constants:
+                yield field.identifier(constants, names.constant_name(constant.name))
 
 
 RUST_NAMES = RustNames()
