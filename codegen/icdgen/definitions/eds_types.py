@@ -114,7 +114,7 @@ class Types(Reading):
         if code not in (UNSIGNED, TWOS) and not has_names:
             self.raw_only(where, f"it is encoded as {code}", _BITS_ONLY)
         if bits > _WORD:
-            return self._wide(bits, order, where)
+            return _bytes(bits, where)
         return Piece({"type": "int" if code == TWOS else "uint"}, bits, order, code)
 
     def _float(self, encoding: Element | None, where: str) -> Piece:
@@ -126,13 +126,7 @@ class Types(Reading):
         if _FLOATS.get(precision.lower()) == bits:
             return Piece({"type": "float"}, bits, order)
         self.raw_only(where, f"it is encoded as {line(precision, 60)} of {bits} bits", _BITS_ONLY)
-        return self._wide(bits, order, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
-
-    def _wide(self, bits: int, order: str, where: str) -> Piece:
-        """Return a field of bytes, for numbers that exceed 64 bits. Raises `NotSupported` for a partial byte."""
-        if bits % 8:
-            raise NotSupported(f"{where} has {bits} bits")
-        return Piece({"type": "bytes"}, bits, code="")
+        return _bytes(bits, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
 
     def _flag(self, encoding: Element | None, type_: Element) -> Piece:
         bits = 1 if encoding is None else self._size(encoding, f"`{type_.get('name', '')}`")
@@ -166,7 +160,7 @@ class Types(Reading):
             return Piece({"type": "bytes", "up_to": bits // 8}, 0)
         if bits % 8 and bits <= _WORD:
             return Piece({"type": "uint"}, bits)
-        return self._wide(bits, BIG, f"`{type_.get('name', '')}`")
+        return _bytes(bits, f"`{type_.get('name', '')}`")
 
     def _size(self, encoding: Element, where: str, default: int | None = None) -> int:
         text = self.sheets.attribute(encoding, "sizeInBits", "" if default is None else str(default))
@@ -250,3 +244,10 @@ def described(element: Element) -> dict[str, str]:
 def _enumeration_name(type_: Element) -> str:
     """Return the name of an enumeration, without a suffix for `type`."""
     return without_type(line(type_.get("name"), 60))
+
+
+def _bytes(bits: int, where: str) -> Piece:
+    """Return a field of bytes, for numbers that exceed 64 bits. Raises `NotSupported` for a partial byte."""
+    if bits % 8:
+        raise NotSupported(f"{where} has {bits} bits")
+    return Piece({"type": "bytes"}, bits, code="")

@@ -57,10 +57,9 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
         order = own.pop()
         message |= ORDERS[order]
     fields, covered = [], 0
-    for field, place in _with_overlays(message["name"], placed, order, to):
-        place = (
-            place if "count" in field else place.counted(order)
-        )  # another order would reverse the elements of an array
+    for field, place in _with_overlays(message["name"], placed, to):
+        # Another order would reverse the elements of an array.
+        place = place if "count" in field else place.counted(order)
         keys = dict(field)
         field.clear()  # keep the mapping: `Enumerations.declared` sets `enum` in it later
         field |= {"at": place.at, "bits": place.bits, **keys, **(ORDERS[place.order] if place.order != order else {})}
@@ -72,9 +71,7 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
     return {**message, "fields": fields} if fields else message
 
 
-def _with_overlays(
-    name: str, placed: list[tuple[Item, Place]], order: str, to: Definitions
-) -> Iterator[tuple[Item, Place]]:
+def _with_overlays(name: str, placed: list[tuple[Item, Place]], to: Definitions) -> Iterator[tuple[Item, Place]]:
     """Yield the fields, with overlapping smaller fields as overlay fields (IMP071).
 
     Bits that only overlay fields cover become fields. Optional fields that overlap others are left out.

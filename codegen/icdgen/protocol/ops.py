@@ -92,11 +92,11 @@ def uart_events(facts: Facts, request: Request) -> dict[str, Any]:
 
 
 def can_split(facts: Facts, request: Request) -> dict[str, Any]:
-    packets = can.split(facts, _message(facts, request))
+    packets = can.split(facts, _message(request))
     return {"packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]}
 
 
-def _message(facts: Facts, request: Request) -> can.Message:
+def _message(request: Request) -> can.Message:
     kind, data = text(request, "kind"), octets(request)
     if kind not in CAN_KINDS:
         raise Refusal("request", detail="there is no such kind")

@@ -175,7 +175,7 @@ def _stretches(lines_of_band: list[Line], keyed: list[int], leading: float, torn
     gaps = [b.middle - a.middle for a, b in itertools.pairwise(lines_of_band)]
     starts = [_first_start(keyed, gaps, leading, torn, len(lines_of_band))]
     for before, here in itertools.pairwise(keyed):
-        starts.append(_start(lines_of_band, before, here, gaps, starts[-1]))
+        starts.append(_start(before, here, gaps, starts[-1]))
     ends = [*starts[1:], len(lines_of_band)]
     lead = [(0, starts[0])] if starts[0] else []
     return lead + list(zip(starts, ends, strict=True))
@@ -193,7 +193,7 @@ def _first_start(keyed: list[int], gaps: list[float], leading: float, torn: bool
     return 0 if after >= first else first
 
 
-def _start(lines_of_band: list[Line], before: int, here: int, gaps: list[float], start: int) -> int:
+def _start(before: int, here: int, gaps: list[float], start: int) -> int:
     """Where the row of the key at ``here`` begins, after the one at ``before`` whose row begins at ``start``."""
     if here == before + 1:
         return here
