@@ -9,7 +9,7 @@ from . import _types
 from ._errors import LengthError, RangeError
 from ._types import FieldInfo, MessageFacts
 
-REFUSED = (
+ENCODING_ERRORS = (
     struct.error,
     ArithmeticError,
     AttributeError,
@@ -20,7 +20,7 @@ REFUSED = (
 """Exceptions of the encoders for a value out of range."""
 
 
-def is_there(info: FieldInfo, message: _types.Any) -> bool:
+def is_present(info: FieldInfo, message: _types.Any) -> bool:
     """Return whether the message has an optional field, by the fields in its condition."""
     return all(getattr(message, name) in values for name, values in info.when)
 
@@ -117,13 +117,13 @@ def signed_bits(value: int, bits: int) -> int:
     return value & ((1 << bits) - 1)
 
 
-def counted(values: _types.Any, count: int) -> None:
+def check_count(values: _types.Any, count: int) -> None:
     """Raise `ValueError` unless there are exactly ``count`` values."""
     if len(values) != count:
         raise ValueError
 
 
-def sized(value: _types.Buffer, size: int) -> bytes:
+def checked_bytes(value: _types.Buffer, size: int) -> bytes:
     """Return ``value`` as bytes. Raise `OverflowError` unless it has ``size`` bytes."""
     data = memoryview(value).tobytes()
     if len(data) != size:
@@ -182,15 +182,15 @@ def length_error(message: type[MessageFacts], data: _types.Buffer) -> LengthErro
 def range_error(message: MessageFacts) -> RangeError:
     """Return the exception for the first field whose value is out of range."""
     for info in message.FIELDS:
-        if info.when and not is_there(info, message):
+        if info.when and not is_present(info, message):
             continue
-        error = _misfit(info, getattr(message, info.attribute, None))
+        error = _field_error(info, getattr(message, info.attribute, None))
         if error is not None:
             return error
     return RangeError("a field", "a value of its type", None)
 
 
-def _misfit(info: FieldInfo, value: _types.Any) -> _types.Optional[RangeError]:
+def _field_error(info: FieldInfo, value: _types.Any) -> _types.Optional[RangeError]:
     """Return the exception for a field if its value, or an element, is out of range."""
     if info.elements and not has_elements(info, value):
         return RangeError(info.attribute, elements_of(info), value)
@@ -198,7 +198,7 @@ def _misfit(info: FieldInfo, value: _types.Any) -> _types.Optional[RangeError]:
         if part.struct is not None:
             for inner in part.struct.FIELDS:
                 inner_value = getattr(element, inner.attribute, None)
-                error = _misfit(inner.within(part), inner_value)
+                error = _field_error(inner.within(part), inner_value)
                 if error is not None:
                     return error
             continue
@@ -248,7 +248,7 @@ def _is_within(value: _types.Any, low: int, high: int) -> bool:
 def _fits_float(info: FieldInfo, value: _types.Any) -> tuple[str, bool]:
     try:
         struct.pack("<f" if info.bits == 32 else "<d", value)
-    except REFUSED:
+    except ENCODING_ERRORS:
         return f"{info.bits}-bit floats", False
     return "", True
 

@@ -31,7 +31,7 @@ def decode_many(
     """Implement `Message.decode_many`. ``decode`` is `Message.from_bytes`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, decode, frames, physical)
-    for (info, parts), (name, column) in zip(_lines(message), columns.items()):
+    for (info, parts), (name, column) in zip(_column_fields(message), columns.items()):
         if info.is_open and column.ndim > 1:
             is_octets = info.type in OCTETS and not info.elements
             columns[name] = rows = numpy.empty(len(counts), object)
@@ -52,11 +52,11 @@ def _columns(
 
     Shorter frames are padded with zeros.
     """
-    joined, counts = _together(message, decode, frames)
+    joined, counts = _joined(message, decode, frames)
     decoder = _Decoder(numpy, message, joined)
     columns: dict[str, Any] = {}
     fields = {info.attribute: info for info in message.FIELDS}
-    for info, parts in _lines(message):
+    for info, parts in _column_fields(message):
         if info.elements:
             elements = [decoder.column(element) for element in parts]
             column = numpy.stack(elements, axis=1)
@@ -80,7 +80,7 @@ def _columns(
     return columns, numpy.array(counts, numpy.int32)
 
 
-def _together(
+def _joined(
     message: type[MessageFacts], decode: Callable[[Buffer], Any], frames: Frames
 ) -> tuple[Buffer, list[int]]:
     """Join frames to one buffer of equally long frames.
@@ -117,7 +117,7 @@ def decode_table(
     pyarrow: Any = import_module("pyarrow")
     columns, counts = _columns(numpy, message, decode, frames, physical)
     fields, arrays = [], []
-    for (info, parts), (name, column) in zip(_lines(message), columns.items()):
+    for (info, parts), (name, column) in zip(_column_fields(message), columns.items()):
         if info.when:
             array = pyarrow.array(
                 numpy.ascontiguousarray(column.data), mask=column.mask
@@ -149,27 +149,27 @@ def decode_table(
     return pyarrow.Table.from_arrays(arrays, schema=schema)
 
 
-_Line = tuple[FieldInfo, tuple[FieldInfo, ...]]
+_ColumnField = tuple[FieldInfo, tuple[FieldInfo, ...]]
 """A field or array with one column, and its elements in a frame."""
 
 
-def _lines(message: type[MessageFacts]) -> list[_Line]:
+def _column_fields(message: type[MessageFacts]) -> list[_ColumnField]:
     """Return everything that has a column, in order.
 
     These are fields, arrays, overlay fields, derived values and the fields of each
     struct. A field of the structs at a variable-length end has one column for all
     structs.
     """
-    lines: list[_Line] = []
+    lines: list[_ColumnField] = []
     for info in message.FIELDS:
         if info.struct is not None and info.is_open:
-            lines += _open_lines(info)
+            lines += _open_column_fields(info)
         else:
             lines += [(line, line.parts) for line in info.lines]
     return [*lines, *((view, view.parts) for view in message.VIEWS)]
 
 
-def _open_lines(info: FieldInfo) -> list[_Line]:
+def _open_column_fields(info: FieldInfo) -> list[_ColumnField]:
     """Return one column per field of the structs in a variable-length array.
 
     The names are like ``satellites.gnss`` and ``satellites.angles[1]``.
@@ -283,17 +283,17 @@ class _Decoder:
         """
         width = run.itemsize
         if width == 1:
-            self._keep(run, byte)
+            self._store_byte(run, byte)
             return
         run = self.numpy.ascontiguousarray(run)
         if width == 2:
-            self._keep(run, byte)
-            self._keep(run >> 8, byte + 1)
+            self._store_byte(run, byte)
+            self._store_byte(run >> 8, byte + 1)
         else:
             self._split(run.astype("<u2"), byte)
             self._split((run >> 16).astype("<u2"), byte + 2)
 
-    def _keep(self, values: Any, byte: int) -> None:
+    def _store_byte(self, values: Any, byte: int) -> None:
         """Store the lowest byte of each integer."""
         self.bytes[byte] = self.numpy.empty(self.words * 8, self.numpy.uint8)
         self.bytes[byte][: self.count] = values
@@ -321,12 +321,12 @@ class _Decoder:
         if info.derived:
             columns = [self._value(name) for name in info.derived[0]]
             return derived_column(self.numpy, info.derived, columns)
-        if _is_whole(info):
-            return self._whole(info)
+        if _is_aligned(info):
+            return self._aligned_column(info)
         runs = pieces(info, self.message)
         if len(runs) == 1:
-            return self._within(info, runs[0])
-        return self._across(info, runs)
+            return self._single_byte_column(info, runs[0])
+        return self._assembled_column(info, runs)
 
     def _value(self, name: str) -> Any:
         """Return the column of an attribute: physical or raw values."""
@@ -339,7 +339,7 @@ class _Decoder:
         column = self.column(info)
         return _physical(self.numpy, info, column) if name == info.physical else column
 
-    def _whole(self, info: FieldInfo) -> Any:
+    def _aligned_column(self, info: FieldInfo) -> Any:
         start, size = info.at // 8, info.bits // 8
         if info.type in OCTETS:
             return self.rows[:, start : start + size]
@@ -360,7 +360,7 @@ class _Decoder:
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
 
-    def _within(self, info: FieldInfo, piece: Piece) -> Any:
+    def _single_byte_column(self, info: FieldInfo, piece: Piece) -> Any:
         column, shift, bits = self._byte(piece.byte), piece.shift, piece.bits
         if info.signed:
             column = (column << (8 - shift - bits)).view(self.numpy.int8)
@@ -369,7 +369,7 @@ class _Decoder:
             return (column >> shift) & ((1 << bits) - 1)
         return column >> shift
 
-    def _across(self, info: FieldInfo, runs: list[Piece]) -> Any:
+    def _assembled_column(self, info: FieldInfo, runs: list[Piece]) -> Any:
         numpy = self.numpy
         total = numpy.zeros(self.count, numpy.uint64)
         for piece in runs:
@@ -404,8 +404,8 @@ def _plan(message: type[MessageFacts]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (part for _, parts in _lines(message) for part in parts):
-        if _is_whole(info):
+    for info in (part for _, parts in _column_fields(message) for part in parts):
+        if _is_aligned(info):
             continue
         for piece in pieces(info, message):
             needed.add(piece.byte)
@@ -422,7 +422,7 @@ def _plan(message: type[MessageFacts]) -> _Plan:
     return _Plan(runs, list(flags.items()), ordered)
 
 
-def _is_whole(info: FieldInfo) -> bool:
+def _is_aligned(info: FieldInfo) -> bool:
     """Return whether numpy can read the field directly as a byte-aligned array element."""
     is_wide = info.type in OCTETS or info.bits in (8, 16, 32, 64)
     return is_wide and info.at % 8 == 0

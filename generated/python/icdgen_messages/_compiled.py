@@ -34,7 +34,7 @@ def to_bytes(self):
     try:
         {prepare}
         {pack}
-    except REFUSED:
+    except ENCODING_ERRORS:
         raise range_error(self) from None
 """
 
@@ -124,7 +124,7 @@ class Codec:
             "error": struct.error,
             "length_error": _codec.length_error,
             "range_error": _codec.range_error,
-            "REFUSED": _codec.REFUSED,
+            "ENCODING_ERRORS": _codec.ENCODING_ERRORS,
         }
         self._items: list[_Item] = []
         self._assign: list[str] = []
@@ -167,24 +167,24 @@ class Codec:
         for info in self._units():
             span = _bytes_of(info)
             if info.elements:
-                self._run(info, span.start)
+                self._word_array(info, span.start)
                 continue
             is_whole = info.at % 8 == info.bits % 8 == 0 and not shared.intersection(
                 span
             )
             if is_whole and (info.type != "float" or self._is_in_order(info)):
-                self._whole(info, span.start, len(span))
+                self._aligned_field(info, span.start, len(span))
             elif len(span) == 1:
                 (piece,) = pieces(info, self.message)
                 self._parts.setdefault(piece.byte, []).append((piece.shift, info))
             else:
                 crossing.append(info)
         for info in crossing:
-            self._take_apart(info)
+            self._encode_crossing(info)
         for byte in sorted(self._parts.keys() | self._terms.keys()):
-            self._bit_byte(byte)
+            self._byte_of_bits(byte)
         for info in crossing:
-            self._put_together(info)
+            self._decode_crossing(info)
         self._join_elements()
         self._assign += reversed(self._placed)  # inner structs before outer structs
         self._items.sort(key=lambda item: item.byte)
@@ -215,8 +215,10 @@ class Codec:
         if info.struct is not None:
             yield from self._within(info, info.struct)
         elif info.elements and not _is_run(info):
-            self.names["counted"] = _codec.counted
-            self._prepare.append(f"counted({self._own(info)}, {info.elements})")
+            self.names["check_count"] = _codec.check_count
+            self._prepare.append(
+                f"check_count({self._attribute_of(info)}, {info.elements})"
+            )
             self._arrays.append(info)
             yield from info.parts
         else:
@@ -229,7 +231,7 @@ class Codec:
 
         Each struct is a local variable of the compiled function.
         """
-        own, parts = self._own(info), info.parts
+        own, parts = self._attribute_of(info), info.parts
         kind = self._named("struct", struct)
         variables = []
         for part in parts:
@@ -247,7 +249,7 @@ class Codec:
             for inner in struct.FIELDS:
                 yield from self._units_of(inner.within(part))
 
-    def _own(self, info: FieldInfo) -> str:
+    def _attribute_of(self, info: FieldInfo) -> str:
         """Return the attribute of a field as an expression, of the message or of a struct in it."""
         holder, _, name = info.attribute.rpartition(".")
         return f"{self._holders[holder] if holder else 'self'}.{name}"
@@ -255,11 +257,11 @@ class Codec:
     def _target(self, info: FieldInfo) -> str:
         """Return the target of a decoded value: the attribute, or a variable for an element."""
         is_element = info.attribute.endswith("]")
-        return f"e{info.at}" if is_element else self._own(info)
+        return f"e{info.at}" if is_element else self._attribute_of(info)
 
-    def _run(self, info: FieldInfo, byte: int) -> None:
+    def _word_array(self, info: FieldInfo, byte: int) -> None:
         """Add an array of words: one item of the struct format, which a second format splits."""
-        own, local = self._own(info), f"v{byte}"
+        own, local = self._attribute_of(info), f"v{byte}"
         # `struct` makes signalling 32-bit NaNs quiet: unpack these floats as integers.
         is_single = info.type == "float" and info.bits == 32
         code = (_INTEGERS if info.type != "float" or is_single else _FLOATS)[info.bits]
@@ -287,7 +289,7 @@ class Codec:
     def _join_elements(self) -> None:
         for info in self._arrays:
             values = "".join(f"{self._target(part)}, " for part in info.parts)
-            self._assign.append(f"{self._own(info)} = ({values})")
+            self._assign.append(f"{self._attribute_of(info)} = ({values})")
 
     def _shared_bytes(self) -> set[int]:
         """Return the bytes that contain bits of more than one field."""
@@ -308,14 +310,14 @@ class Codec:
         self.names[name] = value
         return name
 
-    def _whole(self, info: FieldInfo, byte: int, size: int) -> None:
+    def _aligned_field(self, info: FieldInfo, byte: int, size: int) -> None:
         """Add a byte-aligned field: one item of the struct format."""
-        own, local, target = self._own(info), f"v{byte}", self._target(info)
+        own, local, target = self._attribute_of(info), f"v{byte}", self._target(info)
         code = _INTEGERS.get(info.bits, "")
         if info.type in ("bytes", "text"):
             self._items.append(_Item(byte, size, f"{size}s", target, local))
-            self.names["sized"] = _codec.sized
-            self._prepare.append(f"{local} = sized({own}, {size})")
+            self.names["checked_bytes"] = _codec.checked_bytes
+            self._prepare.append(f"{local} = checked_bytes({own}, {size})")
         elif info.type == "float" and info.bits == 32 and "." in info.attribute:
             # Unpacked as an integer, as `with_nans` knows only fields of the message.
             self._items.append(_Item(byte, size, code, local, local))
@@ -348,7 +350,7 @@ class Codec:
             value = f"{self._named('members', _codec.Members(info.enum))}[{value}]"
         self._assign.append(f"{self._target(info)} = {value}")
 
-    def _bit_byte(self, byte: int) -> None:
+    def _byte_of_bits(self, byte: int) -> None:
         """Add a byte with fields of single bits: an item, a table, and pieces of crossing fields."""
         local = f"v{byte}"
         self._items.append(_Item(byte, 1, "B", local, local))
@@ -358,16 +360,16 @@ class Codec:
             rows, inverse = self._named("rows", table), self._named(
                 "bytes", _codec.Inverse(table)
             )
-            names = ", ".join(self._own(info) for _, info in parts)
+            names = ", ".join(self._attribute_of(info) for _, info in parts)
             targets = ", ".join(self._target(info) for _, info in parts)
             self._assign.append(f"{targets} = {rows}[{local}]")
             self._prepare.append(f"{local} = {inverse}[{names}]")
         for number, term in enumerate(self._terms.get(byte, [])):
             self._prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
 
-    def _take_apart(self, info: FieldInfo) -> None:
+    def _encode_crossing(self, info: FieldInfo) -> None:
         """Encode a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
-        own, local = self._own(info), f"n{info.at}"
+        own, local = self._attribute_of(info), f"n{info.at}"
         if info.type == "float":
             bits_of = self._named(
                 "bits_of",
@@ -383,7 +385,7 @@ class Codec:
             term = f"({local} >> {piece.at} & {(1 << piece.bits) - 1}) << {piece.shift}"
             self._terms.setdefault(piece.byte, []).append(term)
 
-    def _put_together(self, info: FieldInfo) -> None:
+    def _decode_crossing(self, info: FieldInfo) -> None:
         """Decode a field that crosses bytes."""
         runs = pieces(info, self.message)
         value = " | ".join(

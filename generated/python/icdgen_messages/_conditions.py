@@ -4,7 +4,14 @@
 from __future__ import annotations
 
 from . import _types
-from ._codec import REFUSED, is_there, range_error, signed, signed_bits, unsigned_bits
+from ._codec import (
+    ENCODING_ERRORS,
+    is_present,
+    range_error,
+    signed,
+    signed_bits,
+    unsigned_bits,
+)
 from ._floats import float32, float32_bits, float64, float64_bits
 from ._layout import pieces
 from ._types import FieldInfo, MessageFacts
@@ -14,23 +21,23 @@ def settle(message: MessageFacts, given: _types.Any) -> None:
     """Set optional fields that are not present to None, except for ``given`` attributes."""
     for info in message.FIELDS:
         is_given = info.attribute in given or info.physical in given
-        if info.when and not is_given and not is_there(info, message):
+        if info.when and not is_given and not is_present(info, message):
             setattr(message, info.attribute, None)
 
 
-def decoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
+def decoder(owner: _types.Any, unconditional: _types.Any) -> _types.Any:
     """Return ``from_bytes`` of a class with optional fields.
 
-    ``steady`` decodes the other fields.
+    ``unconditional`` decodes the other fields.
     """
     optional = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
     def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
-        self = steady(cls, data)
+        self = unconditional(cls, data)
         frame = memoryview(data).tobytes()
         for info, runs in optional:
             value = None
-            if is_there(info, self):
+            if is_present(info, self):
                 bits = 0
                 for piece in runs:
                     part = frame[piece.byte] >> piece.shift & (1 << piece.bits) - 1
@@ -42,20 +49,20 @@ def decoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
     return from_bytes
 
 
-def encoder(owner: _types.Any, steady: _types.Any) -> _types.Any:
+def encoder(owner: _types.Any, unconditional: _types.Any) -> _types.Any:
     """Return ``to_bytes`` of a class with optional fields.
 
-    ``steady`` encodes the other fields.
+    ``unconditional`` encodes the other fields.
     """
     optional = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
 
     def to_bytes(self: _types.Any) -> bytes:
-        frame = bytearray(steady(self))
+        frame = bytearray(unconditional(self))
         for info, runs in optional:
-            if is_there(info, self):
+            if is_present(info, self):
                 try:
                     bits = _bits(info, getattr(self, info.attribute))
-                except REFUSED:
+                except ENCODING_ERRORS:
                     raise range_error(self) from None
                 for piece in runs:
                     part = bits >> piece.at & (1 << piece.bits) - 1
@@ -75,7 +82,7 @@ def _value(info: FieldInfo, bits: int) -> _types.Any:
 
 
 def _bits(info: FieldInfo, value: _types.Any) -> int:
-    """Return the bits of a value in the frame. Raise one of `REFUSED`."""
+    """Return the bits of a value in the frame. Raise one of `ENCODING_ERRORS`."""
     if info.type == "float":
         return float32_bits(value) if info.bits == 32 else float64_bits(value)
     return (signed_bits if info.signed else unsigned_bits)(value, info.bits)

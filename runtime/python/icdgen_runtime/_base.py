@@ -44,17 +44,17 @@ if TYPE_CHECKING:
     P = ParamSpec("P")
     N_contra = TypeVar("N_contra", contravariant=True, default=Any)
 
-    class Spoken(Generic[N_contra]):
+    class NodeMessageBase(Generic[N_contra]):
         """Base class that relates a message to its node, for type checkers only.
 
         It has no members at run time.
         """
 
         @classmethod
-        def _made(cls) -> Self: ...
+        def _instance(cls) -> Self: ...
 
         @staticmethod
-        def _spoken_by(node: N_contra, /) -> None: ...
+        def _belongs_to(node: N_contra, /) -> None: ...
 
 else:
 
@@ -63,7 +63,7 @@ else:
 
     N_contra = None
 
-    class Spoken:
+    class NodeMessageBase:
         """Nothing, when the program runs."""
 
         __slots__ = ()
@@ -270,7 +270,7 @@ class Struct(StructFacts, metaclass=MessageType):
         return f"{type(self).__name__}({', '.join(values)})"
 
 
-class Message(Spoken[N_contra], MessageFacts, Struct):
+class Message(NodeMessageBase[N_contra], MessageFacts, Struct):
     """A message: a frame of ``LENGTH`` bytes with an id."""
 
     __slots__ = ()

@@ -25,7 +25,7 @@ from .exchanges import (
     outcome_of,
 )
 from .link import Link, Settings
-from .spoken import KindOf, M, SpokenBy, class_of, message_of
+from .message_ids import M, NodeMessage, NodeMessageClass, class_of, message_of
 
 _PIECE = 4096  # maximum bytes of a read
 
@@ -68,7 +68,7 @@ class AsyncSession(Exchanges[N]):
         self._boxes: dict[object, list[Event]] = {}  # events by waiting task
         self._read_before: Optional[asyncio.Future[bytes]] = None
 
-    async def get(self, message: KindOf[N, M]) -> M:
+    async def get(self, message: NodeMessageClass[N, M]) -> M:
         """Request telemetry or read a configuration.
 
         Raise `RefusedError`, `ReplyTimeoutError` and the exceptions of
@@ -79,7 +79,7 @@ class AsyncSession(Exchanges[N]):
             executed(outcome, class_of(message).NAME).data
         )
 
-    async def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
+    async def ask(self, message: NodeMessageClass[N, M]) -> OutcomeOf[M]:
         """Request telemetry or read a configuration; return the outcome.
 
         Raise the exceptions of `Client.request`.
@@ -87,13 +87,16 @@ class AsyncSession(Exchanges[N]):
         outcome = await self._run(self._exchange(self.client.request, message))
         return outcome_of(outcome, class_of(message))
 
-    async def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
+    async def send(self, message: NodeMessage[N], repeat: bool = False) -> None:
         """Send a telecommand or set a configuration. Raise as `get` and `Client.send`."""
         outcome = await self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 
     async def answer(
-        self, message: SpokenBy[N], reply: KindOf[N, M], repeat: bool = False
+        self,
+        message: NodeMessage[N],
+        reply: NodeMessageClass[N, M],
+        repeat: bool = False,
     ) -> M:
         """Send a telecommand (with header and trailer) and return its reply.
 
@@ -111,14 +114,14 @@ class AsyncSession(Exchanges[N]):
     @overload
     def messages(
         self,
-        kind: KindOf[N, M],
+        kind: NodeMessageClass[N, M],
         /,
-        *more_kinds: KindOf[N, M],
+        *more_kinds: NodeMessageClass[N, M],
         seconds: Optional[float] = None,
     ) -> AsyncIterator[M]: ...
 
     async def messages(
-        self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
+        self, *kinds: NodeMessageClass[N, Message], seconds: Optional[float] = None
     ) -> AsyncIterator[Message]:
         """Iterate over unsolicited messages, without end or for this number of seconds.
 

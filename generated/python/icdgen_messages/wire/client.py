@@ -24,7 +24,13 @@ from .events import (
 from .i2c import I2cTransfer, i2c_read_length, i2c_reply, i2c_write
 from .link import Bus, Link, Polled, Settings
 from .logs import LogMessage
-from .spoken import KindOf, SpokenBy, message_of, requested, sent
+from .message_ids import (
+    NodeMessage,
+    NodeMessageClass,
+    message_of,
+    requested_id,
+    sent_id,
+)
 from .uart import UartDecoder, uart_encode, uart_kind
 
 
@@ -104,15 +110,15 @@ class Client(Generic[N]):
         """Time in ms at which `tick` must be called at the latest; None if idle."""
         return self._until if self.busy else None
 
-    def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
+    def request(self, now: float, message: NodeMessageClass[N, Message]) -> list[Event]:
         """Request telemetry or read a configuration. See `start`."""
-        return self.start(now, Request("telemetry", requested(self.link, message)))
+        return self.start(now, Request("telemetry", requested_id(self.link, message)))
 
     def send(
-        self, now: float, message: SpokenBy[N], repeat: bool = False
+        self, now: float, message: NodeMessage[N], repeat: bool = False
     ) -> list[Event]:
         """Send a telecommand or set a configuration. See `start`; also raise `RangeError`."""
-        id, data = sent(self.link, message), message_of(message).to_bytes()
+        id, data = sent_id(self.link, message), message_of(message).to_bytes()
         return self.start(now, Request("telecommand", id, data, repeat))
 
     def start(self, now: float, request: Request) -> list[Event]:

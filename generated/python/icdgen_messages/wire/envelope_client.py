@@ -15,8 +15,15 @@ from .envelope import Direction, StreamRow
 from .errors import BusyError, UnsupportedError, need
 from .events import Arrived, Done, Event, Gap, LineError, Timeout
 from .link import Link, Settings
+from .message_ids import (
+    NodeMessage,
+    NodeMessageClass,
+    class_of,
+    message_of,
+    requested_id,
+    sent_id,
+)
 from .sender import Sender
-from .spoken import KindOf, SpokenBy, class_of, message_of, requested, sent
 from .stream import StreamDecoder, StreamEvent
 
 _NO_REQUEST = Request("telecommand", 0)
@@ -87,27 +94,29 @@ class EnvelopeClient(Generic[N]):
         """Number of received bytes that are not part of a message."""
         return self._decoder.discarded
 
-    def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
+    def request(self, now: float, message: NodeMessageClass[N, Message]) -> list[Event]:
         """Request telemetry by the telecommand that it replies to. See `start`."""
-        request = Request("telemetry", requested(self.link, message))
+        request = Request("telemetry", requested_id(self.link, message))
         return self._begin(now, request, kind=class_of(message))
 
     def send(
         self,
         now: float,
-        message: SpokenBy[N],
+        message: NodeMessage[N],
         repeat: bool = False,
-        reply: Optional[KindOf[N, Message]] = None,
+        reply: Optional[NodeMessageClass[N, Message]] = None,
     ) -> list[Event]:
         """Send a telecommand. See `start`; also raise `RangeError`.
 
         ``reply``: class of the reply, if the ICD does not specify one.
         """
-        id, data = sent(self.link, message), message_of(message).to_bytes()
+        id, data = sent_id(self.link, message), message_of(message).to_bytes()
         request = Request("telecommand", id, data, repeat)
         if reply is None:
             return self._begin(now, request)
-        return self._begin(now, request, requested(self.link, reply), class_of(reply))
+        return self._begin(
+            now, request, requested_id(self.link, reply), class_of(reply)
+        )
 
     def start(
         self, now: float, request: Request, reply: Optional[int] = None

@@ -27,8 +27,8 @@ from .events import (
 )
 from .failures import FailedError, RefusedError, ReplyTimeoutError
 from .link import Link, Settings
+from .message_ids import NodeMessage, NodeMessageClass
 from .procedures import Procedure
-from .spoken import KindOf, SpokenBy
 
 AnyClient = Union[Client[N], EnvelopeClient[N]]
 P = TypeVar("P", bound=Procedure)
@@ -95,7 +95,7 @@ class Exchanges(Generic[N]):
         return events
 
     def _with_reply(
-        self, message: SpokenBy[N], reply: KindOf[N, Message], repeat: bool
+        self, message: NodeMessage[N], reply: NodeMessageClass[N, Message], repeat: bool
     ) -> Exchange[Outcome]:
         """Send a telecommand and wait for its reply."""
         if isinstance(self.client, Client):
@@ -104,7 +104,7 @@ class Exchanges(Generic[N]):
         return self._exchange(self.client.send, message, repeat, reply)
 
     def _messages_in(
-        self, events: list[Event], kinds: tuple[KindOf[N, Message], ...]
+        self, events: list[Event], kinds: tuple[NodeMessageClass[N, Message], ...]
     ) -> Iterator[Message]:
         """Return the unsolicited messages of these classes; all messages without ``kinds``."""
         for event in events:

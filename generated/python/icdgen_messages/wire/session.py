@@ -24,14 +24,14 @@ from .exchanges import (
     outcome_of,
 )
 from .link import Link, Settings
+from .message_ids import M2, M3, M, NodeMessage, NodeMessageClass, class_of, message_of
 from .ports import Port, Read, Write
-from .spoken import M2, M3, KindOf, M, SpokenBy, class_of, message_of
 
 
 class BusSession(Exchanges[N]):
     """Blocking client over the transport of ``_flush`` and ``_receive``."""
 
-    def get(self, message: KindOf[N, M]) -> M:
+    def get(self, message: NodeMessageClass[N, M]) -> M:
         """Request telemetry or read a configuration.
 
         Raise `RefusedError`, `ReplyTimeoutError` and the exceptions of
@@ -42,7 +42,7 @@ class BusSession(Exchanges[N]):
             executed(outcome, class_of(message).NAME).data
         )
 
-    def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
+    def ask(self, message: NodeMessageClass[N, M]) -> OutcomeOf[M]:
         """Request telemetry or read a configuration; return the outcome.
 
         Raise the exceptions of `Client.request`.
@@ -52,18 +52,22 @@ class BusSession(Exchanges[N]):
 
     @overload
     def get_several(
-        self, first: KindOf[N, M], second: KindOf[N, M2], /
+        self, first: NodeMessageClass[N, M], second: NodeMessageClass[N, M2], /
     ) -> tuple[M, M2]: ...
 
     @overload
     def get_several(
-        self, first: KindOf[N, M], second: KindOf[N, M2], third: KindOf[N, M3], /
+        self,
+        first: NodeMessageClass[N, M],
+        second: NodeMessageClass[N, M2],
+        third: NodeMessageClass[N, M3],
+        /,
     ) -> tuple[M, M2, M3]: ...
 
     @overload
-    def get_several(self, *messages: KindOf[N, M]) -> tuple[M, ...]: ...
+    def get_several(self, *messages: NodeMessageClass[N, M]) -> tuple[M, ...]: ...
 
-    def get_several(self, *messages: KindOf[N, Any]) -> tuple[Any, ...]:
+    def get_several(self, *messages: NodeMessageClass[N, Any]) -> tuple[Any, ...]:
         """Request several telemetry messages, at once if the link allows it.
 
         Raises as `get`; the other requests are then cancelled.
@@ -77,13 +81,16 @@ class BusSession(Exchanges[N]):
             for message, outcome in zip(messages, outcomes)
         )
 
-    def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
+    def send(self, message: NodeMessage[N], repeat: bool = False) -> None:
         """Send a telecommand or set a configuration. Raise as `get` and `Client.send`."""
         outcome = self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 
     def answer(
-        self, message: SpokenBy[N], reply: KindOf[N, M], repeat: bool = False
+        self,
+        message: NodeMessage[N],
+        reply: NodeMessageClass[N, M],
+        repeat: bool = False,
     ) -> M:
         """Send a telecommand (with header and trailer) and return its reply.
 
@@ -99,14 +106,14 @@ class BusSession(Exchanges[N]):
     @overload
     def messages(
         self,
-        kind: KindOf[N, M],
+        kind: NodeMessageClass[N, M],
         /,
-        *more_kinds: KindOf[N, M],
+        *more_kinds: NodeMessageClass[N, M],
         seconds: Optional[float] = None,
     ) -> Iterator[M]: ...
 
     def messages(
-        self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
+        self, *kinds: NodeMessageClass[N, Message], seconds: Optional[float] = None
     ) -> Iterator[Message]:
         """Iterate over unsolicited messages, without end or for this number of seconds.
 

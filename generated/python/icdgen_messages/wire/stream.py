@@ -13,7 +13,7 @@ from .checks import check
 from .envelope import Direction, EnvelopeField, Stream, StreamRow
 from .errors import need
 from .link import Link
-from .spoken import spoken
+from .message_ids import message_id
 from .stuffing import Unstuffer, stuffed
 
 M = TypeVar("M", bound=Message)
@@ -73,7 +73,7 @@ def stream_encode(
     if isinstance(message, Message):
         if data:
             raise TypeError("a message has its own data; direction= tells who sends it")
-        id, data = spoken(link, direction, type(message)), message.to_bytes()
+        id, data = message_id(link, direction, type(message)), message.to_bytes()
     else:
         id, data = message, bytes(data)
     row = next((row for row in form.rows(direction) if row.id == id), None)
