@@ -87,6 +87,8 @@ class Inverse(dict[object, int]):
     def __missing__(self, values: _types.Any) -> int:
         if self._is_filled:
             raise KeyError(values)
+        # Bytes that differ in reserved bits have equal values. The smallest is entered
+        # last and remains: its reserved bits are 0.
         self.update({self._table[byte]: byte for byte in range(255, -1, -1)})
         self._is_filled = True
         return self[values]
@@ -105,6 +107,7 @@ class Members(dict[int, "_types.OpenEnum"]):
 
 def unsigned_bits(value: int, bits: int) -> int:
     """Return ``value``. Raise `OverflowError` if it needs more than ``bits`` bits."""
+    # `__index__` rejects floats. A negative number shifts to -1, which is true.
     if value.__index__() >> bits:
         raise OverflowError
     return value

@@ -34,6 +34,7 @@ def on_curve(curve: _types.Curve, raw: float) -> float:
     above, value = x - start, terms[-1]
     for term in terms[-2::-1]:
         value = value * above + term
+    # Sign and payload of a computed NaN differ between processors.
     return math.nan if math.isnan(value) else value
 
 

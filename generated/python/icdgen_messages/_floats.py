@@ -26,6 +26,8 @@ def is_special(value: float, special: float) -> bool:
 
 def float32(bits: int) -> float:
     """Return the number of 32 bits. NaNs keep sign and payload."""
+    # A NaN has all bits of the exponent and a payload other than 0. The payloads have 23
+    # and 52 bits, which begin at the same end.
     if bits & 0x7F800000 == 0x7F800000 and bits & 0x007FFFFF:
         wide = (bits >> 31) << 63 | 0x7FF << 52 | (bits & 0x007FFFFF) << 29
         return float64(wide)
@@ -37,6 +39,7 @@ def float32_bits(value: float) -> int:
     """Return the bits of the nearest 32-bit float. NaNs keep sign and payload."""
     if isnan(value):
         wide = float64_bits(value)
+        # With payload 0, it would be infinity. Then use the quiet NaN.
         payload = wide >> 29 & 0x007FFFFF
         return wide >> 63 << 31 | 0x7F800000 | (payload or 0x00400000)
     (bits,) = _BITS32.unpack(_FLOAT32.pack(value))

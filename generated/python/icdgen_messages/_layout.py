@@ -34,6 +34,7 @@ def pieces(info: FieldInfo, message: type[MessageFacts]) -> list[Piece]:
         byte, first = divmod(at, 8)
         bits = min(8 - first, end - at)
         shift = first if is_lsb0 else 8 - first - bits
+        # In big-endian order, the first piece has the most significant bits.
         weight = below if is_little else info.bits - below - bits
         result.append(Piece(byte, shift, bits, weight))
         at += bits

@@ -22,6 +22,7 @@ __all__ = [
     "attribute",
 ]
 
+# Type checkers treat this name as true. Importing `typing` would slow down the start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -34,6 +34,7 @@ __all__ = [
     "Tail",
 ]
 
+# Type checkers treat this name as true. Importing `typing` would slow down the start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -34,6 +34,7 @@ __all__ = [
     "whole",
 ]
 
+# Type checkers treat this name as true. Importing `typing` would slow down the start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from inspect import Signature
@@ -88,7 +89,7 @@ class MessageType(type):
         mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _types.Any]
     ) -> _types.Any:
         """Create the class. Slots hold the values of the fields and replace the declarations."""
-        if "LENGTH" in namespace:
+        if "LENGTH" in namespace:  # the base classes declare no fields
             infos: list[FieldInfo] = []
             notes = namespace.get("__annotations__", {})
             for key, declared in list(namespace.items()):
@@ -97,7 +98,7 @@ class MessageType(type):
                     infos.append(namespace.pop(key))
                 elif isinstance(declared, Form):
                     namespace[key] = declared.property_of(infos[-1], key)
-                    del notes[key]
+                    del notes[key]  # it is a property, not a dataclass field
             names = tuple(info.attribute for info in infos)
             namespace["FIELDS"] = tuple(infos)
             namespace["__slots__"] = namespace["__match_args__"] = names

@@ -238,6 +238,7 @@ def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
     p, c, q = info.scale
     low, high = info.raw_range
     bounds = [p, c, q, low, high, low * p, high * p, low * p + c, high * p + c]
+    # Every intermediate value must be exact in doubles. Otherwise compute in integers.
     if max(map(abs, bounds)) > _EXACT:
         values = ((value * p + c) / q for value in raw.tolist())
         return numpy.fromiter(values, numpy.float64, len(raw))
@@ -289,7 +290,7 @@ class _Decoder:
             self._store_byte(run, byte)
             self._store_byte(run >> 8, byte + 1)
         else:
-            self._split(run.astype("<u2"), byte)
+            self._split(run.astype("<u2"), byte)  # the lower 16 bits
             self._split((run >> 16).astype("<u2"), byte + 2)
 
     def _store_byte(self, values: Any, byte: int) -> None:
@@ -379,6 +380,7 @@ class _Decoder:
             return total.astype(f"u{size // 8}").view(f"f{size // 8}")
         if not info.signed:
             return total.astype(f"u{size // 8}")
+        # Shift to the top of a word and back, which copies the sign to the upper bits.
         spare = numpy.uint64(64 - info.bits)
         return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
             f"i{size // 8}"

@@ -9,6 +9,7 @@ from typing import Any
 
 from ._types import FieldInfo
 
+# Python 3.9 has no keyword-only dataclass fields.
 _KEYWORDS: dict[str, Any] = {"kw_only": True} if sys.version_info >= (3, 10) else {}
 
 PARAMS: Any = vars(dataclasses.make_dataclass("Message", [], **_KEYWORDS))[

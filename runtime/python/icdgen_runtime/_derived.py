@@ -22,6 +22,7 @@ def derived(derivation: _types.Derivation, values: list[float]) -> float:
     row = [*map(float, values), *numbers]
     for operator, left, right in steps:
         row.append(_OPERATORS[operator](row[left], row[right]))
+    # Sign and payload of a computed NaN differ between processors.
     return math.nan if math.isnan(row[-1]) else row[-1]
 
 

@@ -7,6 +7,7 @@ from . import _types
 from ._errors import RangeError, span_of
 from ._types import FieldInfo
 
+# Type checkers treat this name as true. Importing `typing` would slow down the start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any

@@ -90,6 +90,8 @@ class Client(Generic[N]):
         self._transfers: list[I2cTransfer] = []
         # I2C: number of transfers taken, but not yet passed to `transferred`
         self._unreported = 0
+        # hold: wait until no reply to an earlier request can arrive. wait: for the reply.
+        # I2C only: pause until the next poll or attempt. poll: wait for the result.
         self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
         self._request = Request("telemetry", 0)
         self._attempts = 0

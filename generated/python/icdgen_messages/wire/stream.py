@@ -183,7 +183,7 @@ class StreamDecoder:
             at = 0
             while (count := self._front(at, events)) is not None:
                 at += count
-            del self._buffer[:at]
+            del self._buffer[:at]  # once per call: deletion copies the remaining bytes
         return events
 
     def _frame(

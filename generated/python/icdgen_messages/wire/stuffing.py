@@ -35,6 +35,7 @@ def _cobs(frame: bytes) -> bytes:
     for part in frame.split(b"\0"):
         at = 0
         while len(part) - at >= 254:
+            # A full block: 254 bytes other than zero, and no implied zero after them.
             out.append(0xFF)
             out += part[at : at + 254]
             at += 254
@@ -90,6 +91,7 @@ class Unstuffer:
                 self._left -= 1
                 self._put(byte)
                 return
+            # The implied zero is data only if another block follows.
             if self._is_zero:
                 self._put(0)
             self._left, self._is_zero = byte - 1, byte != 0xFF

@@ -118,7 +118,7 @@ class Download(FileProcedure):
         position = number - self._files.first_packet
         if not 0 <= position < self._count:
             return
-        self._packets.setdefault(position, data)
+        self._packets.setdefault(position, data)  # a repeated packet is ignored
         self._last = self._now
         if len(self._packets) == self._count and isinstance(self._action, Wait):
             self._action = Wait(self._now)

@@ -103,7 +103,8 @@ class UartDecoder:
         self._opening = escape + bytes((framing.start,))
         self._escaped_data = escape + bytes((framing.escaped,))
         self._complete_message = _complete_message(framing)
-        self._most = 2 * self._limit + 4  # bytes of a message on the line
+        # Bytes of a message on the line, with start and end, if each byte is escaped.
+        self._most = 2 * self._limit + 4
 
     def feed(self, data: Buffer) -> list[UartEvent]:
         """Process the next bytes of the stream."""

@@ -84,6 +84,7 @@ __all__ = [
     "write_index",
 ]
 
+# Type checkers treat this name as true. Importing `typing` would slow down the start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .async_session import AsyncSession as AsyncSession

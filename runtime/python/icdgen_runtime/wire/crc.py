@@ -22,6 +22,7 @@ class Crc:
             else form.init << _padding(form)
         )
         self._rows = _table(form) if table else None
+        # `crc_hqx` has this polynomial and bit order, and takes any initial value.
         self._is_known = table and form[:4] == (16, 0x1021, form.init, False)
 
     def feed(self, data: Buffer) -> Crc:
