@@ -18,7 +18,7 @@ from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.describe import MessageDescription, NodeDescription, describe
 from icdgen.describe.arrays import StructArray, all_struct_arrays, struct_arrays_in
-from icdgen.describe.comments import sentence, text_comment, words
+from icdgen.describe.comments import sentence, words
 from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import groups
 from icdgen.describe.numbers import byte_count, length_text
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _SPELLING = (
     byte_count, call, comment, described, head, length_text, like, literal, prose, names.client_function, names.constant,
     names.enumerator, names.enumerator_of, names.getter, names.selector, names.setter, C_NAMES.symbol, sentence,
-    text_comment, words,
+    words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """Functions with which templates spell names and text."""
@@ -107,6 +107,7 @@ def _composite(composite: Composite[Any], more_headers: Iterable[str] = ()) -> d
         "constants": constants.of_fields(composite),
         "initial": members.initial(composite),
         "declaration": types.declaration,
+        "text_accessors": accessors.of_kind(composite, "text"),
         "integer_accessors": accessors.integer_accessors(composite),
         "double_accessors": accessors.double_accessors(composite),
         "known": constants.table(composite),

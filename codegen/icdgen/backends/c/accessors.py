@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from icdgen.backends.c import decoding, physical
@@ -36,17 +35,17 @@ class AccessorCode(NamedTuple):
 
 def double_accessors(message: Composite[Any]) -> list[AccessorCode]:
     """Return the accessors in double precision."""
-    return [*map(_double, _of_kind(message, "double")), *map(_derived, message.derived)]
+    return [*map(_double, of_kind(message, "double")), *map(_derived, message.derived)]
 
 
 def integer_accessors(message: Composite[Any]) -> list[AccessorCode]:
     """Return the accessors in whole thousandths or millionths of the unit."""
-    return list(map(_integer, _of_kind(message, "integer")))
+    return list(map(_integer, of_kind(message, "integer")))
 
 
-def _of_kind(message: Composite[Any], kind: Kind) -> Iterator[Accessor]:
-    for field in message.declared_members:
-        yield from accessors_of(field, kind)
+def of_kind(message: Composite[Any], kind: Kind) -> list[Accessor]:
+    """Return the accessors of one kind."""
+    return [accessor for field in message.declared_members for accessor in accessors_of(field, kind)]
 
 
 def _double(accessor: Accessor) -> AccessorCode:

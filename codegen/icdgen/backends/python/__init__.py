@@ -91,11 +91,10 @@ class PythonBackend:
 def _functions() -> dict[str, object]:
     """Return the functions with which templates spell names and text."""
     from icdgen.backends.python import fields, nodes, text
-    from icdgen.describe.comments import physical_comment
 
     functions = (
         fields.annotation, fields.accessors, fields.declaration, fields.getter, fields.inner, fields.open_part, fields.physical,
-        fields.view_info, names.class_name, nodes.listing, nodes.literals,
-        nodes.mapping, physical_comment, text.docstring, text.documented, text.literal, text.prose,
+        fields.view_info, names.accessors_in_python, names.class_name, nodes.listing, nodes.literals,
+        nodes.mapping, text.docstring, text.documented, text.literal, text.prose,
     )  # fmt: skip
     return {function.__name__: function for function in functions}

@@ -86,18 +86,18 @@ class RustBackend:
 def _functions() -> dict[str, object]:
     """Return the functions with which templates spell names and text."""
     from icdgen.backends.rust import text
-    from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of
+    from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of, texts
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
     from icdgen.backends.rust.messages import imports
     from icdgen.backends.rust.physical import big_parts, derived_statements
-    from icdgen.describe.comments import sentence, text_comment, words
+    from icdgen.describe.comments import sentence, words
     from icdgen.describe.numbers import byte_count, count_text
 
     functions = (
         accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example, field_row,
         imports, message_example, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type,
         names.type_name, scale_of, sentence, text.arm, text.assigned, text.code, text.described, text.doc, text.integer,
-        text.prose, text.signature, text.string, text_comment, words,
+        text.prose, text.signature, text.string, texts, words,
     )  # fmt: skip
     return {function.__name__: function for function in functions}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.rust.names import field_name, struct_path
@@ -18,6 +18,7 @@ from icdgen.backends.rust.physical import (
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor
+from icdgen.describe.description import Composite
 
 
 class AccessorCode(NamedTuple):
@@ -35,6 +36,14 @@ class AccessorCode(NamedTuple):
 def accessors(field: FieldDescription) -> list[AccessorCode]:
     """Return the accessors of a field with a scale or calibration."""
     return [_code(accessor) for accessor in accessors_in_rust(field) if accessor.kind != "text"]
+
+
+def texts(composite: Composite[Any]) -> list[Accessor]:
+    """Return the accessors of texts, those of arrays first."""
+    accessors = [
+        accessor for field in composite.members for accessor in accessors_in_rust(field) if accessor.kind == "text"
+    ]
+    return sorted(accessors, key=lambda accessor: not accessor.field.count)
 
 
 def _code(accessor: Accessor) -> AccessorCode:
