@@ -106,7 +106,7 @@ class CTesteeBackend:
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Files that are the same for every ICD, the list of nodes, and one file a node."""
         description = describe(icd)
-        yield from with_short_names(self._files(description, render), lambda: symbols(description, C_NAMES))
+        yield from with_short_names(self._files(description, render), symbols(description, C_NAMES))
 
     def _files(self, description: Description, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The files with the names of the plan, of which the C backend shortens some."""
