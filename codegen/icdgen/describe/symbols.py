@@ -32,6 +32,8 @@ class NamingPolicy:
 
     def __init__(self) -> None:
         self._texts: WeakKeyDictionary[object, dict[str, str]] = WeakKeyDictionary()
+        self.tables: WeakKeyDictionary[Description, tuple[Identifier, ...]] = WeakKeyDictionary()
+        """Results of `symbols`: rules and backends use the same table."""
 
     def fixed(self, description: Description) -> Symbols:
         """Names that are declared for every ICD."""
@@ -88,8 +90,15 @@ class NamingPolicy:
         return self.enumeration(part) if isinstance(part, EnumDescription) else self.composite(part)
 
 
-def symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifier]:
-    """List the identifiers of a language in the order of the ICDs, fixed names first."""
+def symbols(description: Description, policy: NamingPolicy) -> tuple[Identifier, ...]:
+    """Return the identifiers of a language in the order of the ICDs, fixed names first."""
+    table = policy.tables.get(description)
+    if table is None:
+        table = policy.tables[description] = tuple(_symbols(description, policy))
+    return table
+
+
+def _symbols(description: Description, policy: NamingPolicy) -> Iterator[Identifier]:
     yield from policy.fixed(description)
     for node in description.nodes:
         yield from policy.node(node)

@@ -89,7 +89,7 @@ class CBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the headers declare."""
-        return symbols(describe(icd), C_NAMES)
+        return iter(symbols(describe(icd), C_NAMES))
 
 
 def _composite(composite: Composite[Any], more_headers: Iterable[str] = ()) -> dict[str, object]:

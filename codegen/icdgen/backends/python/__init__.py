@@ -85,7 +85,7 @@ class PythonBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the generated files declare, for the rules on names."""
-        return symbols(describe(icd), PythonNames(self.package))
+        return iter(symbols(describe(icd), PythonNames(self.package)))
 
 
 def _functions() -> dict[str, object]:

@@ -80,7 +80,7 @@ class RustBackend:
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the crate declares, by scope."""
-        return symbols(describe(icd), RUST_NAMES)
+        return iter(symbols(describe(icd), RUST_NAMES))
 
 
 def _functions() -> dict[str, object]:
