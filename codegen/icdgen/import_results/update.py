@@ -122,6 +122,7 @@ def _merge_items(
     for child in old:
         if id(child) not in matched_ids:
             changes.append(f"- {where}{kind} {_title(kind, _plain(child.value))}")
+    # The order of the new items is used if it does not contradict the order of the old ones.
     ascending = all(a < b for a, b in pairwise(placed.values()))
     return [child for _, child in (placed_items if ascending else sorted(placed_items, key=lambda m: m[0]))]
 

@@ -63,17 +63,19 @@ class Socket:
         with _failures(f"cannot connect to {self.name}", OSError, help="is it running?"):
             if kind == "tcp":
                 self.socket = socket.create_connection((host, port), CONNECT_TIMEOUT)
+                # Send short requests at once, without waiting for further data.
                 self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             else:
                 family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
                 self.socket = socket.socket(family, socket.SOCK_DGRAM)
+                # A burst of packets arrives faster than it is read. The default buffer would lose some.
                 self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
                 self.socket.connect(address)
         self.stream = kind == "tcp"
 
     def read(self, timeout: float) -> bytes:
         try:
-            self.socket.settimeout(max(timeout, 1e-6))
+            self.socket.settimeout(max(timeout, 1e-6))  # 0 would make the socket non-blocking
             data = self.socket.recv(65536)
         except (TimeoutError, BlockingIOError):
             return b""

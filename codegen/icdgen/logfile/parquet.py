@@ -214,6 +214,7 @@ class ColumnReader:
                 part = (numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask) >> piece.shift
                 value |= part.astype(np.uint64) << np.uint64(piece.at)
         if field.is_signed:
+            # Shift to the top of a word and back, which copies the sign to the upper bits.
             up = np.int64(64 - field.bits)
             return value.astype(np.uint64).view(np.int64) << up >> up
         return value
@@ -234,5 +235,6 @@ class ColumnReader:
             if d != 1:
                 result /= d
             return result
+        # Numbers this large need Python's integers. Compute each different value only once.
         different, where = np.unique(raw, return_inverse=True)
         return np.array([(int(raw_value) * a + b) / d for raw_value in different], np.float64)[where]

@@ -62,6 +62,7 @@ def _raw(column: Column) -> Callable[[bytes], int]:
     pieces, sign = column.pieces, 1 << field.bits - 1 if field.is_signed else 0
 
     def read(entry: bytes) -> int:
+        # Two's complement: the sign bit counts negative.
         value = sum((entry[p.byte] & p.mask) >> p.shift << p.at for p in pieces)
         return value - (value & sign) * 2
 

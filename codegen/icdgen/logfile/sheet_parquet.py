@@ -86,6 +86,7 @@ class _TableBuilder:
                     values[place] = received.data[entry.column.at : end_of_field(received, entry.column)]
             return pa.array(values, pa.binary())
         indices, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
+        # Row number -> index of its message among the decoded ones; the other rows are null.
         indices[here] = np.arange(len(here))
         is_null[here] = [not is_present(batch[place], entry.column) for place in here]
         return reader.read(data, len(here)).take(pa.array(indices, mask=is_null))

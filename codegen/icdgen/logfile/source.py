@@ -165,6 +165,7 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
         raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
     mask = head[node_facts.log_file.mask_at : node_facts.log_file.mask_at + node_facts.mask.size]
     source = Source(path, mask, header, size, plan(icd, node_facts, mask))
+    # The header has no magic number: the times of the entries are the only evidence that this is a log.
     if size >= header + source.plan.entry_bytes and not source.survey(1).spans:
         why = "its entries have no times, their milliseconds are above 999"
         raise UserError(f"{path} is no log of {node.name}: {why}", "name a log file as it was downloaded, or --node")

@@ -71,6 +71,7 @@ def _by_identifier(endpoints: Sequence[Endpoint], packet: Printed, selection: Se
 
 
 def _of_endpoint(endpoint: Endpoint, packets: list[CanPacket], times: list[str]) -> list[Reading]:
+    # A pasted text has no reception times: messages never time out, and any number of senders may be mixed.
     joiner = CanJoiner(endpoint.link, senders=len(packets))
     result = []
     for packet, time in zip(packets, times, strict=True):

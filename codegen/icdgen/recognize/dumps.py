@@ -29,7 +29,7 @@ def dump(text: str) -> bytes | None:
     rows = [row for line in lines if (row := _row(line)) is not None]
     if not rows or len(rows) != len(lines) or not (all(row.is_sure for row in rows) or len(rows) > 1):
         return None
-    for base in (16, 8):
+    for base in (16, 8):  # od prints octal addresses by default
         try:
             places = [int(row.at, base) for row in rows]
         except ValueError:

@@ -117,6 +117,8 @@ def fault_of(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: 
     rank, title = bits, f"packet of {node}"
     if id is not None and field is not None:
         title += f" with the id {id_text(declared, id)}"
+    # Ranks: constant bits of the header, plus 100 for a known id, 200 if only the checksum is wrong, 300 if only the
+    # message is.
     if messages:
         rank += 100
         names = " or ".join(f"`{message.name}` ({direction} {id_text(declared, id or 0)})" for message in messages)

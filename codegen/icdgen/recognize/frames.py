@@ -37,6 +37,7 @@ def recognize(
         return _readings(icd, endpoints, Pasted(text), selection)
     lines = [line for line in text.splitlines() if line.strip()]
     by_line = _line_by_line(icd, endpoints, lines, selection)
+    # Without ids, several lines are more likely pieces of one frame. Try that first.
     if by_line and not selection.messages and all(reading.id is not None for reading in by_line):
         return by_line
     try:

@@ -140,6 +140,7 @@ def most_likely(candidates: Sequence[Reading], of: str, selection: Selection) ->
     frames in both directions, the direction remains open.
     """
     candidates = selection.of(candidates)
+    # An acknowledge is short and has few fixed bits, so other data often looks like one.
     likely = (
         [reading for reading in candidates if reading.checked]
         or [reading for reading in candidates if reading.what != ACKNOWLEDGE]

@@ -39,6 +39,7 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
             raise error
         return _reading(endpoint, message, None, data)
     parts = endpoint.split_id(data)
+    # First as data without an id, then with the id in front.
     for id, remaining in [(None, data), *([parts] if parts and parts[0] in message.ids else [])]:
         notes = () if id is None else (f"id {id} removed",)
         for sender in _nodes_with_message(icd, endpoint, message):

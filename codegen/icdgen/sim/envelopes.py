@@ -52,6 +52,7 @@ class EnvelopeLine(DeviceLine):
     def tick(self, now: int) -> None:
         super().tick(now)
         if self._every and now >= self._next:
+            # Keep the period after a delay, without sending the missed messages.
             self._next = now - (now - self._next) % self._every + self._every
             self.log(now)
 

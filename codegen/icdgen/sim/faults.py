@@ -49,7 +49,7 @@ class Faults:
         if self.hits("drop", on):
             return []
         out = bytearray(data)
-        if out and self.hits("corrupt", on):
+        if out and self.hits("corrupt", on):  # XOR with 1 to 255 always changes the byte
             out[self.random.randrange(len(out))] ^= self.random.randrange(1, 256)
         if out and self.hits("cut", on):
             del out[self.random.randrange(len(out))]

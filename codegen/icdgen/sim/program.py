@@ -145,6 +145,7 @@ class Program:
         if telecommand is None or telecommand.name in self.unsupported:
             return self._refusal("unknown_id", acknowledge=telecommand is None or telecommand.acknowledge)
         data, form = message[1:], self.facts.checksum
+        # The checksum is optional unless `telecommand_always` has the bus: the length shows whether it is there.
         if form and bus in form.telecommand_buses and len(data) == telecommand.length + form.bytes:
             data = data[: telecommand.length]
             if message != i2c_write(self.link, message[0], data, crc=True):

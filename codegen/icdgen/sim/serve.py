@@ -58,6 +58,7 @@ class Server:
             self._flush(now)
             times = [at for at in (self.line.deadline, self.control.deadline) if at is not None]
             self.wake.clear()
+            # Round up by half a millisecond, as `now` is rounded down: otherwise the loop would wake up too early.
             wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
             try:
                 async with asyncio.timeout(wait):  # `wait_for` can lose an interrupt that arrives with data

@@ -193,7 +193,7 @@ class Transfers:
     def _packet(self, now: int, values: Raw) -> None:
         number = int(values["number"])
         position, form = number - self.form.first_packet, self.facts.hole_map
-        if not 0 <= position < self.form.block_packets:
+        if not 0 <= position < self.form.block_packets:  # a damaged counter must not exhaust the memory
             return
         self.received[position] = values["bytes"]  # type: ignore[assignment]
         if form and position // 8 < len(self.map):

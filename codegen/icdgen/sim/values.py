@@ -26,6 +26,7 @@ class Values:
     def frame(self, message: Message) -> bytes:
         """Return the current frame."""
         data = bytearray(self.frames[message.name])
+        # The frame of a part is the original: it may have been set after the composite frame.
         for part, first, last in self._parts(message):
             data[first:last] = self.frame(part)
         return bytes(data)
