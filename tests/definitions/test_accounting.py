@@ -24,8 +24,8 @@ def device(*ignored: str) -> tuple[Account, AccountedElement]:
 def unused(account: Account) -> list[tuple[str, int | None]]:
     to = Definitions("device.xml")
     account.report(to)
-    assert all((one.code, one.severity) == ("IMP085", "note") and one.help for one in to.troubles)
-    return [(one.message, one.spot.line) for one in to.troubles]
+    assert all((one.code, one.severity) == ("IMP085", "note") and one.help for one in to.import_findings)
+    return [(one.message, one.spot.line) for one in to.import_findings]
 
 
 def test_attributes_texts_and_elements_that_nobody_read_are_reported_where_they_stand():

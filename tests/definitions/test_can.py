@@ -77,7 +77,7 @@ def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(
         (0, None, "Off 0", None), (1, None, "2nd gear", "value 2nd gear"), (2, 3, "Spare", None), (5, None, "Off 5", None),
     ]  # fmt: skip
     assert field(train, "DriveStatus", "Torque")["special"] == [{"value": 2047, "meaning": "not known"}]
-    assert [one.code for one in train.definitions.troubles] == ["IMP074", "IMP073", "IMP071", "IMP085"]
+    assert [one.code for one in train.definitions.import_findings] == ["IMP074", "IMP073", "IMP071", "IMP085"]
 
 
 def test_the_smaller_of_overlapping_fields_is_a_view(train):
@@ -105,7 +105,7 @@ def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
     assert [one["name"] for one in tree["messages"]] == ["Wide", "Short", "Nested", "Fine"]
     assert message(faulty, "Wide")["id"] == wire_ids.CAN_EXTENDED_FLAG + 13274
     assert [one["name"] for one in message(faulty, "Short")["fields"]] == ["Inside"]
-    found = [(one.code, one.spot.line, one.message) for one in faulty.definitions.troubles]
+    found = [(one.code, one.spot.line, one.message) for one in faulty.definitions.import_findings]
     assert found == [
         ("IMP076", 5, "the id 0x33da has more than the 11 bits of a standard frame"),
         ("IMP075", 7, '`SG_ 0_COUNTER : 8|8@1+ (1,0) [0|0] "" Drive` is not understood'),
@@ -129,7 +129,7 @@ def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):
     (tmp_path / "before.dbc").write_text(text.replace("Outside : 12|8@1+", "Outside : -1|8@1+"))
     read = run.read(tmp_path / "before.dbc", kinds.of(tmp_path / "before.dbc"))
     assert [one["name"] for one in message(read, "Short")["fields"]] == ["Inside"]
-    told = [one.message for one in read.definitions.troubles if one.code == "IMP072"]
+    told = [one.message for one in read.definitions.import_findings if one.code == "IMP072"]
     assert told == ["message `Short`: `Outside` begins before its 2 bytes"]
 
 

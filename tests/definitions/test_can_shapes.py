@@ -140,7 +140,7 @@ def test_a_value_that_the_multiplexer_cannot_have_selects_nothing(bits, sign, va
     )
     read = imported(text, tmp_path)
     assert ("Speed" in [one["name"] for one in message(read, "Status")["fields"]]) == is_held
-    said = [one.message for one in read.definitions.troubles if one.code == "IMP091"]
+    said = [one.message for one in read.definitions.import_findings if one.code == "IMP091"]
     assert said == (
         [] if is_held else ["message `Status`, `Speed` is left out: it depends on values of `Page` that it cannot have"]
     )
@@ -190,7 +190,7 @@ def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
     read = imported(HEAD + "\n".join(blocks), tmp_path)
     assert (read.imported, read.definitions.total) == (6, 6)
     assert all(len(one["fields"]) == len(names) for one in tree_of(read)["messages"])
-    assert [one for one in read.definitions.troubles if one.severity == "error"] == []
+    assert [one for one in read.definitions.import_findings if one.severity == "error"] == []
     model(read, tmp_path)
 
 
@@ -231,7 +231,7 @@ def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_pa
         "SIG_GROUP_ 1 Pair 1 : Speed;\n"
     )
     read = imported(text, tmp_path)
-    found = {(one.message, one.spot.line) for one in read.definitions.troubles if one.code == "IMP085"}
+    found = {(one.message, one.spot.line) for one in read.definitions.import_findings if one.code == "IMP085"}
     assert {
         ("`VERSION` is not used", 1),
         ("`EV_` is not used", 8),
@@ -244,12 +244,14 @@ def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_pa
 
 def test_a_database_of_which_all_is_used_has_no_finding(tmp_path):
     text = f'{HEAD}BO_ 1 Status: 1 Engine\n SG_ Speed : 0|8@1+ (1,0) [0|0] "" Vector__XXX\n'
-    assert imported(text, tmp_path).definitions.troubles == []
+    assert imported(text, tmp_path).definitions.import_findings == []
 
 
 def test_a_database_that_is_cut_anywhere_says_so(tmp_path):
     text = (FILES / "shapes.dbc").read_text()
-    whole = len([one for one in run.read(FILES / "shapes.dbc", can.Dbc()).definitions.troubles if one.code != "IMP085"])
+    whole = len(
+        [one for one in run.read(FILES / "shapes.dbc", can.Dbc()).definitions.import_findings if one.code != "IMP085"]
+    )
     from icdgen.diagnostics import Findings
 
     begin = text.index(" SG_ Speed")
@@ -260,7 +262,7 @@ def test_a_database_that_is_cut_anywhere_says_so(tmp_path):
         except Findings:
             continue
         is_complete = cut.endswith((";", "\n")) or not cut.rsplit("\n", 1)[-1].strip()
-        lines = {one.spot.line for one in read.definitions.troubles if one.code == "IMP075"}
+        lines = {one.spot.line for one in read.definitions.import_findings if one.code == "IMP075"}
         assert is_complete or lines & {cut.count("\n") + 1, cut.rstrip().count("\n") + 1}, cut[-60:]
     assert whole == 3
 
@@ -273,7 +275,7 @@ def test_a_statement_that_cantools_refuses_costs_its_message_and_not_the_file(tm
     )
     read = imported(text, tmp_path)
     assert [one["name"] for one in tree_of(read)["messages"]] == ["Good"] and read.definitions.total == 2
-    (error,) = [one for one in read.definitions.troubles if one.severity == "error"]
+    (error,) = [one for one in read.definitions.import_findings if one.severity == "error"]
     assert error.code == "IMP070" and "message `Bad` is not imported" in error.message and error.spot.line == 8
 
 
@@ -284,7 +286,7 @@ def test_messages_of_one_name_are_all_imported_by_sender_or_by_id(tmp_path):
     )
     read = imported(text, tmp_path)
     assert [one["name"] for one in tree_of(read)["messages"]] == ["Engine Status", "Gateway Status"]
-    assert "IMP092" in [one.code for one in read.definitions.troubles]
+    assert "IMP092" in [one.code for one in read.definitions.import_findings]
 
     read = imported(text.replace("1 Gateway", "1 Engine"), tmp_path)
     assert [one["name"] for one in tree_of(read)["messages"]] == ["Status 0x100", "Status 0x101"]
@@ -361,5 +363,5 @@ ARXML = """\
 )
 def test_what_cantools_drops_of_a_file_is_reported(reader, text, unused):
     definitions = reader.read("vehicle", text.encode())
-    found = [(one.message, one.spot.line) for one in definitions.troubles if one.code == "IMP085"]
+    found = [(one.message, one.spot.line) for one in definitions.import_findings if one.code == "IMP085"]
     assert [one for one in found if one[1] is not None] == unused

@@ -34,7 +34,7 @@ def imported(name, folder=SHEETS):
 
 
 def said(read):
-    return [(one.code, one.message) for one in read.definitions.troubles]
+    return [(one.code, one.message) for one in read.definitions.import_findings]
 
 
 def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
@@ -58,7 +58,7 @@ def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
 def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(camera):
     assert [message(camera, name)["id"] for name in ("Picture", "Housekeeping", "Noop", "Shoot")] == [300, 20, 10, 10]
     assert [field(camera, name, "Code")["const"] for name in ("Noop", "Shoot")] == [0, 1]
-    (process,) = [one for one in camera.definitions.troubles if one.code == "IMP083"]
+    (process,) = [one for one in camera.definitions.import_findings if one.code == "IMP083"]
     assert process.message == "no application process is stated for 3 messages, only `TopicId` of their interfaces"
 
 
@@ -145,7 +145,7 @@ def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_t
 def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(gyro):
     assert field(gyro, "State", "Crc")["summary"] == "CRC16_CCITT."
     assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
-    (missing,) = [one for one in gyro.definitions.troubles if one.severity == "error"]
+    (missing,) = [one for one in gyro.definitions.import_findings if one.severity == "error"]
     why = "`Extra` is present only on a condition"
     assert missing.message == f"message `Sometimes`: from `Extra` on only bytes are imported: {why}"
     lines = (SHEETS / "gyro.xml").read_text().splitlines()

@@ -12,9 +12,9 @@ from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
 
 
-def troubles(found):
+def import_findings(found):
     """Findings but for what is not used (IMP085)."""
-    return [one for one in found.troubles if one.code != "IMP085"]
+    return [one for one in found.import_findings if one.code != "IMP085"]
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,9 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
     assert (said["formula"], said["unit"]) == ("raw*0.5 - 40", "C")
     assert field(frame, "frame unnumbered", "current")["formula"] == "raw/1000.0 + 0.5"
     assert "formula" not in field(frame, "frame unnumbered", "uptime")  # whole numbers are divided without the rest
-    assert [(one.code, one.message) for one in (*troubles(probe.definitions), *troubles(frame.definitions))] == [
+    assert [
+        (one.code, one.message) for one in (*import_findings(probe.definitions), *import_findings(frame.definitions))
+    ] == [
         ("IMP078", "`body total`: `cells[0] + cells[1]` is not a linear function of one field"),
         ("IMP081", "`header callsign` is not imported: its bytes are processed by `ror(1)` before they are read"),
         ("IMP078", "`header ssid`: `(ssid_raw & 0x0f) >> 1` is not a linear function of one field"),
@@ -69,7 +71,7 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
         ("IMP081", "`payload elsewhere` is not imported: an expression gives its position"),
         ("IMP081", "`payload data` is not imported: its size is `size * 2`"),
     ]
-    assert [one.spot.line for one in troubles(frame.definitions)] == [18, 28, 46, 47, 58]
+    assert [one.spot.line for one in import_findings(frame.definitions)] == [18, 28, 46, 47, 58]
 
 
 def test_types_that_are_repeated_are_structs_and_others_part_of_the_message(probe):
@@ -116,7 +118,7 @@ def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     b, c, d = (field(read, "bad", name) for name in "bcd")
     assert (b["min"], "max" in b, c["formula"], "min" in c, "const" in d) == (2, False, "raw*0.5", False, False)
-    assert read.definitions.troubles == []
+    assert read.definitions.import_findings == []
 
 
 @pytest.mark.parametrize(
@@ -135,7 +137,7 @@ def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tm
     (tmp_path / "bad.ksy").write_text(ksy(attribute, "{id: z, type: u1}", more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     assert field(read, "bad", "b") == {"at": 8, "name": "b", **held} and "formula" not in field(read, "bad", "a")
-    assert [one.message for one in troubles(read.definitions)] == [
+    assert [one.message for one in import_findings(read.definitions)] == [
         "`z` is not imported: it follows a part of variable size",
         "`d`: `a * 0.5` is not a linear function of one field",
     ]
@@ -191,8 +193,8 @@ BROAD = "types:\n" + "".join(
 def test_what_cannot_be_held_is_said_with_the_reason_and_what_is_before_it_is_held(attribute, more, says, tmp_path):
     (tmp_path / "bad.ksy").write_text(ksy(attribute, more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
-    assert read.failed and [one.code for one in troubles(read.definitions)] == ["IMP081"]
-    assert says in read.definitions.troubles[0].message and read.definitions.troubles[0].spot.line
+    assert read.failed and [one.code for one in import_findings(read.definitions)] == ["IMP081"]
+    assert says in read.definitions.import_findings[0].message and read.definitions.import_findings[0].spot.line
     for one in read.trees["bad"]["messages"]:
         assert one["fields"][0]["name"] == "a" and one["fields"][-1]["type"] == "bytes"
 
@@ -244,7 +246,10 @@ def test_a_small_file_that_says_much_is_bounded(more, tmp_path, monkeypatch):
     flags += [f"{{id: x{n}, type: u1, if: f{n} == 1}}" for n in range(40)]
     text = ksy("{id: b, type: t0}", more=more) if more else ksy(*flags)
     found = kaitai.Kaitai().read("bad.ksy", text.encode())
-    assert troubles(found)[-1].message == "message `bad` is not imported: with it the file says more than 2,000 things"
+    assert (
+        import_findings(found)[-1].message
+        == "message `bad` is not imported: with it the file says more than 2,000 things"
+    )
 
 
 def test_ways_to_go_on_are_bounded(tmp_path):
@@ -253,4 +258,4 @@ def test_ways_to_go_on_are_bounded(tmp_path):
                f"{{id: d, type: {{switch-on: b, cases: {{{cases}}}}}}}")  # fmt: skip
     found = kaitai.Kaitai().read("bad.ksy", text.encode())
     assert len(found.networks[0].messages) == kaitai.MOST_MESSAGES
-    assert found.troubles[-1].message.endswith("it branches in more than 256 ways; the others are not imported")
+    assert found.import_findings[-1].message.endswith("it branches in more than 256 ways; the others are not imported")

@@ -58,7 +58,7 @@ def test_enumerations_of_several_files_are_one_and_those_without_fields_are_none
         "MANUAL",
         "3D_DRIVE",
     ]
-    assert [(one.code, one.message) for one in rover.definitions.troubles] == [
+    assert [(one.code, one.message) for one in rover.definitions.import_findings] == [
         ("IMP077", "enumeration `ROVER_MODE`: 2 is `ROVER_MODE_MANUAL` and `ROVER_MODE_BY_HAND`"),
         ("IMP070", "message `ODD` is not imported: `value` is of the type `strange`"),
     ]
@@ -141,7 +141,7 @@ def test_of_a_message_of_one_byte_nothing_can_be_cut_off(length, tmp_path):
 def test_what_a_dialect_says_beyond_an_icd_is_reported(tmp_path):
     field = '<field type="uint8_t" name="mode" increment="2" units="m">Text.</field>'
     read = dialect(tmp_path, field, "<extensions/>", '<field type="uint8_t" name="more">More.</field>', "<wip/>")
-    assert [(one.code, one.message) for one in read.definitions.troubles] == [
+    assert [(one.code, one.message) for one in read.definitions.import_findings] == [
         ("IMP085", "`increment` of `field` is not used (`mode`)"),
         ("IMP085", "`wip` of `message` is not used (`STATE`)"),
     ]

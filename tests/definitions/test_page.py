@@ -76,7 +76,7 @@ def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
     read = run.read(tmp_path / "beacon.ksy", kinds.of(tmp_path / "beacon.ksy"))
     (tree,) = read.trees.values()
     assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[3])
-    assert read.definitions.troubles == []
+    assert read.definitions.import_findings == []
 
 
 def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
@@ -93,7 +93,7 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(t
     read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
     (tree,) = read.trees.values()
     held = emit.text({key: tree[key] for key in ("structs", "messages")})
-    assert read.definitions.troubles == [] and held.endswith(blocks("yaml")[5])
+    assert read.definitions.import_findings == [] and held.endswith(blocks("yaml")[5])
     (tmp_path / "heater.yaml").write_text(emit.text(tree))
     (tmp_path / "main.c").write_text(blocks("c")[2])
     generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"

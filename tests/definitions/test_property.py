@@ -57,7 +57,7 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
         is_covered = possible and not formula and not unit and not limits and is_signed == any(v < 0 for v in possible)
         assert not is_covered, "names without a unit are an enumeration"
     assert sorted(named) == sorted(possible), "each value that the field can have keeps its name"
-    assert len(choices) == len(possible) or any(one.code == "IMP074" for one in notes.troubles)
+    assert len(choices) == len(possible) or any(one.code == "IMP074" for one in notes.import_findings)
 
 
 NUMBERS = st.floats(-1e9, 1e9).filter(lambda number: abs(number) > 1e-12)

@@ -36,11 +36,11 @@ def imported_set(*paths):
 
 
 def findings(read):
-    return [(one.code, one.severity) for one in read.definitions.troubles]
+    return [(one.code, one.severity) for one in read.definitions.import_findings]
 
 
 def errors(read):
-    return [one for one in read.definitions.troubles if one.severity == "error"]
+    return [one for one in read.definitions.import_findings if one.severity == "error"]
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_xtce_conditions_on_members_of_aggregates_tell_messages_apart(kite):
 
 def test_xtce_a_container_that_only_others_are_based_on_is_a_note_and_no_missing_message(kite):
     assert findings(kite) == [("IMP087", "note")] and kite.imported == kite.definitions.total == 5
-    assert "`TelemetryPacket`" in kite.definitions.troubles[0].message
+    assert "`TelemetryPacket`" in kite.definitions.import_findings[0].message
 
 
 def test_xtce_a_command_container_without_a_base_continues_that_of_the_base_command(kite):
@@ -82,7 +82,7 @@ def test_xtce_a_member_that_an_aggregate_does_not_have_costs_the_message_alone(t
     read = edited(tmp_path, ('"Section/Kind"', '"Section/Sort"'))
     assert read.imported == 4
     assert "`Sails` is not imported: it depends on `Section/Sort`, which it does not have" in "".join(
-        one.message for one in read.definitions.troubles
+        one.message for one in read.definitions.import_findings
     )
 
 
@@ -96,7 +96,7 @@ def test_xtce_a_packet_without_data_costs_itself_and_not_the_file(tmp_path):
     entry = '<EntryList><ArgumentRefEntry argumentRef="Packet_ID"/></EntryList>'
     read = edited(tmp_path, (entry, "<EntryList/>"), (assigned.format(1), ""), (assigned.format(2), ""))
     assert read.imported == 4 and "SwitchOn" in {one["name"] for one in read.trees["kite"]["messages"]}
-    (lost,) = [one.message for one in read.definitions.troubles if one.severity == "error"]
+    (lost,) = [one.message for one in read.definitions.import_findings if one.severity == "error"]
     assert lost.startswith("message `Reboot` is not imported: it has no data")
 
 
@@ -119,7 +119,7 @@ def test_xtce_a_header_of_which_only_parts_are_named_is_one(tmp_path):
 def test_xtce_a_field_within_the_header_is_left_out_with_a_finding(tmp_path):
     entry = '<ParameterRefEntry parameterRef="Shadow"/>'
     read = edited(tmp_path, (entry, entry + placed("Wheel", 25)))
-    (lost,) = [one for one in read.definitions.troubles if one.severity == "error"]
+    (lost,) = [one for one in read.definitions.import_findings if one.severity == "error"]
     assert (lost.code, lost.message) == ("IMP086", "message `Orbit`: `Wheel` lies within the header")
     assert read.imported == 5
 
@@ -268,7 +268,7 @@ def test_help_names_all_kinds(tmp_path):
 
 
 def unused(read):
-    return [(one.message, one.spot.line) for one in read.definitions.troubles if one.code == "IMP085"]
+    return [(one.message, one.spot.line) for one in read.definitions.import_findings if one.code == "IMP085"]
 
 
 def test_xtce_what_is_not_used_is_a_note_with_its_line(tmp_path):
@@ -293,7 +293,7 @@ def test_xtce_what_is_not_used_of_a_set_names_its_file(tmp_path):
         text.replace('<IntegerParameterType name="uint8"', '<IntegerParameterType name="uint8" initialValue="3"')
     )
     (read,) = imported_set(folder).values()
-    (one,) = read.definitions.troubles
+    (one,) = read.definitions.import_findings
     assert (one.code, one.spot.line, Path(one.spot.file).name) == ("IMP085", 5, "types.xml")
     assert one.message == "`initialValue` of `IntegerParameterType` is not used (`uint8`)"
 

@@ -30,7 +30,7 @@ def test_messages_of_one_id_and_direction_confirm_it_and_others_do_not(tmp_path)
     to = Definitions("probe.xml")
     settle(made, to)
     tree = made.tree()
-    assert sharing(tree) == ["Short", "Long"] and to.troubles == []
+    assert sharing(tree) == ["Short", "Long"] and to.import_findings == []
     file = tmp_path / "probe.yaml"
     file.write_text(yaml.safe_dump(tree, sort_keys=False), encoding="utf-8")
     assert load([file]).findings == []
@@ -40,4 +40,4 @@ def test_a_message_whose_partner_cannot_be_represented_does_not_confirm_anything
     made = network(message("Short", 5, 1), message("Broken", 5, 2, reserved=3))
     to = Definitions("probe.xml")
     settle(made, to)
-    assert sharing(made.tree()) == [] and "`Broken`" in to.troubles[0].message
+    assert sharing(made.tree()) == [] and "`Broken`" in to.import_findings[0].message

@@ -51,7 +51,7 @@ def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_fact
     assert (lat["unit"], lat["formula"], lat["summary"]) == ("deg", "raw*1e-7", "Latitude, north is positive")
     assert power["summary"] == "Power. In W times 10 to the power of W_SF."
     assert "unit" not in power and "formula" not in power
-    (said,) = (one for one in charger.definitions.troubles if one.code == "IMP078")
+    (said,) = (one for one in charger.definitions.import_findings if one.code == "IMP078")
     assert said.message == "message `charger`: the factors of 1 points are in other registers: `W`"
     assert said.severity == "note"
 
@@ -84,7 +84,7 @@ def test_groups_that_are_there_several_times_are_structs(charger):
 
 
 def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(charger):
-    (said,) = (one for one in charger.definitions.troubles if one.severity == "error")
+    (said,) = (one for one in charger.definitions.import_findings if one.severity == "error")
     assert said.message == (
         "message `curves` is not imported: `Pt`, which has any number of repetitions, is inside another group"
     )
@@ -134,7 +134,7 @@ def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
     models[0]["group"]["points"][2] |= change
     (tmp_path / "models.json").write_text(json.dumps(models))
     read = run.read(tmp_path / "models.json", sunspec.SunSpec())
-    assert why in [one.message.split(": ", 1)[1] for one in read.definitions.troubles if one.severity == "error"]
+    assert why in [one.message.split(": ", 1)[1] for one in read.definitions.import_findings if one.severity == "error"]
     assert read.imported == 1
 
 
@@ -162,7 +162,7 @@ def test_groups_without_end_are_left_out():
     for _ in range(50):
         deep = {"name": "a", "points": [], "groups": [deep]}
     made = sunspec.SunSpec().read("deep.json", json.dumps({"id": 1, "group": deep}).encode())
-    assert "groups are nested more than 8 deep" in made.troubles[0].message
+    assert "groups are nested more than 8 deep" in made.import_findings[0].message
 
 
 VALUES = (

@@ -63,7 +63,7 @@ def test_calibrations_are_formulas_or_tables(probe):
     assert said["Pressure"]["formula"] == "raw^2*0.0002 - raw*0.5 + 3"
     assert said["Level"]["formula"] == "raw*5/12 - 5/2" and said["Rate"]["unit"] == "deg/s"
     assert said["Curve"]["points"] == [[0.5, "-1e-9"], [10, 5], [90, 6]] and said["Curve"]["unit"] == "V"
-    assert said["Curve"]["outside"] == "refuse" and probe.definitions.troubles == []
+    assert said["Curve"]["outside"] == "refuse" and probe.definitions.import_findings == []
 
 
 @pytest.mark.parametrize(
@@ -85,8 +85,8 @@ def test_what_no_formula_and_no_table_says_is_held_raw_and_said(tmp_path, old, n
     read = run.read(tmp_path / "probe.xml", xtce.Xtce())
     held = field(read, "Safe", "Curve")
     assert held.keys().isdisjoint(("points", "outside", "formula", "unit"))
-    (trouble,) = read.definitions.troubles
-    assert trouble.code == "IMP078" and trouble.message.startswith(f"`Curve` (message `Safe`): {why}")
+    (import_finding,) = read.definitions.import_findings
+    assert import_finding.code == "IMP078" and import_finding.message.startswith(f"`Curve` (message `Safe`): {why}")
 
 
 def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):
@@ -127,7 +127,7 @@ def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_giv
 
 
 def test_what_is_held_raw_is_said_with_the_reason(lander):
-    assert [one.message for one in lander.definitions.troubles if one.code == "IMP078"] == [
+    assert [one.message for one in lander.definitions.import_findings if one.code == "IMP078"] == [
         "`Digits` (message `Clock`): an integer is encoded as `BCD`"
     ]
 
@@ -239,8 +239,11 @@ def test_types_that_cannot_be_held_are_said_and_end(types, says, tmp_path):
 def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(types, bits, says, tmp_path):
     (tmp_path / "a.xml").write_text(system(container("A"), types))
     read = run.read(tmp_path / "a.xml", xtce.Xtce())
-    (trouble,) = read.definitions.troubles
-    assert (trouble.code, trouble.message) == ("IMP078", f"`P` (message `A`): {says}") and "raw bits" in trouble.help
+    (import_finding,) = read.definitions.import_findings
+    assert (import_finding.code, import_finding.message) == (
+        "IMP078",
+        f"`P` (message `A`): {says}",
+    ) and "raw bits" in import_finding.help
     assert message(read, "A")["fields"] == [{"at": 0, "bits": bits, "name": "P", "type": "uint"}]
 
 
@@ -282,7 +285,7 @@ def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path
     (tmp_path / "two.xml").write_text(system(container("A") + container("B")))
     read = run.read(tmp_path / "two.xml", xtce.Xtce())
     assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [("A", 1), ("B", 2)]
-    assert [(one.code, one.message) for one in read.definitions.troubles] == [
+    assert [(one.code, one.message) for one in read.definitions.import_findings] == [
         ("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")
     ]
 
@@ -296,7 +299,7 @@ def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tm
     text = text.replace("</ParameterSet>", '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>')
     (tmp_path / "one.xml").write_text(text)
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
-    assert [(one.code, one.message) for one in read.definitions.troubles] == [
+    assert [(one.code, one.message) for one in read.definitions.import_findings] == [
         ("IMP080", "message `A`: `D` is as long as `P` says")
     ]
     assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
@@ -344,7 +347,7 @@ def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
 def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(dynamic, tmp_path):
     (tmp_path / "one.xml").write_text(counted(dynamic))
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
-    (lost,) = [one for one in read.definitions.troubles if one.severity == "error"]
+    (lost,) = [one for one in read.definitions.import_findings if one.severity == "error"]
     assert lost.code == "IMP081" and lost.message.startswith("message `A`: from `D` on only bytes are imported: ")
     assert "no parameter counts" in lost.message and read.failed
     assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
@@ -366,7 +369,9 @@ def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
     (tmp_path / "lander.xml").write_text(text)
     read = run.read(tmp_path / "lander.xml", xtce.Xtce())
     assert "formula" not in field(read, "Power", "At") and "unit" not in field(read, "Power", "At")
-    assert f"`At` (message `Power`): a coefficient is `{scale}`" in [one.message for one in read.definitions.troubles]
+    assert f"`At` (message `Power`): a coefficient is `{scale}`" in [
+        one.message for one in read.definitions.import_findings
+    ]
 
 
 def test_messages_of_one_name_are_told_apart(lander):

@@ -43,7 +43,9 @@ def files() -> list[Path]:
 def _definition(message: Any, held: dict | None, node: dict, read: model.Definitions) -> Definition:
     head = message.name, message.frame_id if held is None else int(held["id"]), "telemetry", message.length
     if held is None:
-        said = [one.message for one in read.troubles if f"message `{message.name}` is not imported" in one.message]
+        said = [
+            one.message for one in read.import_findings if f"message `{message.name}` is not imported" in one.message
+        ]
         code = re.search(r"ICD\d{3}", said[0])
         return Definition(*head, [], cause=code[0] if code else said[0].split(": ", 1)[1])
     orders = {key: held.get(key, node[key]) for key in ("byte_order", "bit_order")}

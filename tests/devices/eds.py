@@ -39,7 +39,7 @@ def sheets() -> Iterator[Definitions]:
             except Findings:
                 continue  # of what only others use
             (tree,) = read.trees.values()
-            missing = [one.message for one in read.definitions.troubles if one.severity == "error"]
+            missing = [one.message for one in read.definitions.import_findings if one.severity == "error"]
             # a message that ends in bytes for fields which are not imported counts as one that is missing
             tree["messages"] = [one for one in tree["messages"] if not any(_is_cut(one, text) for text in missing)]
             messages = [_definition(judge, judge.packages(path), one, tree) for one in tree["messages"]]

@@ -61,7 +61,7 @@ def node(path: Path) -> Definitions | None:
             return None
     (tree,) = read.trees.values()
     judge = _judge(module)
-    missing = [one.message for one in read.definitions.troubles if one.code == "IMP070"]
+    missing = [one.message for one in read.definitions.import_findings if one.code == "IMP070"]
     orders = {key: tree["node"][key] for key in ("byte_order", "bit_order")}
     structs = [{**one, "fields": [{**orders, **part} for part in one["fields"]]} for one in tree.get("structs", ())]
     for one in tree["messages"]:  # of bytes of any number the judge may make something

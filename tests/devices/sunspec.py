@@ -53,7 +53,7 @@ def imported(trees: list[dict]) -> Definitions:
     held = {one["id"]: one for one in tree["messages"]}
     why = {
         one.message.split("`")[1]: one.message.split(": ", 1)[1]
-        for one in read.definitions.troubles
+        for one in read.definitions.import_findings
         if one.severity == "error"
     }
     return Definitions(tree["node"], [_definition(one, held.get(one["id"]), structs, why) for one in trees], tree)

@@ -30,11 +30,11 @@ def packets() -> Iterator[Definitions]:
         except Findings:
             continue
         (tree,) = read.trees.values()
-        open_ = "".join(one.message for one in read.definitions.troubles if one.code == xtce_layout.OPEN)
+        open_ = "".join(one.message for one in read.definitions.import_findings if one.code == xtce_layout.OPEN)
         for one in tree["messages"]:  # of random sizes the library reads something else than all that is there
             if f"message `{one['name']}`" in open_:
                 one["fields"] = [part for part in one["fields"] if "size" not in part]
-        missing = [one.message for one in read.definitions.troubles if one.severity == "error"]
+        missing = [one.message for one in read.definitions.import_findings if one.severity == "error"]
         # a message that ends in bytes for fields which are not imported counts as one that is missing
         tree["messages"] = [one for one in tree["messages"] if not any(_is_cut(one, text) for text in missing)]
         try:

@@ -29,6 +29,6 @@ def imported(manual: Path, words: str | Path = RULES, jobs: int = 1) -> tuple[ru
     """Return what an import of a document gives. Raises `Findings` also if that is nothing."""
     result, trees = run.run(manual, profile.load(profile.find(str(words))), jobs=jobs)
     if not trees:
-        nothing = next(t for t in result.troubles if t.code == "IMP004")
+        nothing = next(t for t in result.import_findings if t.code == "IMP004")
         raise Findings([Finding(nothing.code, nothing.message, Place(str(manual)), nothing.help)])
     return result, trees

@@ -63,7 +63,7 @@ def test_a_truncated_pdf_is_a_finding_or_gives_findings(tmp_path, share):
     except Findings as error:
         assert error.findings
     else:
-        assert result.troubles or result.document.pages
+        assert result.import_findings or result.document.pages
 
 
 def test_two_thousand_pages_are_read(tmp_path):

@@ -28,7 +28,10 @@ def back(manual: content.Manual, layout: str, path) -> list[str]:
     result, trees = imported(path)
     assert set(trees) == set(manual.trees)
     # A rule for tables that a layout does not have applies to none; random fields may share a name. Nothing else is wrong.
-    assert {trouble.code for trouble in result.troubles if trouble.severity == "error"} <= {"IMP101", "IMP107"}
+    assert {import_finding.code for import_finding in result.import_findings if import_finding.severity == "error"} <= {
+        "IMP101",
+        "IMP107",
+    }
     return [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])]
 
 
@@ -79,7 +82,7 @@ def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_p
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
     one, two = imported(tmp_path / "manual.pdf", jobs=1), imported(tmp_path / "manual.pdf", jobs=2)
     assert one[1] == two[1]
-    assert one[0].troubles == two[0].troubles
+    assert one[0].import_findings == two[0].import_findings
 
 
 def test_pages_in_the_icd_are_those_on_which_the_tables_begin(tmp_path):

@@ -18,7 +18,7 @@ def test_tables_over_page_breaks_come_back_whole(layout, skip, tmp_path):
     manual = content.manual(content.shipped("cubeacp", most=12, skip=skip), TITLES)
     FURTHER[layout](manual, tmp_path / "manual.pdf")
     result, trees = imported(tmp_path / "manual.pdf")
-    assert {t.code for t in result.troubles if t.severity == "error"} <= {"IMP101"}
+    assert {t.code for t in result.import_findings if t.severity == "error"} <= {"IMP101"}
     assert [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])] == []
 
 

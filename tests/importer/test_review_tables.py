@@ -46,7 +46,7 @@ def back(table: Path, rules: Path | None, folder: Path) -> dict:
     from icdgen.icd.fmt import emit
 
     result, trees = run.run(table, profile.load(rules or profile.find("tables")), jobs=1)
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
     folder.mkdir()
     (name,) = trees
     (folder / f"{name}.yaml").write_text(emit.text(trees[name]), encoding="utf-8")

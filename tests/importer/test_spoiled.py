@@ -62,7 +62,7 @@ def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(layout,
 
     whole, tree = imported(pages)
     assert differences(wanted, tree, tables=False) == []
-    before = {(t.code, t.message) for t in whole.troubles}
+    before = {(t.code, t.message) for t in whole.import_findings}
     tried, silent = 0, []
     for number, page in enumerate(pages):
         for index, word in enumerate(page.words):
@@ -72,7 +72,7 @@ def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(layout,
             result, tree = imported([*pages[:number], spoilt(page, index), *pages[number + 1 :]])
             said = [
                 t
-                for t in result.troubles
+                for t in result.import_findings
                 if (t.severity != "note" or t.code == "IMP032") and t.spot.page == page.number
             ]
             if differences(wanted, tree, tables=False) and all((t.code, t.message) in before for t in said):

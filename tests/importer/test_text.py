@@ -100,7 +100,7 @@ def test_flaws_of_the_text_are_mended(tmp_path, what, torn):
 
 
 def found(result, code: str) -> list[str]:
-    return [t.message for t in result.troubles if t.code == code]
+    return [t.message for t in result.import_findings if t.code == code]
 
 
 def test_what_cannot_be_read_is_reported_and_not_invented(tmp_path):

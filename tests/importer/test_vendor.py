@@ -24,7 +24,9 @@ def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
     assert len([one for one in result.survey.found if one.table.label is not None]) == 216
     assert not [one for one in result.survey.found if one.what == UNKNOWN]
     assert sum(one.what == BACKGROUND and one.table.label is not None for one in result.survey.found) == 8
-    assert [trouble.message for trouble in result.troubles if trouble.severity == "error"] == []
+    assert [
+        import_finding.message for import_finding in result.import_findings if import_finding.severity == "error"
+    ] == []
     assert result.interpretation is not None  # by rules, and by nothing else
 
 

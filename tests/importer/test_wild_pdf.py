@@ -27,7 +27,7 @@ def test_a_document_in_the_wild_comes_back(layout, tmp_path):
     (tmp_path / "rules.yaml").write_text(wild.profile, encoding="utf-8")
     result, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
     assert differences({"messages": wild.messages}, next(iter(trees.values())), tables=False) == []
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
 
 
 @pytest.mark.parametrize("caption", ["{name} (0x{id:02X})", "Table {number}: {name} (0x{id:02X})"])

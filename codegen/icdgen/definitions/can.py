@@ -49,7 +49,7 @@ class _Database:
         for bus, messages in _buses(self.database(file, data, to)).items():
             stem = PurePath(file).stem
             to.networks.append(_network(f"{stem} {bus}".strip(), messages, account, to))
-        self.account_for(file, data, account, {finding.spot.line for finding in to.troubles})
+        self.account_for(file, data, account, {finding.spot.line for finding in to.import_findings})
         account.report(to)
         return to
 

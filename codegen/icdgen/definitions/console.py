@@ -18,7 +18,9 @@ _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 def report(reads: Sequence[Read], colour: bool = False) -> str:
     """Return the findings of each definition, followed by its statistics and the renamed identifiers."""
     shown = [
-        read for read in reads if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.troubles
+        read
+        for read in reads
+        if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.import_findings
     ]
     blocks = ["\n".join(_lines(read, colour)) for read in shown]
     if unshown := [printable(read.definitions.file) for read in reads if read not in shown]:
@@ -29,14 +31,14 @@ def report(reads: Sequence[Read], colour: bool = False) -> str:
 
 def _lines(read: Read, colour: bool) -> list[str]:
     definitions = read.definitions
-    return [*shared.findings(definitions.troubles, definitions.file, colour), *map(printable, _summary(read))]
+    return [*shared.findings(definitions.import_findings, definitions.file, colour), *map(printable, _summary(read))]
 
 
 def _summary(read: Read) -> list[str]:
     names, definitions = read.identifiers, read.definitions
     lines = [
         f"{definitions.files}: {read.kind}, {read.imported} of {definitions.total} messages imported",
-        shared.severities(definitions.troubles),
+        shared.severities(definitions.import_findings),
     ]
     if names:
         many = f"{len(names)} names that are not valid identifiers got one"
@@ -61,7 +63,7 @@ def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[
 def _as_item(read: Read) -> dict[str, Any]:
     definitions = read.definitions
     findings = []
-    for finding in definitions.troubles:
+    for finding in definitions.import_findings:
         place = {"file": finding.spot.file} if finding.spot.file else {}
         findings.append({**shared.finding_as_json(finding), **place, "line": finding.spot.line})
     return {"definition": definitions.file, "kind": read.kind, "messages": definitions.total, "held": read.imported,

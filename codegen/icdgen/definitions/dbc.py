@@ -136,7 +136,9 @@ def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
     """Return the result of ``load`` for the repaired text. Reports a last line that may be truncated."""
     database = _load_repaired(text, load, to)
     last = text.count("\n") + 1
-    if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(finding.spot.line != last for finding in to.troubles):
+    if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(
+        finding.spot.line != last for finding in to.import_findings
+    ):
         what = f"the file ends within line {last}: `{one_line(text[text.rfind(chr(10)) + 1 :], 60)}`"
         to.warn(NOT_UNDERSTOOD, what, "check whether the file is complete: the rest may be cut off", "warning", last)
     return database

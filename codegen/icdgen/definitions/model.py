@@ -11,7 +11,7 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import units, wire_ids
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.model import KEYS_OF_IDS
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 
 UNREADABLE = "IMP005"
 NOT_HELD = "IMP070"
@@ -115,7 +115,7 @@ class Definitions:
     file: str
     networks: list[Network] = field(default_factory=list)
     total: int = 0
-    troubles: list[Trouble] = field(default_factory=list)
+    import_findings: list[ImportFinding] = field(default_factory=list)
     more: int = 0
 
     @property
@@ -129,15 +129,17 @@ class Definitions:
 
         ``file`` is the file that contains it, if several files are read together.
         """
-        spot = Spot(line=line, file=file if file != self.file else "")
+        spot = SourcePlace(line=line, file=file if file != self.file else "")
         help = why.help if isinstance(why, NotSupported) else ""
-        self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not imported: {why}", spot, help, "error"))
+        self.import_findings.append(
+            ImportFinding(NOT_HELD, f"message `{name}` is not imported: {why}", spot, help, "error")
+        )
 
     def without_field(self, message: str, field: str, why: object, line: int | None = None) -> None:
         """Report a field that is left out of an imported message (IMP091)."""
         text = f"message `{message}`, `{field}` is left out: {why}"
         help = "the message is imported without it: its bits are reserved"
-        self.troubles.append(Trouble(WITHOUT_FIELD, text, Spot(line=line), help, severity="error"))
+        self.import_findings.append(ImportFinding(WITHOUT_FIELD, text, SourcePlace(line=line), help, severity="error"))
 
     def warn(
         self,
@@ -149,8 +151,8 @@ class Definitions:
         file: str = "",
     ) -> None:
         """Add a finding for the file, or for ``file`` if several files are read together."""
-        spot = Spot(line=line, file=file if file != self.file else "")
-        self.troubles.append(Trouble(code, message, spot, help, severity))
+        spot = SourcePlace(line=line, file=file if file != self.file else "")
+        self.import_findings.append(ImportFinding(code, message, spot, help, severity))
 
     def refuse(self, findings: Findings) -> None:
         """Report that the file cannot be read."""
@@ -166,8 +168,9 @@ class Definitions:
     def take(self, part: Definitions) -> None:
         """Add the findings of a file that is read together with this one."""
         file = part.file if part.file != self.file else ""
-        self.troubles += [
-            finding._replace(spot=finding.spot._replace(file=finding.spot.file or file)) for finding in part.troubles
+        self.import_findings += [
+            finding._replace(spot=finding.spot._replace(file=finding.spot.file or file))
+            for finding in part.import_findings
         ]
 
 

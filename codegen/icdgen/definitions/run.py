@@ -31,7 +31,7 @@ class Read:
     @property
     def failed(self) -> bool:
         """Return whether a part of the definition is missing in the ICDs."""
-        return any(finding.severity == "error" for finding in self.definitions.troubles)
+        return any(finding.severity == "error" for finding in self.definitions.import_findings)
 
 
 def read(path: Path, reader: Reader) -> Read:
@@ -39,7 +39,7 @@ def read(path: Path, reader: Reader) -> Read:
     definitions = kinds.read(path, reader)
     result = _settled_result(definitions, reader)
     if not result.trees:
-        first = next((finding for finding in definitions.troubles if finding.severity == "error"), None)
+        first = next((finding for finding in definitions.import_findings if finding.severity == "error"), None)
         why = ", for none is defined" if first is None else f": {first.message}"
         raise unreadable(str(path), f"no message can be imported{why}", "" if first is None else first.help)
     return result

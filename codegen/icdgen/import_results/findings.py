@@ -9,7 +9,7 @@ from icdgen.diagnostics import Place
 CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
 
 
-class Spot(NamedTuple):
+class SourcePlace(NamedTuple):
     """Place in the source of an import: page of a PDF, line of a text, number of a table."""
 
     page: int | None = None
@@ -25,17 +25,17 @@ class Spot(NamedTuple):
         return ", ".join(filter(None, (self.file, within)))
 
 
-class Trouble(NamedTuple):
+class ImportFinding(NamedTuple):
     """Finding of an import. ``sure`` is how certain the importer is of what it did."""
 
     code: str
     message: str
-    spot: Spot = Spot()
+    spot: SourcePlace = SourcePlace()
     help: str = ""
     severity: str = "warning"  # "error" | "warning" | "note"
     sure: str = LIKELY
     place: Place | None = None  # place of the import rule
-    also: tuple[Spot, ...] = ()  # further places with the same cause
+    also: tuple[SourcePlace, ...] = ()  # further places with the same cause
 
     def is_about_table(self, order: int | None) -> bool:
         """Whether the finding, or another place with the same cause, is in the table with this number (from 0)."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from icdgen.diagnostics import Finding
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.import_results.targets import Target
 from icdgen.reports.excerpt import printable
 from icdgen.wording import count
@@ -15,27 +15,28 @@ from icdgen.wording import count
 _COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
 
 
-def where(file: str, spot: Spot) -> str:
+def where(file: str, spot: SourcePlace) -> str:
     """Return a place such as ``manual.pdf, page 12`` or ``manual.txt:482``."""
     file = spot.file or file
     text = f"{file}:{spot.line}" if spot.line is not None else file
     return f"{text}, page {spot.page}" if spot.page is not None else text
 
 
-def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> list[str]:
+def findings(import_findings: Sequence[ImportFinding], file: str, colour: bool = False) -> list[str]:
     """Return a block for each error and warning, then a line for each note."""
     lines: list[str] = []
-    notes: list[Trouble] = []
-    for trouble in troubles:
-        if trouble.severity == "note":
-            notes.append(trouble)
+    notes: list[ImportFinding] = []
+    for import_finding in import_findings:
+        if import_finding.severity == "note":
+            notes.append(import_finding)
             continue
         lines += [
-            _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {printable(trouble.message)}",
-            f"  --> {printable(where(file, trouble.spot))}",
+            _paint(f"{import_finding.severity}[{import_finding.code}]", import_finding.severity, colour)
+            + f": {printable(import_finding.message)}",
+            f"  --> {printable(where(file, import_finding.spot))}",
         ]
-        lines += [f"  = rule: {trouble.place}"] if trouble.place else []
-        lines += [f"  = help: {printable(trouble.help)}"] if trouble.help else []
+        lines += [f"  = rule: {import_finding.place}"] if import_finding.place else []
+        lines += [f"  = help: {printable(import_finding.help)}"] if import_finding.help else []
         lines.append("")
     if notes:
         note = _paint("note", "note", colour)
@@ -44,9 +45,9 @@ def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> li
     return lines
 
 
-def severities(troubles: Sequence[Trouble]) -> str:
+def severities(import_findings: Sequence[ImportFinding]) -> str:
     """Return the numbers of findings, such as ``findings: 2 errors, 1 note``."""
-    times = Counter(t.severity for t in troubles)
+    times = Counter(t.severity for t in import_findings)
     counts = ", ".join(count(times[s], s) for s in ("error", "warning", "note") if times[s])
     return f"findings: {counts or 'none'}"
 
@@ -74,10 +75,10 @@ def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
     return lines
 
 
-def finding_as_json(trouble: Trouble) -> dict[str, Any]:
+def finding_as_json(import_finding: ImportFinding) -> dict[str, Any]:
     """Return a finding without its place."""
-    item: dict[str, Any] = {key: getattr(trouble, key) for key in ("code", "severity", "message", "help")}
-    return item | ({"rule": str(trouble.place)} if trouble.place else {})
+    item: dict[str, Any] = {key: getattr(import_finding, key) for key in ("code", "severity", "message", "help")}
+    return item | ({"rule": str(import_finding.place)} if import_finding.place else {})
 
 
 def checked_as_json(checked: Sequence[Finding]) -> list[dict[str, Any]]:

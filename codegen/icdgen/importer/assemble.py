@@ -7,7 +7,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from icdgen.import_results.findings import Trouble
+from icdgen.import_results.findings import ImportFinding
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document
 from icdgen.importer.model import Found, NodeParts, ReadEnum, ReadList, ReadMessage, Survey
@@ -16,20 +16,20 @@ from icdgen.importer.words import folded, squeezed, table_name
 
 
 def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict[str, Any]]:
-    """The trees by node name; appends to ``survey.troubles``. ``prose``: keep descriptions as summaries."""
+    """The trees by node name; appends to ``survey.import_findings``. ``prose``: keep descriptions as summaries."""
     nodes = _parts_by_node(document, survey, profile)
     everything = [enum for _, enum in survey.of(ReadEnum)]
     for node in nodes:
         _merge_enums(node, survey)
     for node in nodes:
-        references.listed(node, survey.troubles)
+        references.listed(node, survey.import_findings)
     _includes(nodes)
     for node in nodes:
-        references.enums(node, nodes, everything, survey.troubles)
+        references.enums(node, nodes, everything, survey.import_findings)
     for node in nodes:
-        references.complete(node, icd_trees.head(node, document, profile), survey.troubles)
+        references.complete(node, icd_trees.head(node, document, profile), survey.import_findings)
     return {
-        node_parts.name: icd_trees.tree(node_parts, document, profile, prose, survey.troubles)
+        node_parts.name: icd_trees.tree(node_parts, document, profile, prose, survey.import_findings)
         for node_parts in nodes
         if node_parts.holds
     }
@@ -159,10 +159,16 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
             continue
         taken[duplicate.name] += 1
         name = f"{duplicate.name} {taken[duplicate.name] + 1}"
-        survey.troubles.append(
-            Trouble("IMP052", f"{duplicate.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
-                    "with other members", duplicate.table.spot, f"held as `{name}`: see which one the fields mean", "error")
-        )  # fmt: skip
+        survey.import_findings.append(
+            ImportFinding(
+                "IMP052",
+                f"{duplicate.table.title}: table {table_name(first.table.label)} has an enumeration of this name "
+                "with other members",
+                duplicate.table.spot,
+                f"held as `{name}`: see which one the fields mean",
+                "error",
+            )
+        )
         duplicate.name = name
         by_name[name] = duplicate
     node.enums = sorted(by_name.values(), key=lambda enum: enum.table.number)

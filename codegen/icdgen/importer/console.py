@@ -17,7 +17,7 @@ from icdgen.wording import count
 
 def report(result: Result, colour: bool = False) -> str:
     """Print the findings and the summary of an import."""
-    return "\n".join(shared.findings(result.troubles, result.document.file, colour) + summary(result))
+    return "\n".join(shared.findings(result.import_findings, result.document.file, colour) + summary(result))
 
 
 def summary(result: Result) -> list[str]:
@@ -38,7 +38,7 @@ def summary(result: Result) -> list[str]:
             )
             or "none"
         ),
-        shared.severities(result.troubles),
+        shared.severities(result.import_findings),
     ]
 
 
@@ -61,13 +61,13 @@ def as_json(result: Result, checked: Sequence[Finding]) -> str:
         }
         for entry in result.survey.found
     ]
-    troubles = [
+    import_findings = [
         {**shared.finding_as_json(t), "table": _table(t.spot.table), "page": t.spot.page, "line": t.spot.line}
-        for t in result.troubles
+        for t in result.import_findings
     ]
     written = shared.files_as_json(result.targets)
     return json.dumps(
-        {"manual": result.document.file, "pages": result.document.pages, "tables": entries, "findings": troubles,
+        {"manual": result.document.file, "pages": result.document.pages, "tables": entries, "findings": import_findings,
          "files": written, "check": shared.checked_as_json(checked)}, indent=2, ensure_ascii=False,
     )  # fmt: skip
 
@@ -80,10 +80,10 @@ def _table(number: int | None) -> int | str | None:
 
 def refused_as_json(manual: str, findings: list[Finding]) -> str:
     """JSON report of a manual, a profile or an ICD that cannot be read."""
-    troubles = [
+    import_findings = [
         {"code": f.code, "severity": f.severity, "message": f.message, "help": f.help, "file": f.place.file,
          "table": None, "page": None, "line": f.place.line}
         for f in findings
     ]  # fmt: skip
-    report = {"manual": manual, "pages": None, "tables": [], "findings": troubles, "files": [], "check": []}
+    report = {"manual": manual, "pages": None, "tables": [], "findings": import_findings, "files": [], "check": []}
     return json.dumps(report, indent=2, ensure_ascii=False)

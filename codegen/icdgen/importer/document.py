@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.words import plain, squeezed
 
 
@@ -98,13 +98,13 @@ class SourceTable:
         return next((row.line for row in self.rows if row.line), None)
 
     @property
-    def spot(self) -> Spot:
+    def spot(self) -> SourcePlace:
         """Where the table stands, for a finding."""
-        return Spot(self.page, self.line, self.label, self.number - 1)
+        return SourcePlace(self.page, self.line, self.label, self.number - 1)
 
-    def spot_of(self, row: SourceRow) -> Spot:
+    def spot_of(self, row: SourceRow) -> SourcePlace:
         """Where one of the rows stands."""
-        return Spot(row.page or self.page, row.line, self.label, self.number - 1)
+        return SourcePlace(row.page or self.page, row.line, self.label, self.number - 1)
 
     @property
     def title(self) -> str:
@@ -200,7 +200,7 @@ class Document:
 
     file: str
     blocks: list[Block] = field(default_factory=list)
-    troubles: list[Trouble] = field(default_factory=list)
+    import_findings: list[ImportFinding] = field(default_factory=list)
     pages: int | None = None  # None for text, which has no pages
     title: str = ""
 

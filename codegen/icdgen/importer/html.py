@@ -8,7 +8,7 @@ import io
 from collections import Counter
 from collections.abc import Iterator
 
-from icdgen.import_results.findings import CERTAIN, Trouble
+from icdgen.import_results.findings import CERTAIN, ImportFinding
 from icdgen.importer.document import Box, Cell, SourceTable
 from icdgen.importer.model import Found
 from icdgen.importer.run import Result
@@ -40,10 +40,10 @@ def report(result: Result) -> str:
     from icdgen.importer import console
 
     name = html.escape(result.document.file)
-    about: dict[int | None, list[Trouble]] = {}
-    for trouble in result.troubles:
-        for order in dict.fromkeys(spot.order for spot in (trouble.spot, *trouble.also)):
-            about.setdefault(order, []).append(trouble)
+    about: dict[int | None, list[ImportFinding]] = {}
+    for import_finding in result.import_findings:
+        for order in dict.fromkeys(spot.order for spot in (import_finding.spot, *import_finding.also)):
+            about.setdefault(order, []).append(import_finding)
     doubtful = [entry for entry in result.survey.found if result.sure_of(entry.table) != CERTAIN]
     certain = [entry for entry in result.survey.found if result.sure_of(entry.table) == CERTAIN]
     parts = [
@@ -52,7 +52,7 @@ def report(result: Result) -> str:
         f"<style>{_STYLE}</style></head><body>\n<h1>Import of {name}</h1>",
         *(f"<p>{html.escape(line)}</p>" for line in console.summary(result)),
     ]
-    errors = [t for t in result.troubles if t.severity == "error"]
+    errors = [t for t in result.import_findings if t.severity == "error"]
     if errors:
         title = "To do first: what is missing from the ICD, or may be wrong in it"
         parts += [f"<h2>{title}</h2>", _list(errors, linked=True)]
@@ -69,15 +69,15 @@ def report(result: Result) -> str:
     return "\n".join(parts) + "\n</body></html>\n"
 
 
-def _stake(troubles: list[Trouble]) -> tuple[int, int]:
+def _stake(import_findings: list[ImportFinding]) -> tuple[int, int]:
     """Tables with most errors first, then with most warnings."""
-    counts = Counter(t.severity for t in troubles)
+    counts = Counter(t.severity for t in import_findings)
     return -counts["error"], -counts["warning"]
 
 
-def _list(troubles: list[Trouble], linked: bool = False) -> str:
+def _list(import_findings: list[ImportFinding], linked: bool = False) -> str:
     items = []
-    for t in troubles:
+    for t in import_findings:
         place = f" ({t.spot.place})" if t.spot.place else ""
         help = f" <i>{html.escape(t.help)}.</i>" if t.help else ""
         if linked and t.spot.order is not None:
@@ -88,11 +88,11 @@ def _list(troubles: list[Trouble], linked: bool = False) -> str:
     return "<ul>" + "\n".join(items) + "</ul>"
 
 
-def _table(entry: Found, result: Result, troubles: list[Trouble], pictures: _Pictures) -> Iterator[str]:
+def _table(entry: Found, result: Result, import_findings: list[ImportFinding], pictures: _Pictures) -> Iterator[str]:
     table = entry.table
     title = html.escape(table.title[:1].upper() + table.title[1:])
     yield f'<h2 id="table-{table.spot.order}">{title} <span class="sure">{entry.what}, {result.sure_of(table)}</span></h2>'
-    yield _list(troubles)
+    yield _list(import_findings)
     images = "".join(pictures.of(table))
     read = _as_read(table)
     yield f'<div class="pair"><div>{images}</div><div>{read}</div></div>' if images else f"<div>{read}</div>"

@@ -8,19 +8,21 @@ from typing import Any
 from icdgen.icd import units
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
-from icdgen.import_results.findings import Trouble
+from icdgen.import_results.findings import ImportFinding
 from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import squeezed, table_name
 
 
-def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
+def tree(
+    node: NodeParts, document: Document, profile: Profile, prose: bool, import_findings: list[ImportFinding]
+) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
     messages = [_message(item, prose) for item in node.messages]
     return {"icdgen": 1, "node": head(node, document, profile)} | _given(
         include=node.include,
-        units=_units(node, troubles),
+        units=_units(node, import_findings),
         enums=[_enum(item, prose) for item in node.enums],
         structs=[
             {"name": item.name, "length": item.length, "fields": [_field(field, prose) for field in item.fields]}
@@ -109,7 +111,7 @@ def _field(field: ReadField, prose: bool) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
+def _units(node: NodeParts, import_findings: list[ImportFinding]) -> list[dict[str, Any]]:
     """Units that icdgen does not know by any of their spellings."""
     first: dict[str, tuple[ReadMessage, ReadField]] = {}
     for message in node.messages:
@@ -118,8 +120,8 @@ def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
             if symbol and symbol not in STANDARD and symbol not in SPELLINGS:
                 first.setdefault(symbol, (message, field))
     for symbol, (message, field) in first.items():
-        troubles.append(
-            Trouble("IMP042", f"{message.table.title}, field `{field.name}`: the unit `{symbol}` is not built in",
+        import_findings.append(
+            ImportFinding("IMP042", f"{message.table.title}, field `{field.name}`: the unit `{symbol}` is not built in",
                     field.spot, "declared under `units:`; say there what it measures", "note")
         )  # fmt: skip
     return units.declared(first)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeVar
 
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.descriptions import Described
 from icdgen.importer.document import SourceTable
 from icdgen.importer.profile import NodeWords
@@ -20,7 +20,7 @@ class ReadField:
     bits: int
     type: str
     described: Described
-    spot: Spot
+    spot: SourcePlace
     count: int = 0  # elements of an array
     enum: str = ""
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
@@ -136,7 +136,7 @@ class Listed:
     set_id: int | None
     get_id: int | None
     group: str
-    spot: Spot
+    spot: SourcePlace
     used: bool = False
 
 
@@ -180,7 +180,7 @@ class Survey:
     """All tables of a document in order, and the findings about them."""
 
     found: list[Found] = field(default_factory=list)
-    troubles: list[Trouble] = field(default_factory=list)
+    import_findings: list[ImportFinding] = field(default_factory=list)
 
     def of(self, kind: type[T]) -> list[tuple[Found, T]]:
         """The tables that gave a thing of this class, each with it."""

@@ -6,19 +6,19 @@ import itertools
 from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
-from icdgen.import_results.findings import DOUBTFUL, LIKELY, Trouble
+from icdgen.import_results.findings import DOUBTFUL, LIKELY, ImportFinding
 from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import plain, squeezed, table_name
 
 
-def listed(node: NodeParts, troubles: list[Trouble]) -> None:
+def listed(node: NodeParts, import_findings: list[ImportFinding]) -> None:
     """Holds list tables and detail tables together: groups, names, what disagrees, what one of them lacks."""
     rows = [row for list_table in node.lists for row in list_table.rows]
     for message in node.messages:
         row = _row_of(message, rows)
         if row is None:
             if any(list_table.kind in ("", message.kind) for list_table in node.lists):
-                troubles.append(Trouble("IMP062", f"{message.table.title}: no list table names it", message.table.spot,
+                import_findings.append(ImportFinding("IMP062", f"{message.table.title}: no list table names it", message.table.spot,
                                         "compare with the list tables"))  # fmt: skip
             continue
         row.used = True
@@ -26,12 +26,12 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
         if not message.kind and row.kind:
             message.kind = row.kind
         message.name = message.name or row.name
-        _compare(message, row, troubles)
+        _compare(message, row, import_findings)
     for row in rows:
         if not row.used:
             node.missing.append(row)
-            troubles.append(
-                Trouble("IMP061", f"`{row.name}` is listed, and no table describes it", row.spot,
+            import_findings.append(
+                ImportFinding("IMP061", f"`{row.name}` is listed, and no table describes it", row.spot,
                         "it is listed under `missing:`; check whether its table was read", sure=DOUBTFUL)
             )  # fmt: skip
 
@@ -44,19 +44,25 @@ def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
     return next(iter([*same, *titled]), None)
 
 
-def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None:
+def _compare(message: ReadMessage, row: Listed, import_findings: list[ImportFinding]) -> None:
     for key, what in _SAID.items():
         own, value = getattr(message, key), getattr(row, key)
         if value is None or value == own or (key == "name" and plain(str(value)) == plain(str(own))):
             continue
         if own is None:
             setattr(message, key, value)
-            troubles.append(Trouble("IMP063", f"{message.table.title}: it does not say its {what}; the list says {value}",
-                                    message.table.spot, "taken from the list"))  # fmt: skip
+            import_findings.append(
+                ImportFinding(
+                    "IMP063",
+                    f"{message.table.title}: it does not say its {what}; the list says {value}",
+                    message.table.spot,
+                    "taken from the list",
+                )
+            )
             continue
         message.listed[key] = value
-        troubles.append(
-            Trouble("IMP060", f"{message.table.title}: its {what} is `{own}`, the list (table {table_name(row.spot.table)}) "
+        import_findings.append(
+            ImportFinding("IMP060", f"{message.table.title}: its {what} is `{own}`, the list (table {table_name(row.spot.table)}) "
                     f"says `{value}`", message.table.spot, "the ICD has the value of the detail table; `listed:` has the other")
         )  # fmt: skip
 
@@ -64,14 +70,16 @@ def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None
 _SAID = {"name": "name", "length": "length", "id": "id", "set_id": "set id", "get_id": "get id"}
 
 
-def enums(node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], troubles: list[Trouble]) -> None:
+def enums(
+    node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], import_findings: list[ImportFinding]
+) -> None:
     """Finds the enumeration of each enum field, and brings it within reach of the node."""
     for message in node.messages:
         for field in message.all_fields:
             if (
                 field.type == "enum"
                 and not field.enum
-                and (chosen := _meant(node, everything, message, field, troubles))
+                and (chosen := _meant(node, everything, message, field, import_findings))
             ):
                 field.enum = _within_reach(node, nodes, chosen)
             elif field.type == "enum" and not field.enum:
@@ -79,7 +87,11 @@ def enums(node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], t
 
 
 def _meant(
-    node: NodeParts, everything: list[ReadEnum], message: ReadMessage, field: ReadField, troubles: list[Trouble]
+    node: NodeParts,
+    everything: list[ReadEnum],
+    message: ReadMessage,
+    field: ReadField,
+    import_findings: list[ImportFinding],
 ) -> ReadEnum | None:
     """Return the enumeration to which a field refers; report a reference that cannot be resolved."""
     described = field.described
@@ -92,8 +104,8 @@ def _meant(
     chosen = numbered or titled
     if numbered and described.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
         chosen = titled
-        troubles.append(
-            Trouble("IMP051", f"{where}: it points to table {table_name(described.enum_table)} by number and to "
+        import_findings.append(
+            ImportFinding("IMP051", f"{where}: it points to table {table_name(described.enum_table)} by number and to "
                     f"table {table_name(titled.table.label)} (`{titled.name}`) by title", field.spot,
                     "the title was followed")
         )  # fmt: skip
@@ -104,7 +116,7 @@ def _meant(
             what = f"there is no enumeration `{described.enum_title}`"
         else:
             what = "it does not say in which table its values are"
-        troubles.append(Trouble("IMP050", f"{where}: {what}", field.spot,
+        import_findings.append(ImportFinding("IMP050", f"{where}: {what}", field.spot,
                                 "it is imported as uint; name its enumeration in an erratum", "error"))  # fmt: skip
     return chosen
 
@@ -130,20 +142,22 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
     return enum.name
 
 
-def complete(node: NodeParts, head: dict[str, Any], troubles: list[Trouble]) -> None:
+def complete(node: NodeParts, head: dict[str, Any], import_findings: list[ImportFinding]) -> None:
     """Report what messages lack and bits without a field; drop messages that an ICD cannot represent.
 
     ``head`` is the section `node` of the ICD, which has the size of ids.
     """
     most = (1 << head.get("id_bits", DEFAULT_BITS)) - 1
-    node.messages = [message for message in node.messages if _is_held(message, most, troubles)]
+    node.messages = [message for message in node.messages if _is_held(message, most, import_findings)]
 
 
-def _is_held(message: ReadMessage, most: int, troubles: list[Trouble]) -> bool:
+def _is_held(message: ReadMessage, most: int, import_findings: list[ImportFinding]) -> bool:
     """Whether an ICD can hold the message; ``most`` is the largest id."""
 
     def say(code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY) -> None:
-        troubles.append(Trouble(code, f"{message.table.title}: {what}", message.table.spot, help, severity, sure))
+        import_findings.append(
+            ImportFinding(code, f"{message.table.title}: {what}", message.table.spot, help, severity, sure)
+        )
 
     if large := [i for i in message.ids if i is not None and i > most]:
         what = f"its id {large[0]} (0x{large[0]:X}) is above {most}"

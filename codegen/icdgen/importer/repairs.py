@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import Cell, SourceRow, SourceTable
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import number
 
 
-def mend_tables(tables: list[SourceTable], profile: Profile) -> list[Trouble]:
+def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFinding]:
     """Replace damaged words and put lost group headings back; return a note for each repair."""
     notes = []
     for table in tables:
@@ -34,5 +34,5 @@ def mend_tables(tables: list[SourceTable], profile: Profile) -> list[Trouble]:
     return notes
 
 
-def _mended(message: str, spot: Spot) -> Trouble:
-    return Trouble("IMP028", f"{message}, as the profile says", spot, "compare with the page", "note")
+def _mended(message: str, spot: SourcePlace) -> ImportFinding:
+    return ImportFinding("IMP028", f"{message}, as the profile says", spot, "compare with the page", "note")

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY, Trouble
+from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY, ImportFinding
 from icdgen.import_results.targets import Target
 from icdgen.importer import assemble, profile, reading, repairs, sources
 from icdgen.importer.document import Document, SourceTable
@@ -34,16 +34,16 @@ class Result:
         return self.interpretation.survey
 
     @property
-    def troubles(self) -> list[Trouble]:
+    def import_findings(self) -> list[ImportFinding]:
         """All findings in the order of the document."""
         return sorted(
-            self.survey.troubles, key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.order or 0, t.code)
+            self.survey.import_findings, key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.order or 0, t.code)
         )
 
     @property
     def failed(self) -> bool:
         """Whether something that the manual has is missing from the ICD, or may be wrong in it."""
-        return any(t.severity == "error" for t in self.survey.troubles)
+        return any(t.severity == "error" for t in self.survey.import_findings)
 
     def sureness(self) -> Counter[str]:
         """Count tables by certainty, without tables to which no rule applies."""
@@ -51,7 +51,7 @@ class Result:
 
     def sure_of(self, table: SourceTable) -> str:
         """How sure the reading of a table is."""
-        about = [t for t in self.survey.troubles if t.is_about_table(table.spot.order) and t.code != "IMP035"]
+        about = [t for t in self.survey.import_findings if t.is_about_table(table.spot.order) and t.code != "IMP035"]
         what = next((entry.what for entry in self.survey.found if entry.table is table), "")
         if what == UNKNOWN or any(t.severity == "error" or t.sure == DOUBTFUL for t in about):
             return DOUBTFUL
@@ -78,14 +78,14 @@ def apply_rules(
     # The workbench applies further rules to the same tables, and repairs change their cells.
     tables = copy.deepcopy(tables)
     notes = repairs.mend_tables(tables, words)
-    interpretation = interpret.interpret(tables, words, [*document.troubles, *notes])
+    interpretation = interpret.interpret(tables, words, [*document.import_findings, *notes])
     trees = assemble.assemble(document, interpretation.survey, words, prose)
     if not trees:
-        interpretation.survey.troubles.append(_nothing(words, tables))
+        interpretation.survey.import_findings.append(_nothing(words, tables))
     return Result(document, tables, interpretation), trees
 
 
-def _nothing(words: profile.Profile, tables: list[SourceTable]) -> Trouble:
+def _nothing(words: profile.Profile, tables: list[SourceTable]) -> ImportFinding:
     if not tables:
         what = "the document has no table"
         help = "tables are found by their rules, headings and captions; is this the right document?"
@@ -93,4 +93,4 @@ def _nothing(words: profile.Profile, tables: list[SourceTable]) -> Trouble:
         what = "no rule gives a message"
         help = "write rules in a profile (--profile): --explore proposes them, --workbench serves a page to write them"
         help = "the other findings say why" if words.rules else help
-    return Trouble(NOTHING, what, help=help, severity="error", sure=DOUBTFUL)
+    return ImportFinding(NOTHING, what, help=help, severity="error", sure=DOUBTFUL)

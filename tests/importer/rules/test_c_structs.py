@@ -56,7 +56,7 @@ def test_a_rule_reads_the_structs_of_a_header(tmp_path):
     (tmp_path / "motor.h").write_text(HEADER, encoding="utf-8")
     (tmp_path / "rules.yaml").write_text(RULES, encoding="utf-8")
     result, trees = run.run(tmp_path / "motor.h", profile.load(tmp_path / "rules.yaml"), prose=True)
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
     (message,) = trees["motor"]["messages"]
     assert (message["name"], message["id"], message["length"]) == ("motor_state", 0x21, 35)
     assert fields(trees["motor"]) == FIELDS
@@ -87,7 +87,7 @@ def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
 """
     (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
     result, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
     assert fields(trees["motor"]) == [(0, 8, "robot_id"), (8, 5, "level"), (13, 11, "rest"), (24, 32, "speed")]
 
 
@@ -104,14 +104,14 @@ def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
 def test_what_is_no_frame_is_an_error(tmp_path, text, message):
     (tmp_path / "a.h").write_text(text, encoding="utf-8")
     document, _ = sources.read(tmp_path / "a.h", profile.load())
-    errors = [t for t in document.troubles if t.severity == "error"]
+    errors = [t for t in document.import_findings if t.severity == "error"]
     assert len(errors) == 1 and message in errors[0].message and errors[0].help
 
 
 def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
     (tmp_path / "a.h").write_text("struct a { uint8_t n; uint32_t m; uint16_t k; };", encoding="utf-8")
     document, (table,) = sources.read(tmp_path / "a.h", profile.load())
-    assert "padding stands in front of `m` (3 bytes), at the end (2 bytes)" in document.troubles[0].message
+    assert "padding stands in front of `m` (3 bytes), at the end (2 bytes)" in document.import_findings[0].message
     assert table.before == ["sizeof 12"]
     (tmp_path / "a.h").write_text("\nstruct a {\n  unknown_t x;\n};", encoding="utf-8")
     with pytest.raises(Findings) as caught:

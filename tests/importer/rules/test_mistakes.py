@@ -34,7 +34,7 @@ RULES = r"""rules:
 
 def test_the_profile_without_a_mistake_has_no_finding(tmp_path):
     result, tree = read(tmp_path, TABLE, RULES)
-    assert [t.message for t in result.troubles if t.severity != "note"] == []
+    assert [t.message for t in result.import_findings if t.severity != "note"] == []
     assert [(f["at"], f["name"]) for f in tree["messages"][0]["fields"]] == [
         (0, "Voltage"),
         (16, "Current"),
@@ -120,16 +120,16 @@ def test_a_mistake_in_the_profile_is_found_before_anything_is_read(tmp_path, rig
 def test_a_mistake_that_shows_in_the_result_is_a_finding(tmp_path, right, wrong, code, message):
     assert RULES.count(right) == 1
     result, _ = read(tmp_path, TABLE, RULES.replace(right, wrong))
-    assert any(message in text for text in found(result, code)), [(t.code, t.message) for t in result.troubles]
+    assert any(message in text for text in found(result, code)), [(t.code, t.message) for t in result.import_findings]
     if code not in ("IMP035", "IMP104", "IMP106"):
         assert result.failed
 
 
 def test_every_finding_about_a_rule_names_its_line(tmp_path):
     result, _ = read(tmp_path, TABLE, RULES.replace("Factor: scale", "Scale: scale"))
-    trouble = next(t for t in result.troubles if t.code == "IMP102" and "no column" in t.message)
-    assert (trouble.place.line, trouble.place.column) == (12, 7)
-    assert "its columns are `Num`, `Parameter`" in trouble.help
+    import_finding = next(t for t in result.import_findings if t.code == "IMP102" and "no column" in t.message)
+    assert (import_finding.place.line, import_finding.place.column) == (12, 7)
+    assert "its columns are `Num`, `Parameter`" in import_finding.help
 
 
 CAPTION = "Table 3: Basic state, id 0x02F4, 5 bytes\n\nNum"

@@ -31,6 +31,6 @@ def test_a_table_of_one_row_and_the_text_between_two_tables(tmp_path):
     ])  # fmt: skip
     (tmp_path / "rules.yaml").write_text(PROFILE, encoding="utf-8")
     result, trees = run.run(tmp_path / "battery.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
-    assert [t.message for t in result.troubles if t.severity != "note"] == []
+    assert [t.message for t in result.import_findings if t.severity != "note"] == []
     names = [[field["name"] for field in message["fields"]] for message in trees["battery"]["messages"]]
     assert names == [["Key"], ["Voltage", *(f"Flag {n}" for n in range(8))]]

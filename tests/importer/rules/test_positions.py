@@ -154,7 +154,7 @@ def test_a_dash_is_an_empty_cell_for_roles_and_none_for_join(tmp_path, dash):
     assert (
         "formula" not in tree["messages"][0]["fields"][0] and tree["messages"][0]["fields"][1]["formula"] == "raw*0.5"
     )
-    assert [t.message for t in result.troubles if t.code in ("IMP103", "IMP104")] == []
+    assert [t.message for t in result.import_findings if t.code in ("IMP103", "IMP104")] == []
 
 
 def test_rows_that_a_pattern_does_not_take_are_one_finding(tmp_path):

@@ -28,7 +28,7 @@ def fields(tree: dict, message: int = 0) -> list[tuple]:
 
 
 def found(result, code: str) -> list[str]:
-    return [t.message for t in result.troubles if t.code == code]
+    return [t.message for t in result.import_findings if t.code == code]
 
 
 def test_rows_are_skipped_kept_filled_and_the_table_stopped(tmp_path):
@@ -261,9 +261,9 @@ def test_head_rows_under_a_common_heading_are_one_heading(tmp_path):
 
 def test_the_page_and_the_line_of_a_row_stand_in_its_finding(tmp_path):
     result, _ = read(tmp_path, HEADING + "Byte\tName\tType\n0\tMode\tu8\n1\tLoad\tword\n")
-    trouble = next(t for t in result.troubles if t.code == "IMP026")
-    assert (trouble.spot.line, trouble.severity) == (5, "error")
-    assert "types: {word: {type: uint, bits: 16}}" in trouble.help
+    import_finding = next(t for t in result.import_findings if t.code == "IMP026")
+    assert (import_finding.spot.line, import_finding.severity) == (5, "error")
+    assert "types: {word: {type: uint, bits: 16}}" in import_finding.help
     _, tree = read(
         tmp_path, HEADING + "Byte\tName\tType\n1\tLoad\tword\n", "types: {word: {type: uint, bits: 16}}\n" + RULE
     )
@@ -288,7 +288,7 @@ def test_a_rule_without_columns_reads_a_message_without_parameters(tmp_path):
     ignore: [~.]
 """
     result, tree = read(tmp_path, HEADING + "Length\t0\n", rules)
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
     assert (tree["messages"][0]["name"], tree["messages"][0]["length"], "fields" in tree["messages"][0]) == (
         "Motor state",
         0,

@@ -25,7 +25,7 @@ def shape(request, tmp_path):
 def test_a_short_profile_reads_the_document(shape, tmp_path):
     assert len([line for line in shape.profile.splitlines() if line.strip()]) <= 15
     result, tree = read(tmp_path / "manual.pdf", tmp_path / "rules.yaml")
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
     got = {}
     for message in tree["messages"]:
         fields = [
@@ -52,7 +52,7 @@ def test_table_files_give_what_the_document_gives(shape, tmp_path):
     table_files.write(result.tables, tmp_path / "tables", result.document)
     again, same = read(tmp_path / "tables", tmp_path / "rules.yaml")
     assert same == tree
-    assert again.troubles == result.troubles
+    assert again.import_findings == result.import_findings
     assert again.tables == result.tables
     texts = {path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()}
     table_files.write(again.tables, tmp_path / "tables", again.document)
@@ -63,7 +63,7 @@ def test_without_rules_nothing_becomes_a_message(shape, tmp_path):
     (tmp_path / "rules.yaml").write_text("profile: 1\nrules: []\n", encoding="utf-8")
     result, tree = read(tmp_path / "manual.pdf", tmp_path / "rules.yaml")
     assert tree == {} and result.failed
-    assert {t.code for t in result.troubles if t.severity != "note"} == {"IMP004", "IMP100"}
+    assert {t.code for t in result.import_findings if t.severity != "note"} == {"IMP004", "IMP100"}
 
 
 def test_the_kinds_of_tables_are_a_profile_to_be_completed(shape, tmp_path):

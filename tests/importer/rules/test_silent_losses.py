@@ -68,7 +68,7 @@ def test_a_field_of_a_repeated_group_has_the_enumeration_that_its_description_na
     rows = "Byte\tName\tType\tText\n0\tState\tenum8\tsee Table 2\n\nTable 2: Modes\n\nValue\tMember\n0\toff\n1\ton\n"
     words = NODE + 'phrases: {enumeration: ["see {table}"]}\ntypes: {enum8: {type: enum, bits: 8}}\n'
     result, tree = read(tmp_path, HEADING + rows, rules, words)
-    assert tree["structs"][0]["fields"][0].get("enum") == "Modes", [t.message for t in result.troubles]
+    assert tree["structs"][0]["fields"][0].get("enum") == "Modes", [t.message for t in result.import_findings]
 
 
 @pytest.mark.parametrize(
@@ -196,8 +196,8 @@ def test_a_single_bit_in_a_range_of_bytes_is_one_bit(tmp_path):
 def test_a_bit_that_its_bytes_do_not_have_is_an_error(tmp_path, row, bit_order, help):
     rows = f"Byte\tBits\tName\tType\n{row}\tMode\tuint\n"
     result, _ = read(tmp_path, HEADING + rows, RANGES, BIG.replace("lsb0", bit_order))
-    (trouble,) = [t for t in result.troubles if t.code == "IMP105"]
-    assert "the place of bit" in trouble.message and help in trouble.help and result.failed
+    (import_finding,) = [t for t in result.import_findings if t.code == "IMP105"]
+    assert "the place of bit" in import_finding.message and help in import_finding.help and result.failed
 
 
 def test_bits_in_several_bytes_need_an_order_that_a_value_can_have(tmp_path):

@@ -101,7 +101,7 @@ def test_one_rule_reads_a_table_of_every_source(tmp_path, name):
     WRITERS[name](tmp_path / name)
     (tmp_path / "rules.yaml").write_text(RULES, encoding="utf-8")
     result, trees = run.run(tmp_path / name, profile.load(tmp_path / "rules.yaml"), jobs=1)
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
     state, speed = trees["motor"]["messages"]
     assert (state["name"], state["id"], state["kind"], state["length"]) == ("Motor state", 0x21, "telemetry", 3)
     assert [(f["at"], f["bits"], f["name"], f["type"]) for f in state["fields"]] == [
@@ -129,7 +129,7 @@ def test_a_range_that_a_spreadsheet_made_a_date_is_an_error(tmp_path):
     book.active.append(["=A1+1", "Load"])
     book.save(tmp_path / "motor.xlsx")
     document, _ = sources.read(tmp_path / "motor.xlsx", profile.load())
-    date, formula = [t for t in document.troubles if t.severity == "error"]
+    date, formula = [t for t in document.import_findings if t.severity == "error"]
     assert "sheet `Sheet`, cell A2: the spreadsheet program made the date 2026-01-02" in date.message
     assert "range such as 1-2" in date.help
     assert "cell A3: the formula `=A1+1` has no stored value" in formula.message
@@ -151,7 +151,7 @@ def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(t
         ["0", "none"],
         ["1.5", "hot"],
     ]
-    assert [t.message for t in document.troubles] == ["the sheet `Old` is hidden; it was left out"]
+    assert [t.message for t in document.import_findings] == ["the sheet `Old` is hidden; it was left out"]
 
 
 def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):

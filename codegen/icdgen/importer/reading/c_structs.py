@@ -15,7 +15,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
 from icdgen.importer.reading.c_text import CText
 from icdgen.importer.reading.utf8 import utf8_text
@@ -73,7 +73,7 @@ def read_header(path: Path) -> Document:
     text = utf8_text(path, "save it as UTF-8")
     document = Document(str(path))
     try:
-        document.blocks, document.troubles = read_structs(text)
+        document.blocks, document.import_findings = read_structs(text)
     except Unreadable as error:
         line = re.match(r"line ([0-9]+): ", error.message)
         place = Place(str(path), int(line[1])) if line else Place(str(path))
@@ -93,22 +93,24 @@ def in_document(document: Document) -> None:
             text = "\n".join(line.text for line in waiting)
             if "}" in block.text and text.count("{") == text.count("}") and block.text.rstrip().endswith(";"):
                 try:
-                    tables, troubles = read_structs(text)
+                    tables, import_findings = read_structs(text)
                 except (Unreadable, UserError):
-                    tables, troubles = [], []
+                    tables, import_findings = [], []
                 for table in tables:
                     if isinstance(table, SourceTable):
                         for row in table.rows:
                             row.page, row.line = waiting[0].page, None
                         blocks.append(table)
-                document.troubles += [t._replace(spot=Spot(waiting[0].page, waiting[0].line)) for t in troubles]
+                document.import_findings += [
+                    t._replace(spot=SourcePlace(waiting[0].page, waiting[0].line)) for t in import_findings
+                ]
                 waiting = []
         elif isinstance(block, (SourceTable, Heading)):
             waiting = []
     document.blocks = blocks
 
 
-def read_structs(text: str) -> tuple[list[Block], list[Trouble]]:
+def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
     """Return the structs and enumerations of a text in C as blocks. Raises `Unreadable`, and `UserError` without pycparser."""
     try:
         from pycparser import c_ast, c_parser
@@ -133,7 +135,7 @@ def read_structs(text: str) -> tuple[list[Block], list[Trouble]]:
         ):
             continue
         reader.declaration(declaration)
-    return reader.blocks, reader.troubles
+    return reader.blocks, reader.import_findings
 
 
 def _wrong_line(source: CText, c_parser: Any) -> int:
@@ -152,7 +154,7 @@ class _Reader:
     def __init__(self, source: CText, ast: Any) -> None:
         self.source, self.ast = source, ast
         self.blocks: list[Block] = []
-        self.troubles: list[Trouble] = []
+        self.import_findings: list[ImportFinding] = []
         self.typedefs: dict[str, Any] = {}
         self.structs: dict[str, Any] = {}
         self.enums: dict[str, list[tuple[int, str]]] = {}
@@ -195,15 +197,21 @@ class _Reader:
         try:
             layout = self.layout(node)
         except Unreadable as error:
-            self.troubles.append(
-                Trouble("IMP037", f"struct `{name}`: {error.message}", Spot(line=line), error.help, "error")
+            self.import_findings.append(
+                ImportFinding(
+                    "IMP037", f"struct `{name}`: {error.message}", SourcePlace(line=line), error.help, "error"
+                )
             )
             return
         if layout.padding:
-            self.troubles.append(
-                Trouble("IMP038", f"struct `{name}` is not packed: padding stands {', '.join(layout.padding)}", Spot(line=line),
-                        "if it is sent as it lies in memory, this depends on the compiler; else mark it as packed")
-            )  # fmt: skip
+            self.import_findings.append(
+                ImportFinding(
+                    "IMP038",
+                    f"struct `{name}` is not packed: padding stands {', '.join(layout.padding)}",
+                    SourcePlace(line=line),
+                    "if it is sent as it lies in memory, this depends on the compiler; else mark it as packed",
+                )
+            )
         rows = [list(COLUMNS)]
         for member in layout.members:
             count, bit = str(member.count) if member.count else "", "" if member.bit is None else str(member.bit)

@@ -15,7 +15,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import Document
 from icdgen.importer.pages import flow, tables
 from icdgen.importer.pages.extract import Page, extract
@@ -162,27 +162,29 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         help = "run it through a text recognition first, for instance `ocrmypdf`, and check its figures twice"
         raise _refused(name, f"the PDF holds only {what}: there is no text layer", help)
     for page in pages:
-        document.troubles += [trouble._replace(spot=Spot(page.number)) for trouble in _of_page(page)]
+        document.import_findings += [
+            import_finding._replace(spot=SourcePlace(page.number)) for import_finding in _of_page(page)
+        ]
 
 
-def _of_page(page: Page) -> Iterator[Trouble]:
+def _of_page(page: Page) -> Iterator[ImportFinding]:
     """Report the parts of a page that cannot be read."""
     if page.failed:
         help = "its content is missing from the ICD"
-        yield Trouble("IMP010", f"the page cannot be read ({page.failed})", help=help, severity="error")
+        yield ImportFinding("IMP010", f"the page cannot be read ({page.failed})", help=help, severity="error")
     elif not page.words and page.images:
         help = "look whether it shows a table: it is missing from the ICD"
-        yield Trouble("IMP011", "the page is a picture without text", help=help)
+        yield ImportFinding("IMP011", "the page is a picture without text", help=help)
     if page.unseen:
         what = f"{page.unseen} words stand outside the visible page; they were left out"
-        yield Trouble("IMP013", what, help="look whether the page is cut off", severity="note")
+        yield ImportFinding("IMP013", what, help="look whether the page is cut off", severity="note")
     if page.turned:
         what = f"{page.turned} words are rotated; they were left out"
         help = "check whether a table or its labels are rotated"
-        yield Trouble("IMP014", what, help=help, severity="note")
+        yield ImportFinding("IMP014", what, help=help, severity="note")
     if page.unmapped:
         what = f"{page.unmapped} characters of the page cannot be read: the PDF does not map their glyphs to characters"
-        yield Trouble("IMP012", what, help="compare what was read with the page")
+        yield ImportFinding("IMP012", what, help="compare what was read with the page")
 
 
 def _captions(page: Page, profile: Profile) -> int:

@@ -15,7 +15,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
 from icdgen.importer.reading.utf8 import utf8_text
 
@@ -62,8 +62,8 @@ def read_xlsx(path: Path) -> Document:
     document = Document(str(path), title=str(book.properties.title or ""))
     for sheet in book.worksheets:
         if sheet.sheet_state != "visible":
-            document.troubles.append(
-                Trouble(
+            document.import_findings.append(
+                ImportFinding(
                     "IMP013",
                     f"the sheet `{sheet.title}` is hidden; it was left out",
                     help="show it if it has tables",
@@ -130,7 +130,7 @@ class _Sheet:
         return str(value).strip().replace("\r\n", "\n")
 
     def report(self, row: int, message: str, help: str) -> None:
-        self.document.troubles.append(Trouble("IMP023", message, Spot(line=row), help, "error"))
+        self.document.import_findings.append(ImportFinding("IMP023", message, SourcePlace(line=row), help, "error"))
 
 
 def _blocks(rows: Cells, sheet: str) -> list[Block]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.import_results.findings import Trouble
+from icdgen.import_results.findings import ImportFinding
 from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.cells import find_columns
 from icdgen.importer.rules.interpret import Interpretation
@@ -32,8 +32,8 @@ def explain(interpretation: Interpretation, number: int) -> str:
             lines += _columns(rule, table) + [line for part in parts for line in _part(part)]
     if not choice.rules:
         lines.append("  no rule applies: the table is not imported")
-    about = [t for t in interpretation.survey.troubles if t.is_about_table(number - 1)]
-    lines += [_finding(trouble) for trouble in about]
+    about = [t for t in interpretation.survey.import_findings if t.is_about_table(number - 1)]
+    lines += [_finding(import_finding) for import_finding in about]
     return "\n".join(line.rstrip() for line in lines)
 
 
@@ -63,10 +63,10 @@ def _part(part: Part) -> list[str]:
     return lines
 
 
-def _finding(trouble: Trouble) -> str:
+def _finding(import_finding: ImportFinding) -> str:
     row = (
-        f" (line {trouble.spot.line})"
-        if trouble.spot.line
-        else f" (page {trouble.spot.page})" if trouble.spot.page else ""
+        f" (line {import_finding.spot.line})"
+        if import_finding.spot.line
+        else f" (page {import_finding.spot.page})" if import_finding.spot.page else ""
     )
-    return f"  {trouble.severity}[{trouble.code}]{row}: {trouble.message}"
+    return f"  {import_finding.severity}[{import_finding.code}]{row}: {import_finding.message}"

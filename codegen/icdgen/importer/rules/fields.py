@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import Any
 
-from icdgen.import_results.findings import Spot
+from icdgen.import_results.findings import SourcePlace
 from icdgen.importer import descriptions, formulas
 from icdgen.importer.descriptions import Described
 from icdgen.importer.document import SourceTable
@@ -38,7 +38,7 @@ class Draft:
     bits: int
     kind: str
     described: Described
-    spot: Spot
+    spot: SourcePlace
     roles: Roles
     count: int = 0
     members: list[tuple[int, str]] = field(default_factory=list)
@@ -169,13 +169,13 @@ class FieldReader:
         self.next = draft.end
         return draft
 
-    def error(self, code: str, message: str, spot: Spot, help: str) -> None:
+    def error(self, code: str, message: str, spot: SourcePlace, help: str) -> None:
         self.notes.error(code, message, spot, help, self.rule.place, self.subject)
 
-    def warn(self, code: str, message: str, spot: Spot, help: str) -> None:
+    def warn(self, code: str, message: str, spot: SourcePlace, help: str) -> None:
         self.notes.warn(code, message, spot, help, self.rule.place, self.subject)
 
-    def numbers(self, roles: Roles, where: str, spot: Spot) -> dict[str, int] | None:
+    def numbers(self, roles: Roles, where: str, spot: SourcePlace) -> dict[str, int] | None:
         """Return the roles that are whole numbers; None, with a finding, if a text is not a number."""
         numbers = {}
         for role in ("byte", "last_byte", "bit", "last_bit", "end_bit", "bytes", "bits", "count", "stride", "up_to"):
@@ -199,7 +199,7 @@ class FieldReader:
             numbers[role] = value
         return numbers
 
-    def type_of(self, roles: Roles, where: str, spot: Spot) -> TypeName | None:
+    def type_of(self, roles: Roles, where: str, spot: SourcePlace) -> TypeName | None:
         """The type that the rule, the row or the profile's `types` state."""
         name = roles.get("type")
         if not name and roles.members:
@@ -224,7 +224,7 @@ class FieldReader:
         return type_name
 
     def size(
-        self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: Spot
+        self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: SourcePlace
     ) -> tuple[int, int] | None:
         """Bits of an element, 0 if only a range can tell, and number of elements, 0 for no array.
 
@@ -258,7 +258,7 @@ class FieldReader:
             return None
         return element or printed.bits, count
 
-    def described(self, roles: Roles, kind: str, where: str, spot: Spot) -> Described:
+    def described(self, roles: Roles, kind: str, where: str, spot: SourcePlace) -> Described:
         """Unit, formula and description."""
         text = roles.get("text")
         described = Described(rest=text)
@@ -313,7 +313,7 @@ class FieldReader:
         )
         return described
 
-    def facts(self, draft: Draft, numbers: dict[str, int], where: str, spot: Spot) -> None:
+    def facts(self, draft: Draft, numbers: dict[str, int], where: str, spot: SourcePlace) -> None:
         """Limits, members, arrays of open length, parts."""
         roles = draft.roles
         for role in ("min", "max"):
@@ -353,7 +353,7 @@ class FieldReader:
             first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
             draft.part = first, int(roles.get("last_part") or first)
 
-    def members(self, roles: Roles, where: str, spot: Spot) -> list[tuple[int, str]]:
+    def members(self, roles: Roles, where: str, spot: SourcePlace) -> list[tuple[int, str]]:
         printed = roles.members + [(m["value"], m["name"]) for m in _MEMBER.finditer(roles.get("members"))]
         left = _MEMBER.sub("", roles.get("members")).strip(" ;,\n")
         if left:
@@ -377,7 +377,7 @@ class FieldReader:
                 members.append((value, name))
         return members
 
-    def check_range(self, draft: Draft, where: str, spot: Spot) -> None:
+    def check_range(self, draft: Draft, where: str, spot: SourcePlace) -> None:
         """Report a range that the raw values of an unsigned number do not reach: an offset taken for a bias shows there."""
         # Limits are printed as decimals, and a double holds integers of at most 53 bits exactly.
         if draft.kind != "uint" or draft.bits > 53 or not {"min", "max"} & set(draft.facts):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from icdgen.import_results.findings import Spot, Trouble
+from icdgen.import_results.findings import ImportFinding, SourcePlace
 from icdgen.importer.document import SourceTable
 from icdgen.importer.model import BACKGROUND, UNKNOWN, Found, ReadMessage, Survey
 from icdgen.importer.profile import Profile
@@ -36,7 +36,7 @@ class Interpretation:
     rules: list[Rule]
 
 
-def interpret(tables: list[SourceTable], profile: Profile, extra: list[Trouble] | None = None) -> Interpretation:
+def interpret(tables: list[SourceTable], profile: Profile, extra: list[ImportFinding] | None = None) -> Interpretation:
     """Apply the rules of ``profile`` to the tables; ``extra`` are findings of the reader of the source."""
     return _Interpreter(tables, profile).run(extra or [])
 
@@ -52,7 +52,7 @@ class _Interpreter:
         self.document_words = frozenset(words)
         self.order = Order(*profile.orders)
 
-    def run(self, extra: list[Trouble]) -> Interpretation:
+    def run(self, extra: list[ImportFinding]) -> Interpretation:
         count_runs(self.tables)
         choices = choose(self.profile.rules, self.tables)
         for choice in choices:
@@ -64,7 +64,7 @@ class _Interpreter:
         attach.check_index([part for part in self.parts if part.rule.what == "index"], results, self.notes)
         self.check_orders(results)
         self.notes.finish(self.profile.rules)
-        survey = Survey(troubles=[*extra, *self.notes.troubles])
+        survey = Survey(import_findings=[*extra, *self.notes.import_findings])
         things: dict[int, list[Found]] = {}
         for result in [*self.found, *results]:
             things.setdefault(result.table.number, []).append(result)
@@ -128,7 +128,7 @@ class _Interpreter:
                     part.rule, part.where, part.table.spot, role, f"`{earlier}` and `{own[role]}` in its rows"
                 )
 
-    def disagree(self, rule: Rule, where: str, spot: Spot, role: str, values: str) -> None:
+    def disagree(self, rule: Rule, where: str, spot: SourcePlace, role: str, values: str) -> None:
         """Report two values of a role of one message."""
         self.notes.error(
             "IMP110",
@@ -259,7 +259,7 @@ class _Interpreter:
             self.notes.error(
                 "IMP101",
                 f"rule `{rule.name}` applies to no table{why}",
-                Spot(),
+                SourcePlace(),
                 "`--explain TABLE` shows which condition fails, `--explore` lists the kinds of tables",
                 rule.place,
             )
@@ -270,7 +270,7 @@ class _Interpreter:
                     self.notes.error(
                         "IMP101",
                         f"`set` of rule `{rule.name}` matches no row: {where}",
-                        Spot(),
+                        SourcePlace(),
                         "correct `where:`, or remove the entry",
                         correction.place,
                     )
@@ -307,8 +307,8 @@ class _Interpreter:
                 continue
             numbers = ", ".join(str(table.number) for table in tables[:8]) + (" ..." if len(tables) > 8 else "")
             titles = " | ".join(tables[0].titles)[:80]
-            survey.troubles.append(
-                Trouble(
+            survey.import_findings.append(
+                ImportFinding(
                     "IMP100",
                     f"no rule applies to {'table' if len(tables) == 1 else 'tables'} {numbers} with the headings "
                     f"`{titles}`",
@@ -321,11 +321,11 @@ class _Interpreter:
             if rule.what == "ignore" and tables:
                 shown = ", ".join(dict.fromkeys(f"`{' | '.join(table.titles)[:40]}`" for table in tables[:30]))
                 count = f"{len(tables)} table{'s' if len(tables) != 1 else ''}"
-                survey.troubles.append(
-                    Trouble(
+                survey.import_findings.append(
+                    ImportFinding(
                         "IMP108",
                         f"rule `{rule.name}` ignores {count}: {shown[:300]}",
-                        Spot(),
+                        SourcePlace(),
                         "make sure that none describes a message",
                         "note",
                         place=rule.place,
@@ -354,8 +354,8 @@ class _Interpreter:
                     )
                     if not ids - {None} or ids & ids_with_table:
                         continue
-                    survey.troubles.append(
-                        Trouble(
+                    survey.import_findings.append(
+                        ImportFinding(
                             "IMP039",
                             f"`{text[:80]}` gives the id of a message, and no table below it was read as one",
                             table.spot,

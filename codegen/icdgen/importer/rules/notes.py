@@ -6,7 +6,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 
 from icdgen.diagnostics import Place
-from icdgen.import_results.findings import DOUBTFUL, LIKELY, Spot, Trouble
+from icdgen.import_results.findings import DOUBTFUL, LIKELY, ImportFinding, SourcePlace
 from icdgen.importer.rules.rule import Rule
 
 MOST_EXAMPLES = 4
@@ -16,16 +16,16 @@ MOST_EXAMPLES = 4
 class Group:
     """Findings with the same cause: the first one, and the places and examples of the others."""
 
-    first: Trouble
-    spots: list[Spot] = field(default_factory=list)
+    first: ImportFinding
+    spots: list[SourcePlace] = field(default_factory=list)
     examples: list[str] = field(default_factory=list)
 
-    def add(self, spot: Spot, example: str) -> None:
+    def add(self, spot: SourcePlace, example: str) -> None:
         """Count one more row."""
         self.spots.append(spot)
         self.examples.append(example)
 
-    def as_trouble(self) -> Trouble:
+    def as_trouble(self) -> ImportFinding:
         """One finding at the place of the first row; `also` has the places of the others."""
         more = len(self.spots) - 1
         if not more:
@@ -43,37 +43,37 @@ class Group:
 class Notes:
     """Findings so far. ``dropped`` are the texts of rows that a rule drops on purpose, by rule and operation."""
 
-    single: list[Trouble] = field(default_factory=list)
+    single: list[ImportFinding] = field(default_factory=list)
     groups: dict[tuple[object, ...], Group] = field(default_factory=dict)
     dropped: dict[tuple[str, str], list[str]] = field(default_factory=lambda: defaultdict(list))
     used_corrections: set[Place] = field(default_factory=set)
 
     def error(
-        self, code: str, message: str, spot: Spot, help: str, place: Place | None = None, example: str = ""
+        self, code: str, message: str, spot: SourcePlace, help: str, place: Place | None = None, example: str = ""
     ) -> None:
         """Report that something is missing from the result, or wrong in it.
 
         Findings with an ``example`` (a text or the name of a field) that agree in code, rule and help have the same cause and
         become one finding, which lists the examples.
         """
-        self._add(Trouble(code, message, spot, help, "error", DOUBTFUL, place), example)
+        self._add(ImportFinding(code, message, spot, help, "error", DOUBTFUL, place), example)
 
     def warn(
-        self, code: str, message: str, spot: Spot, help: str, place: Place | None = None, example: str = ""
+        self, code: str, message: str, spot: SourcePlace, help: str, place: Place | None = None, example: str = ""
     ) -> None:
         """Report that something must be compared with the source. ``example`` as for `error`."""
-        self._add(Trouble(code, message, spot, help, "warning", LIKELY, place), example)
+        self._add(ImportFinding(code, message, spot, help, "warning", LIKELY, place), example)
 
-    def _add(self, trouble: Trouble, example: str) -> None:
+    def _add(self, import_finding: ImportFinding, example: str) -> None:
         if not example:
-            self.single.append(trouble)
+            self.single.append(import_finding)
             return
         # The help names the change to make: findings with the same help and rule are mended together.
-        key = (trouble.code, trouble.severity, trouble.help, trouble.place)
-        self.groups.setdefault(key, Group(trouble)).add(trouble.spot, example)
+        key = (import_finding.code, import_finding.severity, import_finding.help, import_finding.place)
+        self.groups.setdefault(key, Group(import_finding)).add(import_finding.spot, example)
 
     @property
-    def troubles(self) -> list[Trouble]:
+    def import_findings(self) -> list[ImportFinding]:
         """All findings, with one finding per cause."""
         return [*self.single, *(group.as_trouble() for group in self.groups.values())]
 
@@ -89,10 +89,10 @@ class Notes:
             shown = ", ".join(f"`{text[:50]}`" for text in kinds[:3]) + (" ..." if len(kinds) > 3 else "")
             rows = f"{len(texts)} row{'s' if len(texts) != 1 else ''}"
             self.single.append(
-                Trouble(
+                ImportFinding(
                     "IMP108",
                     f"rule `{name}`: `{operation}` drops {rows}: {shown}",
-                    Spot(),
+                    SourcePlace(),
                     "make sure that none is a field",
                     "note",
                     place=places[name],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from icdgen.import_results.findings import Spot
+from icdgen.import_results.findings import SourcePlace
 from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.fields import Draft
 from icdgen.importer.rules.language import KINDS, whole_number
@@ -40,7 +40,7 @@ class Part:
         return whole_number(text, self.rule.base) if text else None
 
 
-def known_kind(text: str, where: str, spot: Spot, rule: Rule, notes: Notes) -> str:
+def known_kind(text: str, where: str, spot: SourcePlace, rule: Rule, notes: Notes) -> str:
     """Return the kind of a message; empty, with a finding, if the word of the document is not translated."""
     if text in KINDS:
         return text

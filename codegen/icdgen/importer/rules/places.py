@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from icdgen.import_results.findings import Spot
+from icdgen.import_results.findings import SourcePlace
 from icdgen.importer.rules import positions
 from icdgen.importer.rules.bit_order import Bit, Order, bits_of_register
 from icdgen.importer.rules.rule import Rule
@@ -13,7 +13,7 @@ from icdgen.importer.rules.rule import Rule
 class PlaceReader:
     """Places of the fields of one table; ``order`` is the node's, ``error`` reports a place that is not clear."""
 
-    def __init__(self, rule: Rule, order: Order, error: Callable[[str, str, Spot, str], None]) -> None:
+    def __init__(self, rule: Rule, order: Order, error: Callable[[str, str, SourcePlace, str], None]) -> None:
         self.rule, self.order, self.error = rule, order, error
 
     @property
@@ -52,7 +52,7 @@ class PlaceReader:
         is_in_one_byte = numbers.get("last_byte", numbers["byte"]) == numbers["byte"]
         return is_in_one_byte or self.order in positions.MONOTONIC or self.rule.what != "message"
 
-    def is_range_clear(self, numbers: dict[str, int], size: int, where: str, spot: Spot) -> bool:
+    def is_range_clear(self, numbers: dict[str, int], size: int, where: str, spot: SourcePlace) -> bool:
         """Check a range from a bit of one byte to a bit of another; report one that can be read in two ways."""
         lacking = [role for role in ("byte", "bit") if role not in numbers]
         outside = [role for role in ("bit", "end_bit") if numbers.get(role, 0) > 7]
@@ -85,7 +85,9 @@ class PlaceReader:
         )
         return False
 
-    def frame_bits(self, numbers: dict[str, int], at: int, size: int, where: str, spot: Spot) -> list[Bit] | None:
+    def frame_bits(
+        self, numbers: dict[str, int], at: int, size: int, where: str, spot: SourcePlace
+    ) -> list[Bit] | None:
         """The bits of a place that does not count through the frame; empty for one that does. None, with a finding, if
         bytes and bit numbers do not agree.
 

@@ -13,7 +13,7 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 from icdgen.icd import source
 from icdgen.import_results import report, targets
-from icdgen.import_results.findings import Trouble
+from icdgen.import_results.findings import ImportFinding
 from icdgen.importer import profile, run
 from icdgen.importer.document import Document, SourceTable
 from icdgen.importer.rules.language import ROLES
@@ -60,7 +60,7 @@ class Session:
         """Everything but the contents of single tables."""
         with self.lock:
             rules = rule_text.rules_of(self.text)
-            troubles = self.result.troubles if self.result else []
+            import_findings = self.result.import_findings if self.result else []
             applied = self.rules_by_table()
             groups = kinds(self.tables)
             return {
@@ -71,8 +71,8 @@ class Session:
                 "roles": ROLES,
                 "rules": [{"keys": rule, "text": rule_text.text_of_rule(rule)} for rule in rules],
                 "kinds": [{"titles": group[0].titles, "tables": [table.number for table in group]} for group in groups],
-                "tables": [self.summary(table, applied, troubles) for table in self.tables],
-                "findings": [_finding(trouble) for trouble in troubles],
+                "tables": [self.summary(table, applied, import_findings) for table in self.tables],
+                "findings": [_finding(import_finding) for import_finding in import_findings],
                 "errors": self.errors,
                 "can_undo": bool(self.past),
                 "can_redo": bool(self.future),
@@ -99,9 +99,15 @@ class Session:
         assert self.result is not None
         return self.result.interpretation.rules
 
-    def summary(self, table: SourceTable, applied: dict[int, list[int]], troubles: list[Trouble]) -> dict[str, Any]:
+    def summary(
+        self, table: SourceTable, applied: dict[int, list[int]], import_findings: list[ImportFinding]
+    ) -> dict[str, Any]:
         """A line of the list of tables."""
-        own = [trouble.severity for trouble in troubles if trouble.is_about_table(table.number - 1)]
+        own = [
+            import_finding.severity
+            for import_finding in import_findings
+            if import_finding.is_about_table(table.number - 1)
+        ]
         parts = self.parts(table)
         return {
             "number": table.number, "title": table.title, "name": name_of(table), "page": table.page,
@@ -123,7 +129,7 @@ class Session:
             if not 1 <= number <= len(self.tables):
                 raise KeyError(number)
             table = self.tables[number - 1]
-            troubles = self.result.troubles if self.result else []
+            import_findings = self.result.import_findings if self.result else []
             choices = self.result.interpretation.choices if self.result else []
             reasons = [(rule.name, reason) for c in choices if c.table.number == number for rule, reason in c.reasons]
             return {
@@ -133,7 +139,7 @@ class Session:
                 "rows": [[[cell.text, cell.columns, cell.rows] for cell in row.cells] for row in table.rows],
                 "rules": self.rules_by_table().get(number, []), "reasons": reasons,
                 "messages": [_message(part) for part in self.parts(table)],
-                "findings": [_finding(t) for t in troubles if t.is_about_table(number - 1)],
+                "findings": [_finding(t) for t in import_findings if t.is_about_table(number - 1)],
             }  # fmt: skip
 
     def head(self, table: SourceTable) -> int:
@@ -222,10 +228,15 @@ class Session:
             }
 
 
-def _finding(trouble: Trouble) -> dict[str, Any]:
-    table = trouble.spot.order + 1 if trouble.spot.order is not None else None
-    line = trouble.place.line if trouble.place else None
-    return {**report.finding_as_json(trouble), "table": table, "page": trouble.spot.page, "rule_line": line}
+def _finding(import_finding: ImportFinding) -> dict[str, Any]:
+    table = import_finding.spot.order + 1 if import_finding.spot.order is not None else None
+    line = import_finding.place.line if import_finding.place else None
+    return {
+        **report.finding_as_json(import_finding),
+        "table": table,
+        "page": import_finding.spot.page,
+        "rule_line": line,
+    }
 
 
 def _message(part: Part) -> dict[str, Any]:
