@@ -79,9 +79,9 @@ def per_step(text: str, names: Words | None) -> Scaled | None:
     """Read a cell of a column of formulas or factors: an expression of the raw value, a factor (``0.01``, ``1e-7``, ``2^-20``,
     ``1/256``), or a factor with its unit (``10 mV/LSB``). None for any other text."""
     if names is not None:
-        found = find(text, names)
-        if found:
-            return Scaled(found.formula)
+        announced = find(text, names)
+        if announced:
+            return Scaled(announced.formula)
         expression, end = _expression(text, 0, names.raw, "raw")
         if expression and not text[end:].strip() and _is_good(expression):
             return Scaled(expression)

@@ -55,10 +55,10 @@ def write(tables: list[SourceTable], folder: Path, document: Document) -> list[P
 
 def text_of(table: SourceTable, document: Document, same: list[int]) -> str:
     """Return the text of a table file; ``same`` are the numbers of the tables with the same headings."""
-    others = [str(number) for number in same if number != table.number]
-    shown = ", ".join(others[:8]) + (" ..." if len(others) > 8 else "")
+    numbers = [str(number) for number in same if number != table.number]
+    shown = ", ".join(numbers[:8]) + (" ..." if len(numbers) > 8 else "")
     lines = [f"# {name_of(table)}".replace("\n", " ").rstrip()]
-    lines += [f"# same headings as table {shown}"] if others else []
+    lines += [f"# same headings as table {shown}"] if numbers else []
     lines += [f"table: {table.number}", f"document: {_quoted(document.file)}"]
     lines += [f"title: {_quoted(document.title)}"] if document.title else []
     lines += [f"sheet: {_quoted(table.sheet)}"] if table.sheet else []

@@ -109,7 +109,7 @@ def _labelled(text: str) -> Pasted | None:
 
 def _marked(text: str) -> Pasted | None:
     """Return the bytes if each is in quotes or angle brackets, or followed by ``h``."""
-    bare = _MARKED.sub(lambda found: f" {found[2] or found[3] or found[4]} ", text)
+    bare = _MARKED.sub(lambda match: f" {match[2] or match[3] or match[4]} ", text)
     return _hex(bare) if bare != text else None
 
 

@@ -199,8 +199,8 @@ def _start(before: int, here: int, gaps: list[float], start: int) -> int:
         return here
     between = range(before, here)
     widest = max(between, key=lambda i: gaps[i])
-    others = [gaps[i] for i in between if i != widest]
-    if gaps[widest] > 1.2 * max(others):
+    other_gaps = [gaps[i] for i in between if i != widest]
+    if gaps[widest] > 1.2 * max(other_gaps):
         return widest + 1
     above = before - start  # a key in the middle has as many lines below as above
     return min(before + above + 1, here) if above else here

@@ -20,8 +20,8 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
         # In `Byte | Meaning`, the meaning is the name.
         if kind == "fields" and "at_bytes" in given and "name" not in given:
             given = ["name" if role == "description" else role for role in given]
-        there = set(given)
-        if not all(any(role in there for role in group) for group in profile.needs[kind]):
+        given_roles = set(given)
+        if not all(any(role in given_roles for role in group) for group in profile.needs[kind]):
             continue
         unknown = sum(
             1 for text, role in zip(texts, given, strict=True)

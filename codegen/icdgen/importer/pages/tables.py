@@ -219,8 +219,8 @@ class Builder:
             match = headings.match(band.texts(self.document_words), self.profile, loose=True)
         printed = [band.printed(self.document_words)]
         if match is None and waiting and len(lines(band.words)) < 4:
-            both = _stacked(band, waiting[0], self.document_words)
-            match = headings.match(both, self.profile) if both else None
+            stacked = _stacked(band, waiting[0], self.document_words)
+            match = headings.match(stacked, self.profile) if stacked else None
             if match is not None:
                 printed.append(waiting.pop(0).printed(self.document_words))
             else:

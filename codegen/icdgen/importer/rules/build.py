@@ -102,10 +102,12 @@ class Builder:
         for announced, given in (("raw", "physical"), ("physical", "raw")):
             names = [field.name for field in message.fields if field.described.formula_for == announced]
             if names:
-                which = f"the formula of `{names[0]}`" + (f" and of {len(names) - 1} more fields" if names[1:] else "")
+                subject = f"the formula of `{names[0]}`" + (
+                    f" and of {len(names) - 1} more fields" if names[1:] else ""
+                )
                 self.notes.warn(
                     "IMP041",
-                    f"{part.where}: {which} is announced as giving the {announced} value and gives the {given} one",
+                    f"{part.where}: {subject} is announced as giving the {announced} value and gives the {given} one",
                     part.table.spot,
                     "taken as printed; `formula_for` has what the words announce: find out which is right",
                     part.rule.place,

@@ -289,11 +289,11 @@ class _Interpreter:
         }
         for key, (size, affected, values) in dependent.items():
             if affected and not self.profile.states_order(key):
-                others = f" and {len(affected) - 1} more fields" if affected[1:] else ""
+                further = f" and {len(affected) - 1} more fields" if affected[1:] else ""
                 self.notes.error(
                     "IMP109",
-                    f"the profile does not state `{key}`, on which `{affected[0].name}`{others} of {size} depend"
-                    f"{'' if others else 's'}; read with `{key}: {getattr(self.order, key)}`",
+                    f"the profile does not state `{key}`, on which `{affected[0].name}`{further} of {size} depend"
+                    f"{'' if further else 's'}; read with `{key}: {getattr(self.order, key)}`",
                     affected[0].spot._replace(order=None, table=None),
                     f"look for it in the document and state it under `node:` of the profile: {values}",
                 )

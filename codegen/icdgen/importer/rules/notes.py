@@ -25,15 +25,15 @@ class Group:
         self.spots.append(spot)
         self.examples.append(example)
 
-    def as_trouble(self) -> ImportFinding:
+    def as_import_finding(self) -> ImportFinding:
         """One finding at the place of the first row; `also` has the places of the others."""
         more = len(self.spots) - 1
         if not more:
             return self.first
         tables = len({spot.order for spot in self.spots})
-        others = list(dict.fromkeys(text for text in self.examples[1:] if text != self.examples[0]))
-        shown = ", ".join(f"`{text[:40]}`" for text in others[:MOST_EXAMPLES])
-        shown += ", ..." if len(others) > MOST_EXAMPLES else ""
+        further_examples = list(dict.fromkeys(text for text in self.examples[1:] if text != self.examples[0]))
+        shown = ", ".join(f"`{text[:40]}`" for text in further_examples[:MOST_EXAMPLES])
+        shown += ", ..." if len(further_examples) > MOST_EXAMPLES else ""
         rows = f"{more} more row{'s' if more > 1 else ''}{f' of {tables} tables' if tables > 1 else ''}"
         message = f"{self.first.message}; the same in {rows}{f': {shown}' if shown else ''}"
         return self.first._replace(message=message, also=tuple(self.spots[1:]))
@@ -75,7 +75,7 @@ class Notes:
     @property
     def import_findings(self) -> list[ImportFinding]:
         """All findings, with one finding per cause."""
-        return [*self.single, *(group.as_trouble() for group in self.groups.values())]
+        return [*self.single, *(group.as_import_finding() for group in self.groups.values())]
 
     def drop(self, rule: Rule, operation: str, text: str) -> None:
         """Count a row that the rule drops on purpose."""

@@ -48,8 +48,8 @@ def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
     if rule.head_rows > 1 or rule.transpose:
         return None
     for index, pair in enumerate(pairwise(texts[:SEARCHED])):
-        both = [" ".join(filter(None, cells)) for cells in zip_longest(*pair, fillvalue="")]
-        if _first_difference(wanted, both) is None:
+        joined = [" ".join(filter(None, cells)) for cells in zip_longest(*pair, fillvalue="")]
+        if _first_difference(wanted, joined) is None:
             return range(index, index + 2)
     return None
 

@@ -66,11 +66,9 @@ def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
         return "".join(lines) + f"rules:\n{block}"
     if not rules or tree.key_at("rules").line == rules.item_at(0).line:  # in one line, as `[]` or `[{...}]`
         first = tree.key_at("rules").line - 1
-        others = [text_of_rule(plain(entry)) for entry in rules]
-        others[index if index is not None else len(others) : (index + 1) if index is not None else len(others)] = [
-            block
-        ]
-        lines[first : first + 1] = ["rules:\n" if any(others) else "rules: []\n", *others]
+        texts = [text_of_rule(plain(entry)) for entry in rules]
+        texts[index if index is not None else len(texts) : (index + 1) if index is not None else len(texts)] = [block]
+        lines[first : first + 1] = ["rules:\n" if any(texts) else "rules: []\n", *texts]
         return "".join(lines)
     # Lines are replaced within the text, because a YAML writer would drop comments and the order of keys.
     starts = [rules.item_at(i).line - 1 for i in range(len(rules))]
