@@ -90,7 +90,7 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
 async def udp(server: Server, host: str, port: int, connects: bool = False) -> tuple[str, object]:
     """Exchange UDP datagrams. Each is a piece of the stream, or a packet.
 
-    Responses go to the last sender, or to the address to which ``connects`` refers.
+    Responses go to the last sender. With ``connects``, they go to ``host`` and ``port``.
     """
 
     class Protocol(asyncio.DatagramProtocol):
