@@ -1,4 +1,8 @@
-"""Bands of a table -> its rows: where rules part the rows, one each; elsewhere by the figures in the key column."""
+"""Rows of a table, from its bands.
+
+If horizontal rules separate the rows, each band is a row. Otherwise, the keys in the
+key column (offsets, values or ids) separate them.
+"""
 
 from __future__ import annotations
 
@@ -27,28 +31,29 @@ KEYS = {
 
 @dataclass(slots=True)
 class Band:
-    """Part of a table between two horizontal rules. ``edges`` are the left and right sides of its cells."""
+    """Part of a table between two horizontal rules. ``edges`` are the sides of its cells, in order."""
 
     page: int
     edges: list[float]
     words: list[Word]
-    continues: tuple[bool, ...] = ()  # whether a cell has no rule above it
+    continues: tuple[bool, ...] = ()  # for each cell, whether it has no rule above it
 
     def of(self, lines_of_band: list[Line]) -> Band:
         """Return the part of the band that has these lines."""
         return Band(self.page, self.edges, words_of(lines_of_band))
 
     def texts(self, document_words: frozenset[str]) -> list[str]:
-        """The texts of its cells."""
+        """Return the texts of the cells."""
         return [_cell(part, edge, document_words) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
 
     def printed(self, document_words: frozenset[str]) -> PrintedRow:
-        """The row as the page shows it."""
+        """Return the row as printed on the page."""
         cells = zip(self.parts(), self.edges[1:], strict=True)
         texts = ["\n".join(unbroken(*_lines_of_cell(part, edge), document_words)) for part, edge in cells]
         return PrintedRow(texts, tuple(self.edges), self.continues, self.page)
 
     def parts(self) -> list[list[Word]]:
+        """Return the words of each cell."""
         columns: list[list[Word]] = [[] for _ in self.edges[1:]]
         for word in self.words:
             columns[index_of(word.centre, self.edges)].append(word)
@@ -61,7 +66,7 @@ def _cell(words: list[Word], right: float, document_words: frozenset[str]) -> st
 
 
 def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[bool]]:
-    """The lines of a cell, and whether each is a single word that fills its line."""
+    """Return the lines of a cell, and whether each is a single word that fills its line."""
     lines_of_cell = lines(words)
     return [line.text for line in lines_of_cell], [
         len(n.words) == 1 and n.x1 > right - 1.6 * n.size for n in lines_of_cell
@@ -69,12 +74,16 @@ def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[boo
 
 
 def is_key(text: str) -> bool:
-    """Whether a key column's text is one: a number, a range of numbers, two ids."""
+    """Return whether the text of a key column is a key: a number, a range of numbers, two ids."""
     return bool(_KEY.match(text.strip()))
 
 
 def aligned(band: Band, edges: list[float]) -> Band:
-    """The band with its words in the columns of the heading row, ``edges``; a cell over several stays in the first."""
+    """Return the band with its words in the columns of the heading row.
+
+    ``edges`` are the edges of the heading row. A cell that spans several columns is
+    moved to the first one.
+    """
     if len(band.edges) == len(edges):
         return band
     moved = []
@@ -88,13 +97,16 @@ def aligned(band: Band, edges: list[float]) -> Band:
         a, b = edges[target], edges[target + 1]
         if all(a <= w.centre <= b for w in part):
             moved += part
-        else:  # its lines, whole
+        else:  # do not split the lines of a cell over several columns
             moved += [line.words[0]._replace(text=line.text, x0=a + 1, x1=b - 1) for line in lines(part)]
     return Band(band.page, edges, moved)
 
 
 def rows(band: Band, header: Header, document_words: frozenset[str], torn: bool = False) -> list[PrintedRow]:
-    """Return the rows of a band with the columns of ``header``. ``torn``: the first row may continue one of the page before."""
+    """Return the rows of a band with the columns of ``header``.
+
+    ``torn``: the first row may continue the last row of the previous page.
+    """
     lines_of_band = lines(band.words)
     key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(lines_of_band, band.edges)
     if header.kind == "list" and (
@@ -111,7 +123,7 @@ def rows(band: Band, header: Header, document_words: frozenset[str], torn: bool 
 
 
 def has_keys(band: Band, header: Header) -> bool:
-    """Whether a line has a key in the key column and words in another one."""
+    """Return whether a line has a key in the key column and words in another column."""
     lines_of_band = lines(band.words)
     key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(lines_of_band, band.edges)
     for line in lines_of_band:
@@ -126,13 +138,13 @@ def _key_column(header: Header) -> int:
 
 
 def _column_of_most_keys(lines_of_band: list[Line], edges: list[float]) -> int:
-    """The column in which most lines have a key; the first one if none has any."""
+    """Return the column in which most lines have a key, or the first column."""
     counts = [sum(is_key(_text_in(line, edges, column)) for line in lines_of_band) for column in range(len(edges) - 1)]
     return counts.index(max(counts)) if counts else 0
 
 
 def _is_group(line: Line, edges: list[float], key: int) -> bool:
-    """Whether the line is a group heading: words, not figures, begin in the column of ids."""
+    """Return whether the line is a group heading: words other than keys in the column of ids."""
     first = [word.text for word in line.words if index_of(word.x0, edges) <= key]
     return bool(first) and index_of(line.x0, edges) <= key and not any(is_key(word) for word in first)
 
@@ -140,7 +152,7 @@ def _is_group(line: Line, edges: list[float], key: int) -> bool:
 def _around(
     band: Band, lines_of_band: list[Line], groups: list[int], header: Header, document_words: frozenset[str]
 ) -> list[PrintedRow]:
-    """The rows of a band in which group headings stand."""
+    """Return the rows of a band that contains group headings."""
     printed: list[PrintedRow] = []
     start = 0
     for index in [*groups, len(lines_of_band)]:
@@ -153,7 +165,7 @@ def _around(
 
 
 def group_row(text: str, width: int, page: int) -> PrintedRow:
-    """A heading over rows below: a row of so many cells of which only the first one has a text."""
+    """Return the row of a group heading: ``width`` cells, of which only the first has a text."""
     return PrintedRow([text, *[""] * (width - 1)], page=page)
 
 
@@ -162,7 +174,7 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
 
 
 def _leading(band: Band) -> float:
-    """How far apart the lines of a cell stand; infinite where no column has two lines."""
+    """Return the smallest distance of two lines in a cell; infinite if no cell has two lines."""
     columns = [lines(part) for part in band.parts() if part]
     return min(
         (b.middle - a.middle for lines_of_column in columns for a, b in itertools.pairwise(lines_of_column)),
@@ -171,7 +183,10 @@ def _leading(band: Band) -> float:
 
 
 def _stretches(lines_of_band: list[Line], keyed: list[int], leading: float, torn: bool) -> list[tuple[int, int]]:
-    """Ranges of lines of each row, from the lines with keys. Lines before the first key continue a row of the page before."""
+    """Return the range of lines of each row.
+
+    Lines before the first key continue a row of the previous page.
+    """
     gaps = [b.middle - a.middle for a, b in itertools.pairwise(lines_of_band)]
     starts = [_first_start(keyed, gaps, leading, torn, len(lines_of_band))]
     for before, here in itertools.pairwise(keyed):
@@ -182,7 +197,10 @@ def _stretches(lines_of_band: list[Line], keyed: list[int], leading: float, torn
 
 
 def _first_start(keyed: list[int], gaps: list[float], leading: float, torn: bool, count: int) -> int:
-    """Lines above the first key belong to its row where the key stands in the middle of its row's height."""
+    """Return the first line of the first row with a key.
+
+    Lines above the key belong to its row if the key is vertically centred in the row.
+    """
     first = keyed[0]
     if first == 0:
         return 0
@@ -194,7 +212,10 @@ def _first_start(keyed: list[int], gaps: list[float], leading: float, torn: bool
 
 
 def _start(before: int, here: int, gaps: list[float], start: int) -> int:
-    """Where the row of the key at ``here`` begins, after the one at ``before`` whose row begins at ``start``."""
+    """Return the first line of the row with the key at ``here``.
+
+    The previous key is at ``before``, and its row begins at ``start``.
+    """
     if here == before + 1:
         return here
     between = range(before, here)
@@ -202,5 +223,5 @@ def _start(before: int, here: int, gaps: list[float], start: int) -> int:
     other_gaps = [gaps[i] for i in between if i != widest]
     if gaps[widest] > 1.2 * max(other_gaps):
         return widest + 1
-    above = before - start  # a key in the middle has as many lines below as above
+    above = before - start  # a vertically centred key has as many lines below as above
     return min(before + above + 1, here) if above else here

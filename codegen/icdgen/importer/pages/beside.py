@@ -1,4 +1,7 @@
-"""Tables that stand side by side and were read as one: their headings repeat from left to right."""
+"""Separation of tables that are side by side and were read as one table.
+
+Their headings are repeated from left to right.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,10 @@ Items = list[Draft | Mark]
 
 
 def parted(items: Items, profile: Profile) -> Items:
-    """The items, such tables parted; tables side by side each stand behind their part of the lines above them."""
+    """Return the items, with such tables separated.
+
+    Each table follows its part of the lines above the tables.
+    """
     in_order: Items = []
     index = 0
     while index < len(items):
@@ -47,7 +53,7 @@ def parted(items: Items, profile: Profile) -> Items:
 
 
 def _beside(draft: Draft, other: Draft) -> bool:
-    """Whether two tables stand side by side on a page, and on none besides."""
+    """Return whether two tables are side by side on one page, and on no other page."""
     if len(draft.boxes) != 1 or len(other.boxes) != 1:
         return False
     a, b = draft.boxes[0], other.boxes[0]
@@ -56,7 +62,7 @@ def _beside(draft: Draft, other: Draft) -> bool:
 
 
 def _parts(table: Draft, profile: Profile) -> list[Draft]:
-    """The tables side by side; none where the headings do not repeat."""
+    """Return the tables of a table with repeated headings, or an empty list."""
     if table.header is not None or len(table.head) < 2:
         return []
     titles = [squeezed(text) for text in table.head[0].lines]
@@ -79,7 +85,7 @@ def _parts(table: Draft, profile: Profile) -> list[Draft]:
 
 
 def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:
-    """A line above the tables as one line for each; none where it has not as many parts."""
+    """Return the parts of a line above tables, one for each table, or an empty list."""
     if len(mark.cells) != count or mark.kind == "heading":
         return []
     if mark.kind == "caption" and not all(profile.caption.match(text) for _, text in mark.cells):

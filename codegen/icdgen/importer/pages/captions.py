@@ -1,4 +1,4 @@
-"""Tables and what stands between them -> blocks of a document: each caption goes to its table."""
+"""Assignment of captions to tables, and conversion to the blocks of a document."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ from icdgen.importer.pages.flow import Mark
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import CONTINUED, table_number
 
-FAR = 4  # lines of text between a caption and its table; more, and it is none
+FAR = 4  # a caption with this many lines of text before the table does not belong to it
 Items = list[Draft | Mark]
 
 
 def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Block]:
-    """Headings, text and tables, the tables with number and caption. ``is_part``: of a document cut off at both ends."""
+    """Return headings, text and tables, the tables with number and caption.
+
+    ``is_part``: the document is cut off at both ends.
+    """
     items = beside.parted(guessed.made(items), profile)
     captions = [i for i, item in enumerate(items) if isinstance(item, Mark) and item.kind == "caption"]
     after = {i: _table_from(items, i, 1) for i in captions}
@@ -24,7 +27,7 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
     for i in captions if above else reversed(captions):
         target = (after if above else before)[i]
         if target is not None:
-            owner[target] = i  # the nearest wins: it comes last
+            owner[target] = i  # the nearest caption is last and replaces others
     used = set(owner.values())
     blocks: list[Block] = []
     for index, item in enumerate(items):
@@ -43,7 +46,7 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
 
 
 def _table_from(items: Items, index: int, step: int) -> int | None:
-    """The table nearest to the caption in this direction, with hardly any text and no caption between."""
+    """Return the nearest table in a direction, unless a caption or more than a few lines are between."""
     between = 0
     position = index + step
     while 0 <= position < len(items):
@@ -58,8 +61,12 @@ def _table_from(items: Items, index: int, step: int) -> int | None:
 
 
 def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, int | None], is_part: bool) -> bool:
-    """Whether captions stand above their tables in this document: so that each has one, else by distance on the page,
-    else by number. With prose between caption and table, the distance misleads."""
+    """Return whether captions are above their tables in this document.
+
+    First criterion: only one direction gives each caption a table of its own. Second:
+    the distances on the page, which prose between caption and table can falsify. Third:
+    the number of captions with a table.
+    """
     down_all, up_all = (
         None not in captions.values() and len(set(captions.values())) == len(captions) for captions in (after, before)
     )
@@ -75,6 +82,7 @@ def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, i
 
 
 def _distance(items: Items, caption: int, index: int | None, step: int) -> float:
+    """Return the distance of a caption from a table, in points."""
     if index is None:
         return 1000.0
     mark, table = items[caption], items[index]

@@ -1,4 +1,4 @@
-"""Where no vertical rules part the columns: boundaries from the headings and from the white between the words."""
+"""Columns of tables without vertical rules, from the headings and the white space."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from icdgen.importer.pages.lines import Line, runs, words_of
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, join
 
-MOST_LINES = 4  # of a heading row
+MOST_LINES = 4  # maximum lines of a heading row
 
 
 class Columns(NamedTuple):
-    """A heading row found among lines: its header, the extent of each heading, and how many lines it takes."""
+    """A heading row: its header, the extent of each heading, and its number of lines."""
 
     header: Header
     spans: list[tuple[float, float]]
@@ -25,7 +25,10 @@ class Columns(NamedTuple):
 
 
 def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | None:
-    """The heading row that begins with the first of ``lines``; None if none does. ``loose``: one without offsets is one, too."""
+    """Return the heading row that begins with the first of ``lines``, or None.
+
+    ``loose``: also accept headings of fields without offsets.
+    """
     if not lines or profile.heading_words.isdisjoint(folded(lines[0].text)):
         return None
     best: Columns | None = None
@@ -47,13 +50,16 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
 
 
 def _is_sure(header: Header) -> bool:
-    """Whether headings without offsets are no line of prose: all of them are known, or all but one of four or more."""
+    """Return whether headings without offsets are unlikely to be prose.
+
+    All are known, or all but one of four or more.
+    """
     unknown = len(header.roles) - header.known
     return header.titles[0][:1].isupper() and (unknown == 0 or (unknown == 1 and header.known >= 3))
 
 
 def _extent(cell: list[Word]) -> tuple[float, float]:
-    """From left to right."""
+    """Return the left and right side of a cell."""
     return min(w.x0 for w in cell), max(w.x1 for w in cell)
 
 
@@ -69,7 +75,7 @@ def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
 
 
 def _clustered(block: list[Line]) -> list[list[Word]]:
-    """Runs of words of several lines, put together where they stand above each other."""
+    """Return the cells of several lines: runs of words that are above each other."""
     cells: list[list[Word]] = []
     for run in sorted((run for line in block for run in runs(line, 0.45)), key=lambda r: (r[0].top, r[0].x0)):
         x0, x1 = run[0].x0, run[-1].x1
@@ -84,14 +90,17 @@ def _clustered(block: list[Line]) -> list[list[Word]]:
 
 
 def side_by_side(block: list[Line]) -> str:
-    """The text of some lines cell by cell, as if no cell wrapped."""
+    """Return the text of some lines cell by cell, as if no cell was wrapped."""
     if len(block) == 1:
         return block[0].text
     return " ".join(_text(cell) for cell in _clustered(block))
 
 
 def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float) -> list[float]:
-    """Edges of the columns whose headings stand at ``spans``; between two, where the fewest words stand in the way."""
+    """Return the edges of the columns with headings at ``spans``.
+
+    Between two headings, the edge is where it crosses the fewest words.
+    """
     words = words_of(lines)
     edges = [min([x0, spans[0][0], *(w.x0 for w in words)]) - 1]
     last = max([x1, spans[-1][1], *(w.x1 for w in words)]) + 1
@@ -106,8 +115,11 @@ def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x
 def _river(
     words: list[Word], low: float, high: float, guess: float, before: float, beyond: float, heading: float
 ) -> float:
-    """The middle of the gap that the fewest words cross: one with words on both sides of it, then one that ends where
-    the heading begins, then where most words begin, then the widest."""
+    """Return the middle of the gap between two headings that the fewest words cross.
+
+    Among equal gaps, prefer one that ends where the heading begins, then one with words
+    on both sides, a wide one, one at which many words begin, and the widest.
+    """
     middles = sorted(w.centre for w in words)
     begins = sorted(w.x0 for w in words)
     near = [w for w in words if w.x1 > low and w.x0 < high]
@@ -124,7 +136,7 @@ def _river(
     for a, b, count in pieces:
         middle = (a + b) / 2
         empty = not _any_between(middles, before, middle) or not _any_between(middles, middle, beyond)
-        begin = bisect_left(begins, b + 1) - bisect_right(begins, b - 1)  # words that begin together, as a column's do
+        begin = bisect_left(begins, b + 1) - bisect_right(begins, b - 1)  # words with this left side, as in a column
         headed = abs(b - heading) < 1.5
         narrow = bool(words) and b - a < 0.5 * words[0].size
         this = (count, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
@@ -134,12 +146,12 @@ def _river(
 
 
 def _any_between(values: list[float], low: float, high: float) -> bool:
-    """Whether one of the sorted values lies between."""
+    """Return whether one of the sorted values is between ``low`` and ``high``."""
     return bisect_right(values, low) < bisect_left(values, high)
 
 
 def index_of(x: float, edges: list[float]) -> int:
-    """The column in which ``x`` lies; the first or last one for what lies outside."""
+    """Return the column of ``x``. Outside of the table, return the first or last column."""
     for index in range(1, len(edges) - 1):
         if x < edges[index]:
             return index - 1

@@ -1,4 +1,4 @@
-"""Tables in the making: rows as the page prints them, and the table that they become."""
+"""Drafts of tables: rows as printed on the page, and their conversion to tables."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from dataclasses import dataclass, field
 
 from icdgen.importer.document import Box, Cell, SourceRow, SourceTable
 
-SNAP = 3.0  # points: edges of cells that are nearer than this are one
-SAME_WIDTH = 8.0  # points: by so much may the parts of a table differ that stand on several pages
+SNAP = 3.0  # points: closer edges of cells count as one
+SAME_WIDTH = 8.0  # points: maximum difference of the widths of parts of a table on several pages
 
 
 @dataclass(slots=True)
 class PrintedRow:
-    """A row exactly as the page shows it.
+    """A row as printed on the page.
 
-    ``texts``: one text per cell, lines separated by line breaks; ``edges``: the x coordinates between which the cells
-    stand, one more than cells, or none where nothing on the page separates them; ``continues``: whether a cell has no rule
-    above it, so that it belongs to the cell above.
+    ``texts``: one text per cell, with line breaks. ``edges``: the x coordinates of the
+    sides of the cells, one more than cells, or none if nothing on the page separates
+    them. ``continues``: whether a cell has no rule above it and belongs to the cell
+    above.
     """
 
     texts: list[str]
@@ -32,13 +33,13 @@ class PrintedRow:
 
     @property
     def lines(self) -> list[str]:
-        """The texts of the cells, each in one line."""
+        """The texts of the cells without line breaks."""
         return [" ".join(text.split()) for text in self.texts]
 
 
 @dataclass(slots=True)
 class Header:
-    """The heading row of a table: what kind of table has such headings, and the role of each cell ("" if unknown)."""
+    """The heading row of a table: the kind of table, and the role of each cell ("" if unknown)."""
 
     kind: str  # "fields" | "enumeration" | "list" | "loggable", or a rule of the profile
     roles: list[str]
@@ -47,23 +48,23 @@ class Header:
 
     @property
     def known(self) -> int:
-        """How many cells have a role."""
+        """Number of cells with a role."""
         return sum(map(bool, self.roles))
 
     @property
     def known_words(self) -> int:
-        """How many words these cells have."""
+        """Number of words of cells with a role."""
         return sum(len(title.split()) for title, role in zip(self.titles, self.roles, strict=True) if role)
 
     @property
     def has_offsets(self) -> bool:
-        """Whether a column says where fields stand."""
+        """Whether a column has the offsets of fields."""
         return "at" in self.roles or "at_bytes" in self.roles
 
 
 @dataclass(slots=True)
 class Draft:
-    """A table in the making. ``head`` are the rows above the headings, ``rows`` those below."""
+    """A draft of a table. ``head`` are the rows above the headings, ``rows`` the rows below."""
 
     boxes: list[Box]
     header: Header | None = None
@@ -73,7 +74,7 @@ class Draft:
 
     @property
     def last_page(self) -> int:
-        """The page on which the last part stands."""
+        """The page of the last part."""
         return self.boxes[-1].page
 
     def table(self) -> SourceTable:
@@ -83,7 +84,7 @@ class Draft:
 
 
 def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
-    """The rows with the spans of their cells; ``page`` is that of rows that state none."""
+    """Return the rows with the spans of their cells. ``page`` is the default page of a row."""
     edges = _columns(printed)
     rows: list[SourceRow] = []
     above: dict[int, Cell] = {}  # first column of a cell of the row above -> the cell
@@ -107,14 +108,17 @@ def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
 
 
 def _shift(row: PrintedRow, first: Sequence[float]) -> float:
-    """How far the row stands to the left of the rows of the first page: margins of facing pages differ."""
+    """Return the distance of the row to the left of the rows on the first page.
+
+    The margins of facing pages differ.
+    """
     if not first or not row.edges or abs((row.edges[-1] - row.edges[0]) - (first[-1] - first[0])) > SAME_WIDTH:
         return 0.0
     return first[0] - row.edges[0]
 
 
 def _columns(rows: list[PrintedRow]) -> list[float]:
-    """The edges between which the columns of the whole table stand; none if no row has any."""
+    """Return the edges of the columns of the whole table, or none if no row has edges."""
     first = max((row.edges for row in rows), key=lambda edges: edges[-1] - edges[0] if edges else 0.0, default=())
     edges: list[float] = []
     for x in sorted(x + _shift(row, first) for row in rows for x in row.edges):
@@ -124,7 +128,7 @@ def _columns(rows: list[PrintedRow]) -> list[float]:
 
 
 def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
-    """The cells of a row with the column in which each begins."""
+    """Return the cells of a row with their first columns."""
     if not row.edges or len(edges) < 2:
         if len(row.texts) == 1 and len(edges) > 2:
             return [(Cell(row.texts[0], len(edges) - 1), 0)]

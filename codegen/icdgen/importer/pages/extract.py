@@ -1,6 +1,7 @@
-"""One page of a PDF -> its words, ruling lines and shaded areas. The only place that knows pdfplumber's pages.
+"""Extraction of words, ruling lines and shaded areas from one page of a PDF.
 
-Runs in worker processes, so what it returns is small and plain.
+Only this module uses the pages of pdfplumber. It runs in worker processes, so its
+results are small and simple.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ SMALL = 0.8  # of a word's size: a smaller raised character is a superscript
 
 
 class Word(NamedTuple):
-    """A word; coordinates in points, y downwards."""
+    """A word. Coordinates are in points, y downwards."""
 
     text: str
     x0: float
@@ -38,7 +39,7 @@ class Word(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """A horizontal or vertical ruling line: at ``at``, from ``start`` to ``end``."""
+    """A horizontal or vertical ruling line at ``at``, from ``start`` to ``end``."""
 
     at: float
     start: float
@@ -68,8 +69,8 @@ class Page:
     images: int = 0
     unmapped: int = 0  # characters without a meaning
     unseen: int = 0  # words outside the visible page; a reader of the manual does not see them either
-    turned: int = 0  # words that do not stand upright
-    failed: str = ""  # why the page could not be read
+    turned: int = 0  # words that are not upright
+    failed: str = ""  # reason why the page cannot be read
 
 
 def extract(page: Any) -> Page:
@@ -98,9 +99,10 @@ def extract(page: Any) -> Page:
 
 
 def _drawn(page: Any) -> Iterator[Any]:
-    """Characters, lines, curves and pictures of a page and of its forms.
+    """Iterate over characters, lines, curves and pictures of a page and of its forms.
 
-    pdfplumber's own ``objects`` build a dictionary of twenty entries for each, which takes as long as reading the page.
+    The ``objects`` of pdfplumber create a dictionary of twenty entries for each object,
+    which takes as long as reading the page.
     """
     from pdfminer.converter import PDFPageAggregator
     from pdfminer.layout import LTContainer
@@ -120,7 +122,7 @@ def _drawn(page: Any) -> Iterator[Any]:
 
 
 class _Shift(NamedTuple):
-    """Converts coordinates of the sheet (y upwards) to coordinates of its visible part (y downwards)."""
+    """Conversion from coordinates of the sheet (y upwards) to its visible part (y downwards)."""
 
     x: float
     y: float
@@ -130,9 +132,9 @@ class _Shift(NamedTuple):
 
 
 def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
-    """A character as pdfplumber puts them together to words."""
+    """Return a character in the form from which pdfplumber assembles words."""
     x0, top, x1, bottom = shift.box(thing)
-    if thing.upright and _slanted(thing):  # its box leans over the next character's
+    if thing.upright and _slanted(thing):  # the box of a slanted character overlaps the next one
         x0 = thing.matrix[4] + shift.x
         x1 = x0 + thing.adv * thing.matrix[0]
     return {"text": thing.get_text(), "x0": x0, "x1": x1, "top": top, "bottom": bottom, "doctop": top,
@@ -167,7 +169,7 @@ def _style(char: Any) -> str:
 
 
 def _slanted(char: Any) -> bool:
-    """Whether it is an upright font's, made italic by its matrix: what writers do that lack the italic font."""
+    """Return whether the matrix slants an upright font. Writers without an italic font do this."""
     a, b, c, _, _, _ = char.matrix
     return not b and abs(c) > 0.1 * abs(a)
 
@@ -210,7 +212,7 @@ def _rectangle(content: Page, rect: Any, x0: float, top: float, x1: float, botto
 
 
 def _curve(content: Page, curve: Any, shift: _Shift) -> None:
-    """Rules drawn as paths: the straight pieces of them."""
+    """Add the straight pieces of a path, with which some writers draw rules."""
     points = [(x + shift.x, shift.y - y) for x, y in curve.pts]
     for (xa, ya), (xb, yb) in itertools.pairwise(points):
         _line(content, min(xa, xb), min(ya, yb), max(xa, xb), max(ya, yb))

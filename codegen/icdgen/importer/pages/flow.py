@@ -1,4 +1,4 @@
-"""All pages -> headings, captions, text and pieces of tables, in reading order."""
+"""Headings, captions, text and pieces of tables from all pages, in reading order."""
 
 from __future__ import annotations
 
@@ -33,11 +33,12 @@ class Piece:
     bands: list[Band]
     ruled: bool
     columns: Columns | None = None
-    head: list[str] = field(default_factory=list)  # lines above the headings, where no rules part them
-    lines: list[Line] = field(default_factory=list)  # of the body, where no rules part the columns
-    page: Page | None = None  # on which the body stands, where no rules part the columns
-    top: float = 0.0  # of the body
-    extent: tuple[float, float] = (0.0, 0.0)  # from left to right
+    # The following attributes are used without vertical rules only.
+    head: list[str] = field(default_factory=list)  # lines above the headings
+    lines: list[Line] = field(default_factory=list)  # lines of the body
+    page: Page | None = None  # page of the body
+    top: float = 0.0  # top of the body
+    extent: tuple[float, float] = (0.0, 0.0)  # left and right side
 
 
 @dataclass(slots=True)
@@ -49,15 +50,15 @@ class Mark:
     box: Box
     size: float
     number: str = ""
-    strong: bool = False  # reads like a heading without a number
-    cells: list[tuple[float, str]] = field(default_factory=list)  # where its runs of words begin, and they
+    strong: bool = False  # looks like a heading without a number
+    cells: list[tuple[float, str]] = field(default_factory=list)  # left side and text of each run of words
 
 
 Item = Piece | Mark
 
 
 def items(pages: list[Page], profile: Profile) -> list[Item]:
-    """Everything on the pages in reading order."""
+    """Return all items of the pages in reading order."""
     ruled = {page.number: regions(page) for page in pages}
     loose = {}
     for page in pages:
@@ -74,23 +75,23 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
 
 
 def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
-    """Whether a line in a margin is surely of a table, however often pages repeat it."""
+    """Return whether a line in a margin certainly belongs to a table, even if pages repeat it."""
     if profile.caption.match(line.text) or labels.begins(line.text, profile):
         return True
     if headings.segmented(line.text.split(), profile) is not None:
         return True
     if any(label.what and label.value for label in labels.parse(line.text, profile)[:1]):
         return True
-    parts = folded(line.text)  # a part of headings in several lines: the others stand next to it
+    parts = folded(line.text)  # it may be one of several lines of headings, which are close together
     tight = any(max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size for other in near)
     return tight and bool(parts) and all(part in profile.heading_words for part in parts)
 
 
 class _Flow:
-    """Goes through the pages; knows the columns of the table that may go on."""
+    """Reader of consecutive pages, with the columns of a table that the next page may continue."""
 
     def __init__(self, profile: Profile, text: Iterable[Line]) -> None:
-        """``text``: all lines, of which most are set in one size and style."""
+        """Determine the size and style of body text from all lines ``text``."""
         self.profile = profile
         sizes: Counter[float] = Counter()
         styles: Counter[str] = Counter()
@@ -99,9 +100,10 @@ class _Flow:
             styles[line.style] += len(line.text)
         self.body_size = max(sizes, key=sizes.__getitem__, default=10.0)
         self.body_style = max(styles, key=styles.__getitem__, default="")
-        self.open: Columns | None = None  # of a table without vertical rules that the next page may continue
-        self.size = 0.0  # of its type
-        self.extent = (0.0, 0.0)  # of that table, from left to right
+        # A table without vertical rules that the next page may continue: its columns, type size, left and right side.
+        self.open: Columns | None = None
+        self.size = 0.0
+        self.extent = (0.0, 0.0)
 
     def page(self, page: Page, ruled: list[Region], loose: list[Line]) -> list[Item]:
         items_of_page: list[Item] = []
@@ -164,7 +166,10 @@ class _Flow:
         return match is not None and bool(match["mark"] or self.stands_out(line) or not match["title"])
 
     def caption(self, page: Page, following: list[Line]) -> tuple[int, Mark]:
-        """A caption with the lines that it wraps into: of the same style and size, close below, and no sentence."""
+        """Return the number of lines of a caption, and the caption.
+
+        Its lines have one size and style, are close together, and are not a sentence.
+        """
         taken = 1
         while taken < min(3, len(following)):
             above, line = following[taken - 1], following[taken]
@@ -183,7 +188,10 @@ class _Flow:
         return taken, Mark("caption", text, box_around(page.number, following[:taken]), following[0].size, cells=cells)
 
     def head_length(self, following: list[Line]) -> tuple[int, Columns | None]:
-        """How many lines above the headings a table has that begins here, and its headings; (0, None): none begins."""
+        """Return the number of lines above the headings of a table that begins here, and the headings.
+
+        Return ``(0, None)`` if no table begins here.
+        """
         header = columns.find(following, self.profile)
         if header is not None:
             return 0, header
@@ -213,14 +221,17 @@ class _Flow:
         return taken, None
 
     def completes(self, above: Line, line: Line) -> bool:
-        """Whether a line is the rest of the label above it, in a narrow column."""
+        """Return whether a line completes the label above it, in a narrow column."""
         if line.top - above.bottom > 0.5 * line.size:
             return False
         labelled = labels.parse(above.text, self.profile)
         return bool(labelled) and bool(labels.meaning(f"{labelled[-1].label} {line.text}", self.profile))
 
     def labelled(self, following: list[Line]) -> int:
-        """How many lines the first row of a message's table takes that begins here: one, more where its cells wrap."""
+        """Return the number of lines of the first row of a message table that begins here, or 0.
+
+        It has more than one line if its cells wrap.
+        """
         for count in range(1, min(3, len(following)) + 1):
             if count > 1 and following[count - 1].top - following[count - 2].bottom > 0.6 * following[0].size:
                 return 0
@@ -229,7 +240,7 @@ class _Flow:
         return 0
 
     def head(self, lines: list[Line]) -> list[str]:
-        """The rows above the headings as text."""
+        """Return the rows above the headings as text."""
         count = self.labelled(lines) if lines else 0
         return ([columns.side_by_side(lines[:count])] if count else []) + [line.text for line in lines[count:]]
 
@@ -251,7 +262,10 @@ class _Flow:
         return end, piece
 
     def cells(self, body: list[Line], columns: Columns) -> list[Line]:
-        """Lines without the word left of all headings (such as `Channels`), which labels all rows and belongs to none."""
+        """Return the lines without a word left of all headings, such as ``Channels``.
+
+        Such a word labels all rows and belongs to none.
+        """
         cell_lines = []
         for line in body:
             first = runs(line, 0.45)[0]
@@ -264,14 +278,16 @@ class _Flow:
         return cell_lines
 
     def end(self, page: Page, following: list[Line], start: int, header: Columns) -> int:
-        """The index of the first line that is no longer of the table."""
+        """Return the index of the first line after the table."""
         size = following[start].size if start < len(following) else 0
         end = next(
             (index for index in range(start, len(following)) if self.ends(following, index, header, size)),
             len(following),
         )
         bottom = following[-1].bottom + 8
-        if start < end < len(following) and self.begins_anew(following, end):  # its upper rule is none of this table
+        if start < end < len(following) and self.begins_anew(
+            following, end
+        ):  # exclude the upper rule of the next table
             bottom = (following[end - 1].bottom + following[end].top) / 2
         limit = _lowest_rule(page, following, start, header, bottom)
         below = (i for i in range(start, end) if following[i].middle > limit and not self.is_row(following[i], header))
@@ -294,14 +310,17 @@ class _Flow:
         return gap > 2.2 * line.size and not self.has_key(line)
 
     def begins_anew(self, following: list[Line], index: int) -> bool:
-        """Whether the line is a heading row. A line at the height of the line above is a part of a cell."""
+        """Return whether the line is a heading row.
+
+        A line at the height of the line above is a part of a cell.
+        """
         line = following[index]
         if index and line.top < following[index - 1].bottom - 0.2 * line.size:
             return False
         return columns.find(following[index : index + 3], self.profile, loose=False) is not None
 
     def is_prose(self, following: list[Line], header: Columns) -> bool:
-        """Whether the first line is of a paragraph, and none of a table with these columns."""
+        """Return whether the first line belongs to a paragraph instead of a table."""
         return (
             self.reads_on(following[0], header.spans)
             and not self.has_key(following[0])
@@ -313,7 +332,10 @@ class _Flow:
         return is_key(" ".join(w.text for w in first))
 
     def is_row(self, line: Line, header: Columns) -> bool:
-        """Whether the line can only be of a table: a key, a cell gone on, or several cells."""
+        """Return whether the line certainly belongs to a table.
+
+        It has a key, continues a cell, or has several cells.
+        """
         return (
             self.has_key(line)
             or _begins_in_a_column(line, header.spans)
@@ -321,11 +343,11 @@ class _Flow:
         )
 
     def is_group(self, following: list[Line], header: Columns) -> bool:
-        """Whether a line is a group heading of a list, however far it reaches: the next line has a key."""
+        """Return whether a line is a group heading of a list of any width: the next line has a key."""
         return header.header.kind == "list" and len(following) > 1 and self.has_key(following[1])
 
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
-        """Whether text runs across three headings or more, as it does in a paragraph and not in a cell."""
+        """Return whether text runs across three headings or more, as in a paragraph."""
         for run in runs(line, 0.9):
             x0, x1 = run[0].x0, run[-1].x1
             if sum(1 for a, b in spans if min(b, x1) - max(a, x0) > 0.5 * (b - a)) >= min(3, len(spans)):
@@ -333,7 +355,7 @@ class _Flow:
         return False
 
     def continues(self, following: list[Line]) -> bool:
-        """Whether the lines at the top of a page go on with the table before."""
+        """Return whether the lines at the top of a page continue the table before."""
         line = following[0]
         if self.open is None or line.x0 < self.extent[0] - 8 or self.is_prose(following, self.open):
             return False
@@ -359,23 +381,26 @@ class _Flow:
 
 
 def _cells(line: Line) -> list[tuple[float, str]]:
-    """Where the runs of words of a line begin, and they."""
+    """Return the left side and the text of each run of words in a line."""
     return [(run[0].x0, text_of(run)) for run in runs(line, 0.9)]
 
 
 def _value_column(line: Line) -> float:
-    """Left side of the second run of words of a line, which is the value next to a label."""
+    """Return the left side of the second run of words, which is the value next to a label."""
     runs_of_line = runs(line, 0.45)
     return runs_of_line[1][0].x0 if len(runs_of_line) > 1 else line.x0
 
 
 def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
-    """Whether the line begins where a later column does, so that it is a cell gone on."""
+    """Return whether the line begins at a later column, and therefore continues a cell."""
     return any(abs(line.x0 - a) < 3 for a, _ in spans[2:])
 
 
 def _lowest_rule(page: Page, following: list[Line], start: int, header: Columns, bottom: float) -> float:
-    """The lowest horizontal rule of the table above ``bottom``: no row stands below it. Infinite if the body has no rule."""
+    """Return the lowest horizontal rule of the table above ``bottom``.
+
+    No row is below it. It is infinite if the body has no rule.
+    """
     x0, x1 = header.spans[0][0], header.spans[-1][1]
     top = following[start - 1].bottom - 1 if start else 0
     wide = [r for r in joined(page.across) if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]

@@ -1,4 +1,4 @@
-"""Running heads and feet: what pages repeat in their margins."""
+"""Removal of running heads and feet, which are repeated in the margins of pages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from icdgen.importer.pages.extract import Page
 from icdgen.importer.pages.lines import Line
 
-MARGIN = 0.12  # of the page's height, above and below
+MARGIN = 0.12  # fraction of the height of the page, at top and bottom
 _FIGURES = re.compile("[0-9]+")
 _NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(?:of|/|von)\s*[0-9]+)?\s*[-–|]?\Z", re.I)
 
@@ -18,7 +18,10 @@ _NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(
 def without(
     pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[Line, list[Line]], bool]
 ) -> dict[int, list[Line]]:
-    """The lines of each page without heads and feet. ``keep`` selects lines that are never removed."""
+    """Return the lines of each page without heads and feet.
+
+    ``keep`` selects lines that are never removed.
+    """
     seen: dict[tuple[str, int], set[int]] = defaultdict(set)
     for page in pages:
         for line in lines[page.number]:
@@ -45,7 +48,7 @@ def _in_margin(line: Line, page: Page) -> bool:
 
 
 def _keys(line: Line) -> list[tuple[str, int]]:
-    """Text and height, rounded both ways so that a point of difference does not matter."""
+    """Return text and height of a line. Two roundings of the height allow a small difference."""
     text = _FIGURES.sub("#", line.text)
     return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
 
@@ -60,7 +63,10 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
 
 
 def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
-    """By how much the printed page numbers differ from the count; None where pages are not numbered by bare figures."""
+    """Return the difference between printed and counted page numbers, or None.
+
+    It is None if pages are not numbered with bare figures.
+    """
     offsets: Counter[Any] = Counter()
     for page in pages:
         figures = {line.text.strip() for line in lines[page.number] if _in_margin(line, page)}

@@ -14,7 +14,7 @@ ALIGNED = 4.0  # points
 
 
 def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
-    """The items, with such lines made tables: they must not pass unseen."""
+    """Return the items, with such lines as tables, so that they are reported."""
     out: list[Draft | Mark] = []
     for is_mark, group in itertools.groupby(items, lambda item: isinstance(item, Mark)):
         run = list(group)
@@ -28,7 +28,7 @@ def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
 
 
 def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
-    """First and last index, and the table, of each run of text lines that looks like one."""
+    """Return first and last index, and the table, of each run of text lines like a table."""
     tables = []
     start = 0
     while start < len(marks):
@@ -43,7 +43,7 @@ def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
 
 
 def _end(marks: list[Mark], start: int) -> int:
-    """The index behind the last line that goes on with the table that begins at ``start``."""
+    """Return the index after the last line of a table that begins at ``start``."""
     first = marks[start]
     if first.kind != "text" or len(first.cells) < FEWEST_CELLS:
         return start
@@ -54,7 +54,8 @@ def _end(marks: list[Mark], start: int) -> int:
         if mark.kind != "text" or mark.box.page != first.box.page or mark.box.top - above.box.bottom > 2.5 * mark.size:
             break
         hits = sum(any(abs(x - column) < ALIGNED for column in columns) for x, _ in mark.cells)
-        alone = len(mark.cells) == 1 and abs(mark.cells[0][0] - columns[0]) < ALIGNED  # rather a line below the table
+        # A single cell in the first column is more likely a line of text below the table.
+        alone = len(mark.cells) == 1 and abs(mark.cells[0][0] - columns[0]) < ALIGNED
         if alone or hits < min(2, len(mark.cells)):
             break
         index += 1

@@ -1,4 +1,4 @@
-"""Pages set in two columns of text: one is read after the other."""
+"""Pages with two columns of text, which are read one after the other."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from icdgen.importer.pages.extract import Page
 from icdgen.importer.pages.lines import Line, lines, runs, words_of
 from icdgen.importer.pages.rules import Region
 
-NARROWEST = 6.0  # points of white between the columns
-FEWEST = 8  # lines of text in the left column, so that it is none of a table
-WORDS = 7  # of such a line
-FULL = 0.8  # of the column's width
+NARROWEST = 6.0  # minimum points of white space between the columns
+FEWEST = 8  # minimum lines of text in the left column: fewer may be a column of a table
+WORDS = 7  # minimum words of such a line
+FULL = 0.8  # minimum width of such a line, as a fraction of the column
 
 
 def parts(page: Page, regions: list[Region], lines_of_page: list[Line]) -> list[tuple[list[Region], list[Line]]]:
-    """The regions and lines of the page, column by column."""
+    """Return the regions and lines of the page, column by column."""
     words = words_of(lines_of_page)
     middle = _middle(page, regions, lines_of_page)
     if middle is None:
@@ -26,7 +26,10 @@ def parts(page: Page, regions: list[Region], lines_of_page: list[Line]) -> list[
 
 
 def _middle(page: Page, regions: list[Region], lines_of_page: list[Line]) -> float | None:
-    """Position of the gap between two columns of text; None if the page has one column, or little text left of the gap."""
+    """Return the position of the gap between two columns of text.
+
+    Return None if the page has one column, or little text left of the gap.
+    """
     spans = [(word.x0, word.x1) for word in words_of(lines_of_page)] + [(r.x0, r.x1) for r in regions]
     low, high = 0.4 * page.width, 0.6 * page.width
     best, at = (0.0, 0.0), low

@@ -1,4 +1,4 @@
-"""Which row of a table is its heading row, and what each column holds: by the profile's vocabulary."""
+"""Recognition of heading rows and their columns with the vocabulary of the profile."""
 
 from __future__ import annotations
 
@@ -32,14 +32,17 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
         if not has_offsets and not loose:
             continue
         score = header.known - 0.6 * unknown
-        score -= 0 if has_offsets else 0.7  # rather something else that fits as well
+        score -= 0 if has_offsets else 0.7  # prefer another kind of table that matches as well
         if header.known > unknown and score > most:
             best, most = header, score
     return best
 
 
 def _roles(texts: list[tuple[str, ...]], roles: dict[str, list[tuple[str, ...]]]) -> list[str]:
-    """The role of each cell; a role is given once, to the cell whose heading stands first in the vocabulary."""
+    """Return the role of each cell.
+
+    A role is assigned once, to the cell whose heading is first in the vocabulary.
+    """
     given = [""] * len(texts)
     for role, headings in roles.items():
         matches = [index for index, text in enumerate(texts) if text and not given[index] and text in headings]
@@ -49,9 +52,9 @@ def _roles(texts: list[tuple[str, ...]], roles: dict[str, list[tuple[str, ...]]]
 
 
 def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
-    """The words of a heading row, in groups that are known headings, whatever the gaps between them; None if none is.
+    """Return groups of words that are known headings, regardless of gaps, or None.
 
-    Groups hold indices into ``words``.
+    Groups contain indices into ``words``.
     """
     best: tuple[int, list[list[int]]] = (0, [])
     flat = [folded(word) for word in words]
@@ -74,7 +77,7 @@ def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
 
 
 def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
-    """Whether the cells repeat the headings, as tables do on a new page; also when only some of them are there."""
+    """Return whether the cells repeat the headings, or some of them, as on a new page."""
     given = [tuple(folded(cell)) for cell in cells if cell.strip()]
     titles = [folded(title) for title in header.titles if title.strip()]
     if not given or any(number(cell) is not None for cell in cells):
@@ -92,7 +95,7 @@ def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
 
 
 def _is_lower_half(given: list[tuple[str, ...]], titles: list[tuple[str, ...]]) -> bool:
-    """The second line of headings in two lines: `(bits) (bits) Type`."""
+    """Return whether the cells are the second line of headings, such as ``(bits) (bits) Type``."""
     ends = [title[1:] for title in titles if len(title) > 1]
     places = []
     for text in given:

@@ -1,4 +1,4 @@
-"""Words -> lines of text, and the runs of words that stand closely together in them."""
+"""Lines of text from words, and runs of closely spaced words in them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from icdgen.importer.document import Box
 from icdgen.importer.pages.extract import SMALL, Word
 from icdgen.importer.words import SUPERSCRIPTS
 
-TOUCH = 0.12  # of the type size: words nearer than this were one word
+TOUCH = 0.12  # fraction of the type size: closer words are parts of one word
 
 
 class Line:
-    """Words that stand on one line, from left to right."""
+    """Words of one line, from left to right."""
 
     __slots__ = ("words", "x0", "x1", "top", "bottom", "size", "style")
 
@@ -37,7 +37,10 @@ class Line:
 
 
 def lines(words: Iterable[Word]) -> list[Line]:
-    """Lines from top to bottom. Words of a line overlap in height by more than half of the lower one."""
+    """Return the lines from top to bottom.
+
+    Words of a line overlap vertically by more than half the height of the lower one.
+    """
     groups: list[list[Any]] = []  # [top, bottom, words] of the tall words first, so that raised marks find their line
     for word in sorted(words, key=lambda w: (w.top, w.x0)):
         best, most = None, 0.5
@@ -56,7 +59,10 @@ def lines(words: Iterable[Word]) -> list[Line]:
 
 
 def text_of(words: list[Word]) -> str:
-    """The words of one line as text; parts that touch are put together, raised small figures become superscripts."""
+    """Return the text of the words of one line.
+
+    Words that touch are joined. Small raised figures become superscripts.
+    """
     text = ""
     last: Word | None = None
     for word in sorted(words, key=lambda w: w.x0):
@@ -73,18 +79,21 @@ def text_of(words: list[Word]) -> str:
 
 
 def words_of(lines_of_words: Iterable[Line]) -> list[Word]:
-    """The words of several lines."""
+    """Return the words of several lines."""
     return [word for line in lines_of_words for word in line.words]
 
 
 def box_around(page: int, things: Sequence[Line | Box]) -> Box:
-    """The smallest box around things on one page."""
+    """Return the smallest box around objects on one page."""
     x0, top = min(thing.x0 for thing in things), min(thing.top for thing in things)
     return Box(page, x0, top, max(thing.x1 for thing in things), max(thing.bottom for thing in things))
 
 
 def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:
-    """The line's words in runs; ``gap`` (of the type size) is how far apart runs stand at least."""
+    """Return the words of a line in runs.
+
+    ``gap`` is the minimum distance of two runs, as a fraction of the type size.
+    """
     groups = [[line.words[0]]]
     for before, word in zip(line.words, line.words[1:], strict=False):
         if word.x0 - before.x1 > gap * max(word.size, before.size):

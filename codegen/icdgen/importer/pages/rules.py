@@ -1,4 +1,4 @@
-"""Ruling lines -> ruled regions, and the bands that horizontal rules and shading cut a region into."""
+"""Ruled regions from ruling lines, and the bands between horizontal rules and shading."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from itertools import pairwise
 
 from icdgen.importer.pages.extract import Page, Rule, Word
 
-SNAP = 1.8  # points: rules nearer than this are one
-REACH = 4.0  # points: rules that come as near as this meet
-WIDE = 0.4  # of a region's width: a shorter horizontal rule does not part rows
-ROW = 30.0  # points: the height of a row that interrupts rules
-TALL = 0.7  # of a band's height: a shorter vertical rule does not part cells
+SNAP = 1.8  # points: closer parallel rules count as one
+REACH = 4.0  # points: rules with a smaller gap meet
+WIDE = 0.4  # fraction of the width of a region: a shorter horizontal rule does not separate rows
+ROW = 30.0  # points: maximum height of a row that interrupts rules
+TALL = 0.7  # fraction of the height of a band: a shorter vertical rule does not separate cells
 
 
 @dataclass(slots=True)
 class Region:
-    """Rules that hang together, and the rectangle around them."""
+    """Connected rules, and the rectangle around them."""
 
     x0: float
     top: float
@@ -29,21 +29,22 @@ class Region:
     down: list[Rule] = field(default_factory=list)
 
     def holds(self, word: Word) -> bool:
+        """Return whether a word is inside the region."""
         return self.x0 - 1 <= word.centre <= self.x1 + 1 and self.top - 1 <= word.middle <= self.bottom + 1
 
     def cuts(self) -> list[float]:
-        """The heights at which rows begin and end."""
+        """Return the heights at which rows begin and end."""
         heights = [self.top, self.bottom]
         for y, length in _lengths(self.across):
             if length >= WIDE * (self.x1 - self.x0):
                 heights.append(y)
-        for rule in self.down:  # where a column ends or begins within the region, a row with other cells does
+        for rule in self.down:  # a vertical rule that ends within the region ends at a row with other cells
             if self.x0 + 3 < rule.at < self.x1 - 3:
                 heights += [rule.start, rule.end]
         return distinct([y for y in heights if self.top <= y <= self.bottom], 3.0)
 
     def separators(self, top: float, bottom: float) -> list[float]:
-        """Where vertical rules part the band from ``top`` to ``bottom``; with the region's own edges."""
+        """Return the x coordinates of vertical rules in a band, including the sides of the region."""
         height = bottom - top
         places = [self.x0, self.x1]
         for rule in self.down:
@@ -52,7 +53,7 @@ class Region:
         return distinct(places, 3.0)
 
     def open_above(self, top: float, edges: list[float]) -> tuple[bool, ...]:
-        """For each cell whether no rule runs above it although rules run at this height elsewhere in the region."""
+        """Return for each cell whether it has no rule above it, but other cells have one."""
         if top <= self.top + SNAP:
             return (False,) * (len(edges) - 1)
         here = [rule for rule in self.across if abs(rule.at - top) <= SNAP]
@@ -63,7 +64,7 @@ class Region:
 
 
 def distinct(values: list[float], snap: float = SNAP) -> list[float]:
-    """Sorted, what lies closer than ``snap`` taken as one."""
+    """Return the sorted values. Values closer than ``snap`` count as one."""
     separate: list[float] = []
     for value in sorted(values):
         if not separate or value - separate[-1] > snap:
@@ -72,7 +73,7 @@ def distinct(values: list[float], snap: float = SNAP) -> list[float]:
 
 
 def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
-    """Height -> how much of it is ruled."""
+    """Return each height with the total length of rules at it."""
     lengths: dict[float, float] = {}
     for rule in joined(rules):
         lengths[rule.at] = lengths.get(rule.at, 0.0) + rule.end - rule.start
@@ -90,7 +91,7 @@ def _joined_spans(rules: list[Rule]) -> list[Rule]:
 
 
 def joined(rules: list[Rule]) -> list[Rule]:
-    """Collinear pieces that touch put together."""
+    """Return the rules, with collinear pieces that touch joined."""
     groups: list[list[Rule]] = []
     for rule in sorted(rules, key=lambda r: (r.at, r.start)):
         if groups and rule.at - groups[-1][0].at <= SNAP:
@@ -101,7 +102,7 @@ def joined(rules: list[Rule]) -> list[Rule]:
 
 
 def regions(page: Page) -> list[Region]:
-    """The ruled regions of the page that have columns: a vertical rule inside."""
+    """Return the ruled regions of the page that have columns: a vertical rule inside."""
     across, down = joined(page.across), joined(page.down)
     parent = list(range(len(across) + len(down)))
 
@@ -121,7 +122,7 @@ def regions(page: Page) -> list[Region]:
     for i, rule in enumerate([*across, *down]):
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
     tables: list[Region] = []
-    frames: list[Region] = []  # two sides without a column between them
+    frames: list[Region] = []  # regions with a left and a right side only
     for flats, steeps in groups.values():
         if not steeps:
             continue
@@ -163,7 +164,10 @@ def _within_frames(regions: list[Region], frames: list[Region]) -> list[Region]:
 
 
 def _stacked(regions: list[Region]) -> list[Region]:
-    """Regions put together where rules part the inner columns only, and a row over all of them interrupts the rules."""
+    """Join regions that are separated only by a row over all columns.
+
+    The rules around such a row separate only the inner columns.
+    """
     stacked: list[Region] = []
     for region in regions:
         above = stacked[-1] if stacked else None
@@ -184,11 +188,11 @@ def _goes_on(above: Region, below: Region) -> bool:
 
 
 def _sides(down: list[Rule], first: int, parent: list[int], root: Callable[[int], int]) -> None:
-    """Puts the sides of a table together whose top and bottom stand on other pages, and what stands between them."""
+    """Join the sides of a table whose top and bottom are on other pages, and rules between them."""
     sizes = Counter(root(i) for i in range(len(parent)))
     floating = {i for i in range(first, len(parent)) if sizes[root(i)] == 1}
     places = [rule.at for rule in down]
-    near: dict[int, list[int]] = {}  # by where they begin, so that only neighbours are compared
+    near: dict[int, list[int]] = {}  # rules by the height of their start, so that only neighbours are compared
     for i, side in enumerate(down, first):
         cell = int(side.start // REACH)
         for j in sorted(j for c in (cell - 1, cell, cell + 1) for j in near.get(c, ())):
@@ -204,7 +208,7 @@ def _sides(down: list[Rule], first: int, parent: list[int], root: Callable[[int]
 
 
 def _outermost(regions: list[Region]) -> list[Region]:
-    """Regions that lie within another are left out."""
+    """Return the regions that are not inside another one."""
     return [
         r for r in regions
         if not any(
@@ -216,7 +220,7 @@ def _outermost(regions: list[Region]) -> list[Region]:
 
 
 def row_marks(page: Page, x0: float, x1: float) -> list[float]:
-    """Heights at which a rule or the edge of a shaded row runs over most of the width from ``x0`` to ``x1``."""
+    """Return heights with a rule, or the edge of a shaded row, over most of the width."""
     shallow = [fill for fill in page.fills if fill.bottom - fill.top < 0.5 * page.height]
     edges = [Rule(y, fill.x0, fill.x1) for fill in shallow for y in (fill.top, fill.bottom)]
     heights = []

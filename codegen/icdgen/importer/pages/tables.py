@@ -1,4 +1,4 @@
-"""Pieces of tables and captions -> whole tables, each with its caption, over any number of pages."""
+"""Assembly of tables over any number of pages, from their pieces and captions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from icdgen.importer.words import CONTINUED, squeezed
 
 @dataclass
 class Builder:
-    """Goes through the items once; what belongs together ends up in one draft."""
+    """Assembles items to drafts, in one pass."""
 
     profile: Profile
     document_words: frozenset[str]
@@ -30,7 +30,7 @@ class Builder:
     )  # id of a draft -> its pieces without vertical rules
 
     def run(self, items: list[Item]) -> list[Block]:
-        """Headings, text and tables, captions attached."""
+        """Return headings, text and tables with their captions."""
         for item in items:
             if isinstance(item, Piece):
                 self.piece(item)
@@ -58,11 +58,11 @@ class Builder:
         return draft
 
     def continued(self, piece: Piece) -> Draft | None:
-        """The draft that this piece goes on with."""
+        """Return the draft that this piece continues, or None."""
         between = 0
         number = None
         torn: list[Mark] = []
-        last: Mark | None = None  # of the lines of text between
+        last: Mark | None = None  # last line of text in between
         for item in reversed(self.out):
             if isinstance(item, Draft):
                 break
@@ -71,7 +71,7 @@ class Builder:
                 number = match["number"]
                 continue
             if item.kind == "text" and labels.leads(item.text, self.profile):
-                torn.insert(0, item)  # a row above the headings that the page break parted from the first one
+                torn.insert(0, item)  # a row above the headings, after a page break
                 continue
             if item.kind != "text" or item.size > 8.6:
                 return None
@@ -103,7 +103,7 @@ class Builder:
         return draft
 
     def is_group(self, draft: Draft, mark: Mark) -> bool:
-        """Whether a line below a list is its last row, the heading of the group with which the next page begins."""
+        """Return whether a line below a list is the heading of the next page's first group."""
         if draft.header is None or draft.header.kind != "list":
             return False
         box = draft.boxes[-1]
@@ -111,7 +111,7 @@ class Builder:
         return mark.strong or (touches and len(mark.cells) == 1)
 
     def repeated(self, mark: Mark) -> bool:
-        """Whether an earlier caption has this number and title too."""
+        """Return whether an earlier caption has the same number and title."""
         return any(
             other is not mark and isinstance(other, Mark) and other.kind == "caption"
             and squeezed(other.text) == squeezed(mark.text)
@@ -119,7 +119,7 @@ class Builder:
         )  # fmt: skip
 
     def first_is_id(self, piece: Piece) -> bool:
-        """Whether the piece begins a message's table: with its id."""
+        """Return whether the piece begins the table of a message, with its id."""
         if not piece.ruled:
             return bool(piece.head) and labels.begins(piece.head[0], self.profile)
         first = next((band for band in piece.bands if band.words), None)
@@ -129,6 +129,7 @@ class Builder:
         return any(labels.begins(text, self.profile) for text in texts)
 
     def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
+        """Return whether the columns of the piece match the draft."""
         header = draft.header
         if not piece.ruled:
             if piece.columns is None:
@@ -151,14 +152,14 @@ class Builder:
             header = headings.match(band.texts(self.document_words), self.profile, loose=True)
             if header:
                 return header
-        split = self.split(piece.bands[0]) if piece.bands else None  # no rule parts the headings from the rows
+        split = self.split(piece.bands[0]) if piece.bands else None  # no rule separates headings and rows
         return split[1] if split else None
 
     # --- ruled -----------------------------------------------------------------------------------------------------
 
     def ruled(self, draft: Draft, piece: Piece) -> None:
         waiting = list(piece.bands)
-        fresh = True  # nothing of the piece's body was read yet
+        fresh = True  # no row of this piece has been read yet
         while waiting:
             band = waiting.pop(0)
             if not band.words:
@@ -186,7 +187,7 @@ class Builder:
                 fresh = False
 
     def below_headings(self, draft: Draft, band: Band) -> Band | None:
-        """Return the rest of a band that begins with the repeated headings; None if it does not."""
+        """Return the remainder of a band that begins with the repeated headings, or None."""
         header = draft.header
         assert header is not None
         titles = [squeezed(title) for title in header.titles]
@@ -197,7 +198,7 @@ class Builder:
         return None
 
     def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
-        """The headings as a whole where a page break stands between their two lines."""
+        """Return the complete headings if a page break separates their two lines, otherwise None."""
         header = draft.header
         assert header is not None
         if len(texts) != len(header.titles):
@@ -208,12 +209,12 @@ class Builder:
         return both_lines if both_lines and both_lines.known > header.known else None
 
     def is_new(self, draft: Draft, texts: list[str]) -> bool:
-        """Whether a band is the first of another message within the same rules."""
+        """Return whether a band is the first of another message within the same rules."""
         has_more = draft.header is not None or len(draft.head) > 0
         return has_more and labels.begins(" ".join(t for t in texts if t), self.profile)
 
     def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
-        """Takes the heading row if the band is it, begins with it, or is its upper half."""
+        """Set the heading row if the band contains it or its upper half. Return whether it does."""
         match = headings.match(band.texts(self.document_words), self.profile)
         if match is None and not waiting:
             match = headings.match(band.texts(self.document_words), self.profile, loose=True)
@@ -239,18 +240,21 @@ class Builder:
         return True
 
     def head(self, band: Band) -> list[PrintedRow]:
-        """A band above the headings: one row, or where that labels more, one for each line."""
+        """Return a band above the headings as one row, or as one row per line.
+
+        The variant with more recognized labels is chosen.
+        """
         single = [PrintedRow([line.text], page=band.page) for line in lines(band.words)]
         as_one_row = [band.printed(self.document_words)]
         return single if len(single) > 1 and self.labelled(single) > self.labelled(as_one_row) else as_one_row
 
     def labelled(self, rows: list[PrintedRow]) -> int:
-        """How many values have a label that the vocabulary knows."""
+        """Return the number of values with a known label."""
         labelled = (labels.parse(" ".join(filter(None, row.lines)), self.profile) for row in rows)
         return sum(1 for parts in labelled for label in parts if label.what and label.value)
 
     def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
-        """A band without rules between its rows: lines above the headings, headings, the rest."""
+        """Split a band without rules between its rows: lines above the headings, headings, remainder."""
         lines_of_band = lines(band.words)
         for start in range(min(8, len(lines_of_band))):
             best: tuple[int, Header] | None = None
@@ -269,10 +273,10 @@ class Builder:
         header = draft.header
         if len(band.edges) < len(draft.edges):
             plain = Band(band.page, draft.edges, band.words)
-            if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
+            if bands.has_keys(plain, header):  # vertical rules separate only the headings
                 band = plain
         rows = bands.rows(bands.aligned(band, draft.edges), header, self.document_words, torn)
-        if len(rows) == 1:  # its cells as they are, not as they were moved below the headings
+        if len(rows) == 1:  # keep its own cells, instead of those aligned with the headings
             rows = [band.printed(self.document_words)]
         draft.rows += rows
 
@@ -286,7 +290,7 @@ class Builder:
             self.loose_pieces.setdefault(id(draft), []).append(piece)
 
     def cut(self, draft: Draft, pieces: list[Piece]) -> None:
-        """The rows of pieces without vertical rules, once all lines of the table tell where its columns are."""
+        """Add the rows of pieces without vertical rules, with columns found from all their lines."""
         spans = next((piece.columns.spans for piece in pieces if piece.columns is not None), None)
         header = draft.header
         if spans is None or header is None:
@@ -299,12 +303,12 @@ class Builder:
                 if not headings.repeats(band.texts(self.document_words), header, self.profile):
                     rows = bands.rows(band, header, self.document_words)
                     for row in rows:
-                        row.edges = ()  # columns are found on each page anew: cells go by their number
+                        row.edges = ()  # columns are found separately on each page: cells match by their index
                     draft.rows += rows
 
 
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:
-    """The body of a piece, cut where rules or shading cut it."""
+    """Return the bands of a piece, separated by rules or shading."""
     if not piece.lines or piece.page is None:
         return []
     top, bottom = piece.top, piece.lines[-1].bottom
@@ -318,7 +322,7 @@ def _bands(piece: Piece, edges: list[float]) -> list[Band]:
 
 
 def _stacked(upper: Band, lower: Band, document_words: frozenset[str]) -> list[str] | None:
-    """Two bands of cells as one heading row: the texts above and below each other."""
+    """Return the texts of two bands that form one heading row."""
     if len(upper.edges) != len(lower.edges):
         lower = bands.aligned(lower, upper.edges)
     above, below = upper.texts(document_words), lower.texts(document_words)
