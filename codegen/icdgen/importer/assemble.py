@@ -16,7 +16,10 @@ from icdgen.importer.words import folded, squeezed, table_name
 
 
 def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict[str, Any]]:
-    """The trees by node name; appends to ``survey.import_findings``. ``prose``: keep descriptions as summaries."""
+    """Return the trees by node name. Findings are added to ``survey.import_findings``.
+
+    ``prose``: keep descriptions as summaries.
+    """
     nodes = _parts_by_node(document, survey, profile)
     everything = [enum for _, enum in survey.of(ReadEnum)]
     for node in nodes:
@@ -51,7 +54,10 @@ def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list
 
 
 def _keys(survey: Survey, profile: Profile) -> list[str]:
-    """The name that the manual gives to the node of each table; "" if neither a caption nor the profile names a node."""
+    """Return the name of the node of each table in the manual.
+
+    It is "" if neither a caption nor the profile names a node.
+    """
     keys, current, twins = [], "", _twins(survey)
     for result in survey.found:
         stated = _by_profile(result, profile)
@@ -98,7 +104,7 @@ def _by_profile(result: Found, profile: Profile) -> str | None:
 
 
 def _canonical(key: str, profile: Profile) -> str:
-    """The profile's name of a node that the manual calls ``key``."""
+    """Return the name in the profile of a node that the manual calls ``key``."""
     return next((w.name for w in profile.nodes if w.name == key or any(_says(key, m) for m in w.match)), key)
 
 

@@ -1,4 +1,4 @@
-"""The report of an import as text and as JSON."""
+"""Report of an import as text and as JSON."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def report(result: Result, colour: bool = False) -> str:
 
 
 def summary(result: Result) -> list[str]:
-    """The figures: tables by what they are and how surely they were read, then each file."""
+    """Return the numbers of tables by kind and certainty, then a line for each file."""
     kinds = Counter(result_of_table.what for result_of_table in result.survey.found)
     order = ["message", "enumeration", "list", "loggable frames", BACKGROUND, UNKNOWN]
     parts = [f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]]

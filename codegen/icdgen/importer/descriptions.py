@@ -28,7 +28,7 @@ class Described:
 
 
 def read(text: str, profile: Profile, is_enum: bool = False) -> Described:
-    """Reads a description."""
+    """Return the facts in a description, and its remaining prose."""
     text = plain(text)
     described = Described()
     spans: list[tuple[int, int]] = []

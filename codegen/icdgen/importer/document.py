@@ -50,7 +50,7 @@ class SourceRow:
 
     @property
     def shown(self) -> str:
-        """The filled cells for a finding."""
+        """The filled cells, for a finding."""
         return " | ".join(plain(cell.text) for cell in self.cells if cell.text.strip())
 
 
@@ -63,7 +63,7 @@ class Slot(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The text of the cell in the row and column where it begins, and in the rows that it spans; else empty."""
+        """Text of the cell in its first column, and in all rows that it spans; otherwise empty."""
         return self.cell.text if self.is_origin else ""
 
 
@@ -89,32 +89,32 @@ class SourceTable:
 
     @property
     def page(self) -> int | None:
-        """The page on which the table begins."""
+        """First page of the table."""
         return self.boxes[0].page if self.boxes else next((row.page for row in self.rows if row.page), None)
 
     @property
     def line(self) -> int | None:
-        """The line on which the first row stands, of sources that have lines."""
+        """Line of the first row, if the source has lines."""
         return next((row.line for row in self.rows if row.line), None)
 
     @property
     def spot(self) -> SourcePlace:
-        """Where the table stands, for a finding."""
+        """Place of the table, for a finding."""
         return SourcePlace(self.page, self.line, self.label, self.number - 1)
 
     def spot_of(self, row: SourceRow) -> SourcePlace:
-        """Where one of the rows stands."""
+        """Return the place of a row."""
         return SourcePlace(row.page or self.page, row.line, self.label, self.number - 1)
 
     @property
     def title(self) -> str:
-        """How a finding calls the table: ``table 12 (`Motor State`)``."""
+        """Title for a finding, such as ``table 12 (`Motor State`)``."""
         name = self.caption or (self.headings[-1] if self.headings else "")
         return f"table {self.number}" + (f" (`{plain(name)[:60]}`)" if name else "")
 
     @property
     def width(self) -> int:
-        """How many columns the table has."""
+        """Number of columns."""
         return max((len(row) for row in self.grid()), default=0)
 
     def grid(self) -> list[list[Slot]]:
@@ -152,7 +152,7 @@ class SourceTable:
 
     @property
     def titles(self) -> list[str]:
-        """The first row of several filled cells: usually the headings of the columns."""
+        """First row with several filled cells, usually the headings of the columns."""
         for row in self.rows:
             texts = [plain(cell.text) for cell in row.cells]
             if sum(map(bool, texts)) > 1:
@@ -171,7 +171,10 @@ class Heading:
     size: float = 0.0  # of its type; larger headings hold smaller ones that have no number
 
     def contains(self, other: Heading) -> bool:
-        """Whether the section goes on when another heading begins: section numbers decide, else the type size."""
+        """Return whether the section continues at another heading.
+
+        Section numbers are compared if both headings have one, otherwise type sizes.
+        """
         if self.number and other.number:
             return self.number.count(".") < other.number.count(".")
         return bool(self.number) or (not other.number and self.size > other.size + 0.4)

@@ -21,13 +21,13 @@ class Page(NamedTuple):
 
 @cache
 def pages() -> dict[str, Page]:
-    """The pages by code, ascending."""
+    """Return the pages by code, in ascending order."""
     _, *parts = _SECTION.split(_PAGE.read_text(encoding="utf-8"))
     sections = zip(parts[0::4], parts[1::4], parts[2::4], parts[3::4], strict=True)
     return {code: Page(title, severity, text.strip("\n")) for code, title, severity, text in sections}
 
 
 def explain(code: str) -> str:
-    """The page of a finding in Markdown. Raises `KeyError`."""
+    """Return the page of a finding in Markdown. Raise `KeyError`."""
     page = pages()[code]
     return f"# {code}: {page.title} ({page.severity})\n\n{page.text}\n"

@@ -20,7 +20,7 @@ _GOES_ON = re.compile(r"\s*[*/×·÷^²³]|\s*:\s*[0-9(.]|,[0-9]|[A-Za-z_%]|\s*[
 
 
 class Read(NamedTuple):
-    """A formula as the ICD writes it; ``gives`` is what it computes, "raw" or "physical"."""
+    """A formula in the notation of the ICD. ``gives`` is its result, "raw" or "physical"."""
 
     formula: str
     unit: str
@@ -30,7 +30,7 @@ class Read(NamedTuple):
 
 
 class Words(NamedTuple):
-    """How a manual calls raw and physical values."""
+    """Names of raw and physical values in a manual."""
 
     raw: re.Pattern[str]
     physical: re.Pattern[str]
@@ -61,7 +61,7 @@ def find(text: str, names: Words) -> Read | None:
 
 
 class Scaled(NamedTuple):
-    """The formula of a factor, "" for the factor 1, and the unit that stands behind it."""
+    """The formula of a factor ("" for the factor 1), and the unit after it."""
 
     formula: str
     unit: str = ""
@@ -102,7 +102,7 @@ def per_step(text: str, names: Words | None) -> Scaled | None:
 
 
 def mentions(text: str, names: Words) -> bool:
-    """Whether something that looks like a formula stands in the text."""
+    """Return whether the text contains something like a formula."""
     return any(_left(text[: sign.start()], names) for sign in re.finditer("=", text))
 
 
@@ -123,7 +123,7 @@ def _left(before: str, names: Words) -> tuple[str, str, int] | None:
 
 
 def _expression(text: str, at: int, variable: re.Pattern[str], name: str) -> tuple[str, int]:
-    """The longest expression that begins at ``at``, in the ICD's spelling, and where it ends."""
+    """Return the longest expression from ``at`` on in the notation of the ICD, and its end."""
     tokens: list[str] = []
     good, end = 0, at
     depth, operand, seen = 0, True, False

@@ -18,7 +18,7 @@ from icdgen.importer.words import squeezed, table_name
 def tree(
     node: NodeParts, document: Document, profile: Profile, prose: bool, import_findings: list[ImportFinding]
 ) -> dict[str, Any]:
-    """The ICD of a node as plain mappings and lists, in the order of the manual."""
+    """Return the ICD of a node as mappings and lists, in the order of the manual."""
     messages = [_message(item, prose) for item in node.messages]
     return {"icdgen": 1, "node": head(node, document, profile)} | _given(
         include=node.include,
@@ -37,7 +37,7 @@ def tree(
 
 
 def _given(**keys: Any) -> dict[str, Any]:
-    """The keys under which something stands."""
+    """Return the keys that have a value."""
     return {key: value for key, value in keys.items() if value}
 
 
@@ -55,7 +55,7 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
 
 
 def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
-    """The section `node` of the ICD."""
+    """Return the section `node` of the ICD."""
     section = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
     # Without a title in its properties, a document is cited by its file name.
     title = document.title or re.split(r"[/\\]", document.file)[-1]

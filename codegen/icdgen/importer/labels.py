@@ -1,4 +1,4 @@
-"""The rows above a message's fields: ``ID 132, Frame Length (bytes) 6``, in whatever cells they stand."""
+"""Rows above the fields of a message, such as ``ID 132, Frame Length (bytes) 6``, in any cells."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ class Labelled(NamedTuple):
 
 
 def parse(text: str, profile: Profile) -> list[Labelled]:
-    """All labels with a number behind them, in order; a label without one comes last, with an empty value."""
+    """Return all labels with a number after them, in order.
+
+    A label without a number is last, with an empty value.
+    """
     labelled: list[Labelled] = []
     label: list[str] = []
     words = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", growing_squeezed(plain(text))).replace(":", " : ").split()
@@ -49,7 +52,10 @@ def meaning(label: str, profile: Profile) -> str:
 
 
 def begins(text: str, profile: Profile) -> bool:
-    """Whether a line can only be the first row of a message's table: its id, and nothing that is not labelled."""
+    """Return whether a line can only be the first row of a message table.
+
+    It has the id of the message, and only labelled values.
+    """
     labelled = parse(text, profile)
     return (
         bool(labelled)

@@ -27,7 +27,7 @@ class ReadField:
 
     @property
     def end(self) -> int:
-        """The bit behind it; behind what the shortest frame has of it, if its length varies."""
+        """Bit after the field, or after its minimum length if that varies."""
         if "up_to" in self.facts:
             return self.at
         return self.at + self.bits * (self.facts.get("count") or self.count or 1)
@@ -41,7 +41,10 @@ class Extent(NamedTuple):
     bit_order: str
 
     def numbers_in(self, bit_order: str) -> list[int]:
-        """The numbers that the bits have in a bit order: within its byte, bit 0 of one order is bit 7 of the other."""
+        """Return the numbers of the bits in a bit order.
+
+        Within a byte, bit 0 of one order is bit 7 of the other.
+        """
         numbers = range(self.at, self.end)
         return list(numbers) if bit_order == self.bit_order else [number ^ 7 for number in numbers]
 
@@ -57,7 +60,7 @@ class ReadStruct:
 
 @dataclass(slots=True)
 class ReadMessage:
-    """A message as its own tables describe it."""
+    """A message as described by its own tables."""
 
     name: str
     kind: str
@@ -75,14 +78,14 @@ class ReadMessage:
     bit_order: str = "lsb0"
 
     def extents(self) -> list[Extent]:
-        """The bits of each field and of each run of reserved bits."""
+        """Return the bits of each field and of each run of reserved bits."""
         orders = [field.facts.get("bit_order", self.bit_order) for field in self.fields]
         fields = [Extent(field.at, field.end, order) for field, order in zip(self.fields, orders, strict=True)]
         return fields + self.reserved
 
     @property
     def all_fields(self) -> list[ReadField]:
-        """The fields of the message and of its structs."""
+        """Return the fields of the message and of its structs."""
         return [*self.fields, *(field for struct in self.structs for field in struct.fields)]
 
     @property
@@ -96,7 +99,7 @@ class ReadMessage:
 
     @property
     def reserved_bytes(self) -> int:
-        """How many bytes at the end only rows of reserved bits cover; 0 if the length of the message varies."""
+        """Number of bytes at the end that contain only reserved bits; 0 if the length varies."""
         used = (max((field.end for field in self.fields), default=0) + 7) // 8
         is_variable = any("up_to" in field.facts for field in self.fields)
         if self.length is None or is_variable or any(last >= 8 * used for _, last in self.gaps):
@@ -183,7 +186,7 @@ class Survey:
     import_findings: list[ImportFinding] = field(default_factory=list)
 
     def of(self, kind: type[T]) -> list[tuple[Found, T]]:
-        """The tables that gave a thing of this class, each with it."""
+        """Return the tables that gave an object of this class, each with the object."""
         return [(entry, entry.thing) for entry in self.found if isinstance(entry.thing, kind)]
 
 
@@ -203,7 +206,7 @@ class NodeParts:
     missing: list[Listed] = field(default_factory=list)
 
     def add(self, thing: Thing) -> None:
-        """Puts it to its like."""
+        """Add an object to the list of its class."""
         by_kind: dict[type, list[Any]] = {
             ReadMessage: self.messages, ReadEnum: self.enums, ReadList: self.lists, ReadLog: self.logs,
         }  # fmt: skip
@@ -211,5 +214,5 @@ class NodeParts:
 
     @property
     def holds(self) -> bool:
-        """Whether there is anything for an ICD."""
+        """Whether there are any contents for an ICD."""
         return bool(self.messages or self.enums or self.logs)

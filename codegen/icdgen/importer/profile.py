@@ -133,7 +133,7 @@ class Profile:
 
     @cached_property
     def types_of_profile(self) -> dict[str, TypeName]:
-        """The type names that the profile itself explains, without blanks and case."""
+        """Type names that the profile explains, without blanks and case."""
         own = self.own.get("types", {})
         return {"".join(name.casefold().split()): TypeName(t["type"], t.get("bits", 0)) for name, t in own.items()}
 
@@ -144,13 +144,16 @@ class Profile:
         return node.get("byte_order", "little"), node.get("bit_order", "lsb0")
 
     def states_order(self, key: str) -> bool:
-        """Whether the profile itself states `byte_order` or `bit_order` for all of its nodes."""
+        """Return whether the profile states `byte_order` or `bit_order` for all of its nodes."""
         nodes = self.own.get("nodes", ())
         return key in self.own.get("node", {}) or (bool(nodes) and all(key in node for node in nodes))
 
     @property
     def reads_descriptions(self) -> bool:
-        """Whether rules look into descriptions for units, formulas and constants: if the profile states phrases."""
+        """Whether rules search descriptions for units, formulas and constants.
+
+        This is the case if the profile states phrases.
+        """
         return "phrases" in self.own or "variables" in self.own
 
     @cached_property
@@ -159,7 +162,10 @@ class Profile:
         return frozenset(text.casefold() for text in self.data["empty"])
 
     def is_reserved(self, name: str) -> bool:
-        """Whether a field of this name means nothing; an entry of `reserved` that begins with ``~`` is a pattern."""
+        """Return whether a field of this name is reserved.
+
+        An entry of `reserved` that begins with ``~`` is a pattern.
+        """
         texts = self.data["reserved"]
         return (bool(folded(name)) and folded(name) in self.reserved) or any(
             name.casefold() == text.casefold() or (text.startswith("~") and re.search(text[1:], name, re.I))
@@ -186,7 +192,7 @@ class Profile:
 
 
 def phrase(text: str) -> re.Pattern[str]:
-    """A phrase of descriptions as a pattern to be searched for."""
+    """Return the search pattern of a phrase in descriptions."""
     stand_ins = {
         "unit": r"(?:\[\s*(?P<unit>[^\]]+?)\s*\]|(?P<bare>[^\s.,;)]+(?: units)?))",
         "number": r"(?P<number>(?:0x[0-9a-f]+|[0-9]+)(?:\s*\(\s*0x[0-9a-f]+\s*\))?)",
@@ -220,7 +226,10 @@ def find(name: str | None) -> Path | None:
 
 
 def load(path: Path | None = None) -> Profile:
-    """The profile that comes with icdgen, with ``path`` laid over it. Raises `Findings` for a profile that is wrong."""
+    """Return the profile of icdgen, with the settings of ``path``.
+
+    Raise `Findings` for an invalid profile.
+    """
     if path is None:
         return Profile(plain(source.read(DEFAULT)))
     return of_tree(source.read(path))

@@ -37,7 +37,7 @@ def listed(node: NodeParts, import_findings: list[ImportFinding]) -> None:
 
 
 def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
-    """The list's row for a message: by kind and id, else by name."""
+    """Return the row of a list for a message, by kind and id, or else by name."""
     free = [row for row in rows if not row.used and (not row.kind or not message.kind or row.kind == message.kind)]
     same = [row for row in free if (row.id, row.set_id, row.get_id) == message.ids]
     titled = [row for row in free if squeezed(row.name) == squeezed(message.name)]
@@ -132,7 +132,10 @@ def _by_title(title: str, everything: list[ReadEnum], node: NodeParts) -> ReadEn
 
 
 def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> str:
-    """The name under which the node sees the enumeration; it is repeated in the node where it sees none."""
+    """Return the name of the enumeration in the scope of the node.
+
+    If it is out of scope, it is copied to the node.
+    """
     names = {name.removesuffix(".yaml") for name in node.include}
     for visible in (node, *(n for n in nodes if n.name in names)):
         for own in visible.enums:
@@ -152,7 +155,7 @@ def complete(node: NodeParts, head: dict[str, Any], import_findings: list[Import
 
 
 def _is_held(message: ReadMessage, most: int, import_findings: list[ImportFinding]) -> bool:
-    """Whether an ICD can hold the message; ``most`` is the largest id."""
+    """Return whether an ICD can represent the message. ``most`` is the largest id."""
 
     def say(code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY) -> None:
         import_findings.append(

@@ -42,7 +42,7 @@ class Result:
 
     @property
     def failed(self) -> bool:
-        """Whether something that the manual has is missing from the ICD, or may be wrong in it."""
+        """Whether the ICD lacks something from the manual, or may be wrong."""
         return any(t.severity == "error" for t in self.survey.import_findings)
 
     def sureness(self) -> Counter[str]:
@@ -50,7 +50,7 @@ class Result:
         return Counter(self.sure_of(entry.table) for entry in self.survey.found if entry.what != UNKNOWN)
 
     def sure_of(self, table: SourceTable) -> str:
-        """How sure the reading of a table is."""
+        """Return the certainty of the reading of a table."""
         about = [t for t in self.survey.import_findings if t.is_about_table(table.spot.order) and t.code != "IMP035"]
         what = next((entry.what for entry in self.survey.found if entry.table is table), "")
         if what == UNKNOWN or any(t.severity == "error" or t.sure == DOUBTFUL for t in about):

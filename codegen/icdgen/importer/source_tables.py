@@ -1,4 +1,4 @@
-"""The tables of a document: where they stand, and which of them are of one kind."""
+"""Tables of a document: their places and kinds."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def count_runs(tables: list[SourceTable]) -> None:
 
 
 def kinds(tables: list[SourceTable]) -> list[list[SourceTable]]:
-    """The tables in groups with the same headings, the most frequent group first."""
+    """Return the tables grouped by headings, the largest group first."""
     groups: dict[tuple[str, ...], list[SourceTable]] = {}
     for table in tables:
         groups.setdefault(table.kind, []).append(table)
@@ -48,7 +48,7 @@ def kinds(tables: list[SourceTable]) -> list[list[SourceTable]]:
 
 
 def name_of(table: SourceTable) -> str:
-    """How people call the table: ``Table 4-12: Motor State``, or its caption, or the heading above it."""
+    """Return the name of a table: ``Table 4-12: Motor State``, its caption, or the heading above it."""
     if table.label is not None:
         return f"Table {table_name(table.label)}" + (f": {table.caption}" if table.caption else "")
     return table.caption or (table.headings[-1] if table.headings else table.sheet)

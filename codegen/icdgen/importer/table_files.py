@@ -23,7 +23,7 @@ CODE = "IMP006"
 
 
 def is_folder_of_tables(path: Path) -> bool:
-    """Whether the path is a folder that contains table files."""
+    """Return whether the path is a folder that contains table files."""
     return path.is_dir() and next(path.glob(f"*{SUFFIX}"), None) is not None
 
 

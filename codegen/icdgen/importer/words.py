@@ -26,13 +26,13 @@ def plain(text: str) -> str:
 
 
 def tidy_unit(text: str) -> str:
-    """A unit as printed, without brackets, and without a blank before a raised figure."""
+    """Return a unit without brackets, and without a blank before a raised figure."""
     return re.sub(r"\s+(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻])", "", plain(text).strip("[] "))
 
 
 @lru_cache(maxsize=1 << 16)
 def folded(text: str) -> tuple[str, ...]:
-    """The words of a heading, a label or a title, without case and punctuation."""
+    """Return the words of a heading, a label or a title, without case and punctuation."""
     return tuple(word.casefold() for word in _WORD.findall(plain(text)))
 
 
@@ -48,17 +48,17 @@ _GROWING = re.compile(
 
 
 def grows(text: str) -> bool:
-    """Whether a figure depends on a count: ``8 + 6*N``, ``N + 1``."""
+    """Return whether a number depends on a count: ``8 + 6*N``, ``N + 1``."""
     return _GROWING.fullmatch(plain(text).strip("() ")) is not None
 
 
 def growing_squeezed(text: str) -> str:
-    """The text without the blanks in figures that depend on a count."""
+    """Return the text without blanks in numbers that depend on a count."""
     return _GROWING.sub(lambda m: "".join(m.group().split()), text)
 
 
 def number(text: str) -> int | None:
-    """The whole number that the text is, decimal or 0x; a raised footnote mark behind it is left out."""
+    """Return the integer in a text, decimal or 0x, without a raised footnote mark, or None."""
     text = _RAISED.sub("", plain(text)).rstrip("*†").strip()
     if not _NUMBER.match(text) or len(text) > 24:
         return None
@@ -69,7 +69,10 @@ _PART = 1_000_000  # more than the tables of a chapter
 
 
 def table_number(printed: str) -> int:
-    """The number of a table, ``12`` or ``4-12``, as one that keeps their order; `table_name` is the way back."""
+    """Return a number that preserves the order of table numbers such as ``12`` and ``4-12``.
+
+    `table_name` is the reverse.
+    """
     number = 0
     for part in re.split("[-.]", printed):
         number = number * _PART + int(part[:6])
@@ -88,7 +91,7 @@ _SOFT = "\u00ad"
 
 
 def unbroken(lines: list[str], full: list[bool], document_words: frozenset[str]) -> list[str]:
-    """The lines of a wrapped cell, those put together between which a word was broken because it fills its line."""
+    """Return the lines of a wrapped cell, with words joined that were broken to fill a line."""
     texts: list[str] = []
     for index, line in enumerate(lines):
         before = texts[-1].rsplit(" ", 1)[-1] if texts else ""
@@ -100,10 +103,11 @@ def unbroken(lines: list[str], full: list[bool], document_words: frozenset[str])
 
 
 def join(lines: list[str], document_words: frozenset[str] = frozenset(), full: list[bool] | None = None) -> str:
-    """The lines of a wrapped cell as one text.
+    """Return the lines of a wrapped cell as one text.
 
-    ``document_words`` are words that the document has in one piece: they decide whether a hyphen at a line's end belongs to the
-    word, and whether a word that fills its line (``full``) goes on in the next.
+    ``document_words`` are unbroken words of the document. They determine whether a
+    hyphen at the end of a line belongs to the word, and whether a word that fills its
+    line (``full``) continues in the next line.
     """
     text = ""
     for index, line in enumerate(lines):
@@ -129,7 +133,10 @@ def join(lines: list[str], document_words: frozenset[str] = frozenset(), full: l
 
 
 def _holds_on(before: str, after: str) -> bool:
-    """Whether a line may break here without a blank: after a hyphen or a slash in a word, or within a formula."""
+    """Return whether a line may break here without a blank.
+
+    This is the case after a hyphen or slash in a word, and within a formula.
+    """
     return (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit())
 
 

@@ -18,8 +18,11 @@ def read(
     path: Path, profile: Profile, progress: Progress | None = None, jobs: int | None = None,
     pages: tuple[int, int] | None = None,
 ) -> Document:  # fmt: skip
-    """The manual in ``path``. Raises `Findings` for a file from which nothing can be read, `UserError` for pages that it
-    does not have."""
+    """Return the document in ``path``.
+
+    Raise `Findings` if nothing can be read, and `UserError` for pages that do not
+    exist.
+    """
     name = str(path)
     try:
         with open(path, "rb") as file:
@@ -61,7 +64,7 @@ def read(
 
 
 def _kind(path: Path, start: bytes) -> str:
-    """The kind of a document that is neither PDF nor text, by its first bytes and the end of its name."""
+    """Return the kind of a document other than PDF or text, by its first bytes and its suffix."""
     suffix = path.suffix.casefold()
     if start[:4] == b"PK\x03\x04":
         return {".xlsx": "xlsx", ".xlsm": "xlsx", ".docx": "docx"}.get(suffix, "")

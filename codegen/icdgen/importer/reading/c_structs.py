@@ -46,7 +46,7 @@ class Unreadable(Exception):
 
 @dataclass
 class Member:
-    """A member of a struct at its place; ``bit`` is set for bit fields, ``count`` for arrays."""
+    """A member of a struct and its offset. ``bit`` is set for bit fields, ``count`` for arrays."""
 
     byte: int
     bits: int
@@ -60,7 +60,7 @@ class Member:
 
 @dataclass
 class Layout:
-    """The members of a struct, its size and its alignment in bytes, and where padding stands."""
+    """The members of a struct, its size and its alignment in bytes, and its padding."""
 
     members: list[Member] = field(default_factory=list)
     size: int = 0
@@ -139,7 +139,7 @@ def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
 
 
 def _wrong_line(source: CText, c_parser: Any) -> int:
-    """The line of the first declaration that the parser refuses, where it does not tell the line."""
+    """Return the line of the first invalid declaration, if the parser does not report it."""
     for line, code in source.beginnings:
         try:
             c_parser.CParser().parse(f"{_PRELUDE}\n{code}", "text")
@@ -231,7 +231,7 @@ class _Reader:
     # --- layout ----------------------------------------------------------------------------------------------------
 
     def layout(self, node: Any) -> Layout:
-        """The places of the members. Raises `Unreadable` for what is no sequence of bytes."""
+        """Return the layout of a struct. Raise `Unreadable` if it is not a sequence of bytes."""
         if node.decls is None:
             inner = self.structs.get(node.name)
             if inner is None:
@@ -268,7 +268,7 @@ class _Reader:
         return layout
 
     def aligned(self, at: int, boundary: int, layout: Layout, name: str) -> int:
-        """The next multiple of a number of bits; whole bytes on the way are noted as padding."""
+        """Return the next multiple of a number of bits. Skipped bytes are recorded as padding."""
         padding = -at % boundary
         if padding >= 8:
             where = f"in front of `{name}`" if name else "at the end"
@@ -276,7 +276,10 @@ class _Reader:
         return at + padding
 
     def member(self, declaration: Any) -> tuple[list[Member], int, int]:
-        """The members that a declaration gives, counted from its own beginning, its size and its alignment in bytes."""
+        """Return the members of a declaration, and its size and alignment in bytes.
+
+        Offsets count from the beginning of the declaration.
+        """
         kind, counts = declaration.type, []
         while isinstance(kind, self.ast.ArrayDecl):
             if kind.dim is None:
@@ -331,7 +334,7 @@ class _Reader:
         return [place], size // 8 * count, size // 8
 
     def resolved(self, kind: Any) -> Any:
-        """The type behind typedefs."""
+        """Return the type after resolving typedefs."""
         inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
         while isinstance(inner, self.ast.IdentifierType) and len(inner.names) == 1 and inner.names[0] in self.typedefs:
             definition = self.typedefs[inner.names[0]]
@@ -361,7 +364,7 @@ class _Reader:
         return _SIZES[key]
 
     def members_of(self, kind: Any) -> Iterator[tuple[int, str]]:
-        """The enumerators of an enumeration, by its tag or the name of its typedef."""
+        """Return the enumerators of an enumeration, by its tag or typedef."""
         inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
         names = list(inner.names) if isinstance(inner, self.ast.IdentifierType) else []
         resolved = self.resolved(kind)
@@ -370,7 +373,7 @@ class _Reader:
         yield from next((self.enums[name] for name in names if name in self.enums), [])
 
     def number(self, node: Any) -> int:
-        """The value of a constant expression. Raises `Unreadable`."""
+        """Return the value of a constant expression. Raise `Unreadable`."""
         if isinstance(node, self.ast.Constant):
             return int(node.value.rstrip("uUlL"), 0)
         if isinstance(node, self.ast.ID) and node.name in self.values:

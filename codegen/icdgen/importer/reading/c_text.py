@@ -1,4 +1,7 @@
-"""The text of a C file before it is parsed: comments by line, constants, packing, and only the declarations of types."""
+"""Preparation of a C file for the parser.
+
+It extracts comments by line, constants, packing, and the declarations of types.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +59,7 @@ class CText:
         return take
 
     def _declarations(self, code: str, pragmas: list[tuple[int, re.Match[str]]]) -> str:
-        """The struct, enum and typedef declarations, everything else made blank."""
+        """Return the struct, enum and typedef declarations, with everything else blank."""
         ranges = [(match.start(), match.end()) for match in _TYPEDEF.finditer(code)]
         at = 0
         while (match := _BEGINS.search(code, at)) is not None:
@@ -83,11 +86,11 @@ class CText:
         return "".join(texts) + "\n"
 
     def above(self, line: int) -> str:
-        """The comment that ends on the line above."""
+        """Return the comment that ends on the line above."""
         return self.comments.get(line - 1, "") if line - 1 in self.alone else ""
 
     def beside(self, line: int | None) -> str:
-        """The comment behind a member, or alone above it."""
+        """Return the comment after a member, or the one above it."""
         if line is None:
             return ""
         return (self.comments.get(line, "") if line not in self.alone else "") or self.above(line)

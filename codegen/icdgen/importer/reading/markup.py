@@ -76,7 +76,7 @@ def _html_blocks(element: Any, profile: Profile) -> Iterator[Block | Caption]:
 
 
 def _is_layout(table: Any) -> bool:
-    """Whether a table holds other tables: it only arranges the page."""
+    """Return whether a table contains other tables, and therefore only arranges the page."""
     return table.find(".//table") is not None
 
 
@@ -91,7 +91,7 @@ def _html_table(table: Any) -> SourceTable:
 
 
 def _within(rows: list[SourceRow]) -> list[SourceRow]:
-    """The rows with row spans cut off at the end of the table, as browsers draw them."""
+    """Return the rows with row spans limited to the table, as in browsers."""
     for index, row in enumerate(rows):
         for cell in row.cells:
             cell.rows = min(cell.rows, len(rows) - index)
@@ -104,7 +104,7 @@ def _span(cell: Any, name: str) -> int:
 
 
 def _text(element: Any) -> str:
-    """The text with a line break where a block begins or ends, and for `<br>`."""
+    """Return the text with a line break at each side of a block, and for `<br>`."""
     parts = [element.text or ""]
     for child in element:
         if isinstance(child.tag, str) and child.tag not in _SKIPPED:
@@ -172,7 +172,7 @@ def read_docx(path: Path, profile: Profile) -> Document:
 
 
 def _word_rows(table: Any) -> list[SourceRow]:
-    """The rows of a Word table; a cell that goes on below has its row span."""
+    """Return the rows of a Word table. Vertically merged cells have a row span."""
     rows: list[SourceRow] = []
     above: dict[int, Cell] = {}  # column -> the cell that may go on
     for row in table._tbl.tr_lst:

@@ -30,7 +30,10 @@ def read(
     path: Path, profile: Profile, progress: Callable[[int, int, int], None] | None = None, jobs: int | None = None,
     only: tuple[int, int] | None = None,
 ) -> Document:  # fmt: skip
-    """The document of a PDF, or of the pages from one to another. Raises `Findings` where nothing can be read."""
+    """Return the document of a PDF, or of a range of its pages.
+
+    Raise `Findings` if nothing can be read.
+    """
     name = str(path)
     count, title = _open(path, name)
     wanted = range(count)
@@ -54,7 +57,7 @@ def read(
 
 
 def _open(path: Path, name: str) -> tuple[int, str]:
-    """The number of pages and the title."""
+    """Return the number of pages and the title."""
     try:
         import pdfplumber
         from pdfminer.pdfdocument import PDFEncryptionError, PDFPasswordIncorrect
@@ -195,5 +198,5 @@ def _captions(page: Page, profile: Profile) -> int:
 
 
 def _known(pages: list[Page]) -> frozenset[str]:
-    """All words of the document in one piece."""
+    """Return all words of the document that are not broken at the end of a line."""
     return frozenset(word.text.strip(".,;:()[]") for page in pages for word in page.words)

@@ -83,7 +83,7 @@ class _Sheet:
         self.sheet, self.formulas, self.document = sheet, formulas, document
 
     def rows(self) -> Cells:
-        """The rows up to the last one with a value; cells that are merged into another one are left out."""
+        """Return the rows up to the last one with a value, without cells merged into others."""
         height, width = min(self.sheet.max_row, MOST_ROWS), min(self.sheet.max_column, MOST_COLUMNS)
         spans = {}
         covered = set()
@@ -104,7 +104,7 @@ class _Sheet:
         return result
 
     def text(self, row: int, column: int) -> str:
-        """The value of a cell as text; reports values that are not what was typed."""
+        """Return the value of a cell as text. Report values that differ from what was typed."""
         cell = self.sheet.cell(row, column)
         value = cell.value
         where = f"sheet `{self.sheet.title}`, cell {cell.coordinate}"
@@ -162,7 +162,7 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
 
 
 def _without_empty_columns(rows: list[SourceRow]) -> list[SourceRow]:
-    """The rows without empty cells behind the last filled one of the table."""
+    """Return the rows without empty columns at the right of the table."""
     if any(cell.columns > 1 or cell.rows > 1 for row in rows for cell in row.cells):
         return rows
     width = max((index + 1 for row in rows for index, cell in enumerate(row.cells) if cell.text), default=0)

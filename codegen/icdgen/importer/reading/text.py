@@ -17,7 +17,7 @@ _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z
 
 
 def read(path: Path, profile: Profile) -> Document:
-    """The document of a text. Raises `Findings` if it is not UTF-8."""
+    """Return the document of a text file. Raise `Findings` if it is not UTF-8."""
     name = str(path)
     text = utf8_text(path, "save the text as UTF-8")
     document = Document(name)
@@ -75,6 +75,6 @@ class _Reader:
             self.rows = []
 
     def done(self) -> list[Block]:
-        """The blocks, each caption with its table."""
+        """Return the blocks, with captions assigned to tables."""
         self.close()
         return attach_captions(self.blocks)

@@ -42,9 +42,9 @@ def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) 
 
 
 def _hosts(name: str, part: Part, parts: list[Part], messages: list[Part]) -> list[tuple[Part, Draft]]:
-    """The fields of this name, in the message that the part names, or in all.
+    """Return the fields of this name in the message that the part names, or in all messages.
 
-    Where several tables speak of one name, each goes to the nearest message above it.
+    If several tables describe one name, each belongs to the nearest message above it.
     """
     fields = [
         (m, d)

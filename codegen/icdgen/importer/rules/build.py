@@ -50,7 +50,10 @@ class Builder:
         part.drafts = joined_parts(part.drafts, self.order, is_register, length, self.notes, part.rule)
 
     def continued(self, parts: list[Part]) -> list[Part]:
-        """The messages, those put together that one rule reads from tables that follow each other with the same id and kind."""
+        """Return the messages, with consecutive tables of one message joined.
+
+        Such tables have one rule, id and kind.
+        """
         merged: list[Part] = []
         last: Part | None = None
         for part in parts:
@@ -177,7 +180,10 @@ class Builder:
         return field
 
     def enumeration(self, draft: Draft, part: Part) -> str:
-        """The name of the enumeration with the field's members; one for all fields of this name and these members."""
+        """Return the name of the enumeration with the members of the field.
+
+        Fields with one name and equal members share an enumeration.
+        """
         members = [ReadMember(value, name) for value, name in draft.members]
         stated = [normalised(name)] if (name := draft.roles.get("enumeration")) else []
         for name in (*stated, draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):

@@ -23,12 +23,15 @@ class Roles:
     byte_shift: int = 0  # bytes to add: the byte of a row whose bits are melted columns
 
     def get(self, role: str) -> str:
-        """The text of a role; empty if nothing gives it."""
+        """Return the text of a role, or an empty text."""
         return self.given.get(role, "")
 
 
 class RoleReader:
-    """Reads the roles of the rows of one table. ``words`` has all words of the document, ``empty`` the texts that mean no value."""
+    """Reader of the roles of the rows of one table.
+
+    ``words`` are all words of the document. ``empty`` are texts that mean no value.
+    """
 
     def __init__(
         self,
@@ -65,7 +68,7 @@ class RoleReader:
         return fields
 
     def translated(self, given: dict[str, str]) -> dict[str, str]:
-        """The roles, the words that `map` names replaced by their meanings."""
+        """Return the roles, with words in `map` replaced by their meanings."""
         return {role: self.rule.map.get(role, {}).get(text.casefold(), text) for role, text in given.items()}
 
     def read_columns(self, row: DataRow, given: dict[str, str], columns: list[tuple[Column, list[str]]]) -> None:
@@ -137,7 +140,10 @@ class RoleReader:
         return entries
 
     def taken(self, row: DataRow, name: str, patterns: tuple[Pattern, ...], text: str) -> dict[str, str]:
-        """The translated roles of one text; reports a text that no pattern takes, and what a pattern leaves of it."""
+        """Return the translated roles of one text.
+
+        Report a text that matches no pattern, and text that a pattern does not cover.
+        """
         is_name = any("name" in pattern.roles for pattern in patterns)
         if not text or (text.casefold() in self.empty and not is_name):  # a dash may be the name of reserved bits
             return {}
@@ -276,7 +282,7 @@ def _add(given: dict[str, str], further: dict[str, str]) -> None:
 
 
 def find_columns(column: Column, titles: list[str]) -> list[str]:
-    """The headings of the table that an entry of `columns` is about; empty if one of them is missing."""
+    """Return the headings of the columns of an entry of `columns`, or none if one is missing."""
     names = []
     for key in column.titles:
         if key.startswith("~"):

@@ -1,7 +1,7 @@
-"""The kinds of tables of a document, each with the skeleton of a rule: `icdgen import FILE --explore`.
+"""Kinds of tables in a document, with the skeleton of a rule: `icdgen import FILE --explore`.
 
-A kind is a set of tables with the same headings; tables of different kinds are never put together. The skeleton names every
-column and gives none a role: the user states what a column means.
+A kind is a set of tables with equal headings. The skeleton contains every column
+without a role: the user states the meaning of the columns.
 """
 
 from __future__ import annotations

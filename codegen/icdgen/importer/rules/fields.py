@@ -49,12 +49,12 @@ class Draft:
 
     @property
     def size(self) -> int:
-        """How many bits of the frame the field has; 0 if the end of the frame decides."""
+        """Number of bits of the field in the frame; 0 if the end of the frame determines it."""
         return 0 if self.facts.get("count") == "rest" or "size" in self.facts else self.bits * (self.count or 1)
 
     @property
     def end(self) -> int:
-        """The number of the bit behind the field."""
+        """Bit after the field."""
         return self.at + self.size
 
 
@@ -200,7 +200,7 @@ class FieldReader:
         return numbers
 
     def type_of(self, roles: Roles, where: str, spot: SourcePlace) -> TypeName | None:
-        """The type that the rule, the row or the profile's `types` state."""
+        """Return the type that the rule, the row or the `types` of the profile state."""
         name = roles.get("type")
         if not name and roles.members:
             return TypeName("enum")

@@ -166,7 +166,10 @@ class _Interpreter:
         part.drafts += reader.read(roles)
 
     def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
-        """The roles that the rule states, or finds in texts around the table and in its rows; the nearest text first."""
+        """Return the roles that the rule states, or that texts around the table and its rows contain.
+
+        The nearest text has precedence.
+        """
         given = dict(rule.literals)
         sources: dict[str, str] = {}  # role -> source that gave it; literals have none
         missing: list[tuple[str, Pattern]] = []
@@ -216,7 +219,10 @@ class _Interpreter:
                 self.disagree(rule, table.title, table.spot, role, values)
 
     def texts(self, rule: Rule, table: SourceTable, source: str) -> list[str]:
-        """The texts of a source, the nearest first. Of rows: each of them, then those above the headings as one text."""
+        """Return the texts of a source, the nearest first.
+
+        For rows, these are each row, then the rows above the headings as one text.
+        """
         if source == "row":
             texts = [
                 " | ".join(filter(None, (cell_text(c.text, self.document_words) for c in r.cells))) for r in table.rows

@@ -120,7 +120,7 @@ class Pattern:
 
     @property
     def roles(self) -> frozenset[str]:
-        """The roles that it may give."""
+        """Roles that the pattern may give."""
         return frozenset({self.text}) if self.regex is None else frozenset(self.regex.groupindex)
 
     def order_of(self, *roles: str) -> list[str]:
@@ -184,7 +184,7 @@ def take(patterns: Sequence[Pattern], text: str) -> Taken | None:
 
 
 def _listed(match: re.Match[str], text: str) -> str:
-    """The part of a text in which a pattern takes two numbers that are listed, not consecutive, as the ends of a range."""
+    """Return the text in which a pattern takes two listed numbers for the ends of a range."""
     for first, last in (("byte", "last_byte"), ("bit", "last_bit")):
         if match.groupdict().get(first) and match.groupdict().get(last):
             (start, end), (begin, stop) = match.span(first), match.span(last)
@@ -197,7 +197,7 @@ def _listed(match: re.Match[str], text: str) -> str:
 
 @lru_cache(maxsize=1 << 16)
 def normalised(text: str) -> str:
-    """The text in one line, full-width characters and odd blanks made ordinary."""
+    """Return the text in one line, with ordinary characters for full-width ones and for blanks."""
     # Documents from East Asia print brackets, colons and digits as full-width characters. NFKC of the whole text
     # would change superscripts of units, too.
     wide = "".join(unicodedata.normalize("NFKC", c) if "！" <= c <= "～" or c == "　" else c for c in text)
@@ -205,12 +205,18 @@ def normalised(text: str) -> str:
 
 
 def cell_text(text: str, document_words: frozenset[str]) -> str:
-    """The text of a cell in one line; a word that a line break parts at its hyphen is put together if ``document_words`` has it."""
+    """Return the text of a cell in one line.
+
+    A word that is broken at a hyphen is joined if ``document_words`` contains it.
+    """
     return normalised(join(text.split("\n"), document_words) if "\n" in text else text)
 
 
 def whole_number(text: str, base: int = 10) -> int | None:
-    """The whole number of ``16``, ``0x10``, ``10h`` or ``0b10``; ``base`` is that of figures without a mark."""
+    """Return the value of ``16``, ``0x10``, ``10h`` or ``0b10``, or None.
+
+    ``base`` is the base of figures without a prefix or suffix.
+    """
     text = text.replace("−", "-").replace("–", "-").replace(" ", "").strip()
     if re.fullmatch(r"0[xX][0-9a-fA-F]+", text):
         return int(text, 16)
@@ -257,7 +263,7 @@ _TYPE_NAMES = [
 
 
 def type_of(name: str) -> TypeName | None:
-    """The type that a name of common use means; None for one that only a profile can explain."""
+    """Return the type of a commonly used name, or None if only a profile can explain it."""
     text = normalised(name).casefold()
     for pattern, kind, bits in _TYPE_NAMES:
         match = re.fullmatch(pattern, text)

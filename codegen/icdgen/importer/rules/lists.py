@@ -90,7 +90,10 @@ def _number(rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Note
 
 
 def bit_of_mask(text: str) -> int | None:
-    """The number of the one bit in a mask of bytes whose first byte has the lowest bits; None if it is no such mask."""
+    """Return the number of the only bit in a mask of bytes, or None.
+
+    The first byte has the lowest bits.
+    """
     if not _MASK.match(text.strip()):
         return None
     data = bytes.fromhex(text.strip().removeprefix("0x").replace(" ", ""))

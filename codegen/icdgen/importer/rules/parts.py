@@ -26,16 +26,16 @@ class Part:
 
     @property
     def name(self) -> str:
-        """The name of the message."""
+        """Name of the message."""
         return self.given.get("message", "")
 
     @property
     def where(self) -> str:
-        """How a finding calls it."""
+        """Title of the part for a finding."""
         return f"{self.table.title}, message `{self.name}`" if self.name else self.table.title
 
     def number(self, role: str) -> int | None:
-        """The number of an id or a length; None if nothing gives it."""
+        """Return the number of an id or a length, or None."""
         text = self.given.get(role, "")
         return whole_number(text, self.rule.base) if text else None
 

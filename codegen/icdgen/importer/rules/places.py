@@ -48,7 +48,7 @@ class PlaceReader:
         return sorted([(byte, numbers["bit"]), (numbers.get("last_byte", byte), numbers["end_bit"])])
 
     def counts_through(self, numbers: dict[str, int]) -> bool:
-        """Whether the bit numbers of a range ascend from its first to its last byte."""
+        """Return whether bit numbers ascend from the first to the last byte of a range."""
         is_in_one_byte = numbers.get("last_byte", numbers["byte"]) == numbers["byte"]
         return is_in_one_byte or self.order in positions.MONOTONIC or self.rule.what != "message"
 
@@ -88,10 +88,11 @@ class PlaceReader:
     def frame_bits(
         self, numbers: dict[str, int], at: int, size: int, where: str, spot: SourcePlace
     ) -> list[Bit] | None:
-        """The bits of a place that does not count through the frame; empty for one that does. None, with a finding, if
-        bytes and bit numbers do not agree.
+        """Return the bits of a place whose bit numbers do not ascend through the frame.
 
-        Bit 15 of two big-endian bytes is the most significant bit of the first one.
+        Return an empty list if they do. Return None, with a finding, if bytes and bit
+        numbers contradict each other. Bit 15 of two big-endian bytes is the most
+        significant bit of the first byte.
         """
         if "end_bit" in numbers:
             first, last = self.ends(numbers)

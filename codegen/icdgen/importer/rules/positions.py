@@ -14,12 +14,12 @@ MONOTONIC = ORDERS[:2]  # bit numbers ascend from byte to byte: the least (or mo
 
 
 def is_list(text: str) -> bool:
-    """Whether a text lists several numbers or ranges: ``0, 2``, ``3 and 5-7``."""
+    """Return whether a text lists several numbers or ranges: ``0, 2``, ``3 and 5-7``."""
     return _LIST.fullmatch(text.strip()) is not None
 
 
 def is_separator(text: str) -> bool:
-    """Whether the text between two numbers separates the items of a list. A dash does not: it makes a range."""
+    """Return whether the text between two numbers separates list items. A dash makes a range."""
     return _PARTING.fullmatch(text) is not None
 
 

@@ -53,7 +53,10 @@ def read_rows(rule: Rule, table: SourceTable, notes: Notes) -> tuple[list[str], 
 
 
 def _titles(heads: list[list[Slot]]) -> list[str]:
-    """The heading of each column; one over several columns gets a number behind it (``Name``, ``Name.2``)."""
+    """Return the heading of each column.
+
+    A heading over several columns gets a number: ``Name``, ``Name.2``.
+    """
     width = max(map(len, heads), default=0)
     titles: list[str] = []
     for column in range(width):
@@ -63,13 +66,17 @@ def _titles(heads: list[list[Slot]]) -> list[str]:
 
 
 def _numbered(title: str, before: list[str]) -> str:
-    """The heading with its number if columns to the left have it, too."""
+    """Return the heading, with a number if columns to the left have it, too."""
     count = before.count(title)
     return f"{title}.{count + 1}" if count and title else title
 
 
 def _completed(rule: Rule, titles: list[str], slots: list[Slot]) -> list[Slot]:
-    """The slots of a row, with an empty cell in the column of `absent` if the row has a cell less than there are headings."""
+    """Return the cells of a row.
+
+    If the row has one cell less than headings, an empty cell is added in the column
+    `absent`.
+    """
     at = next((index for index, title in enumerate(titles) if title in rule.absent), None)
     if at is None or len(slots) != len(titles) - 1 or not slots[at].text.strip():
         return slots
@@ -155,7 +162,7 @@ def _operated(rule: Rule, rows: list[DataRow], notes: Notes) -> list[DataRow]:
 
 
 def _goes_on(above: DataRow, row: DataRow, title: str) -> bool:
-    """Whether a column is empty in a row, or has the cell of the row above, which spans both."""
+    """Return whether a column is empty in a row, or has a cell that spans the row above, too."""
     cell = row.cells.get(title)
     return not row.values.get(title, "").strip() or (cell is not None and cell is above.cells.get(title))
 
@@ -177,5 +184,5 @@ def _append(above: DataRow, row: DataRow) -> None:
 
 
 def one_line(row: DataRow, title: str, document_words: frozenset[str]) -> str:
-    """The text of a cell in one line."""
+    """Return the text of a cell in one line."""
     return cell_text(row.values.get(title, ""), document_words)

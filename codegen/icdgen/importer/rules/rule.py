@@ -1,4 +1,4 @@
-"""The rules of a profile, checked and ready for use."""
+"""Rules of a profile, checked."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MERGED = ("tables", "message", "columns", "each", "map")  # keys of which `like
 
 @dataclass(frozen=True)
 class Column:
-    """An entry of `columns`: which columns it is about, and the patterns for their cells."""
+    """An entry of `columns`: its columns, and the patterns for their cells."""
 
     key: str
     patterns: tuple[Pattern, ...]
@@ -27,19 +27,19 @@ class Column:
 
     @property
     def is_optional(self) -> bool:
-        """Whether the table may lack the column."""
+        """Whether the column may be missing in the table."""
         return self.key.endswith("?") and not self.key.startswith("~")
 
     @property
     def titles(self) -> list[str]:
-        """The headings of the columns whose cells are joined; one for most."""
+        """Headings of the columns whose cells are joined, usually one."""
         key = self.key if self.key.startswith("~") else self.key.rstrip("?")
         return key.split(" + ")
 
 
 @dataclass(frozen=True)
 class Correction:
-    """An entry of `set`: the patterns that the roles of a row must match, and the roles that it gives."""
+    """An entry of `set`: the patterns that the roles of a row must match, and the resulting roles."""
 
     where: dict[str, re.Pattern[str]]
     roles: dict[str, str]
@@ -84,27 +84,30 @@ class Rule:
 
     @property
     def has_fields(self) -> bool:
-        """Whether the rule gives roles of fields; else every row is a message without parameters."""
+        """Whether the rule gives roles of fields. Otherwise, each row is a message without parameters."""
         patterns = [pattern for column in (*self.columns, *self.lines) for pattern in column.patterns]
         given = {*self.each, *(role for pattern in patterns for role in pattern.roles)}
         return not given <= set(MESSAGE_ROLES)
 
     @property
     def has_byte_range(self) -> bool:
-        """Whether one text gives the first and the last byte, so that bit numbers of other texts count in all of them."""
+        """Whether one text gives the first and the last byte.
+
+        Bit numbers in other texts then refer to all of these bytes.
+        """
         columns = (*self.columns, *self.lines)
         return any({"byte", "last_byte"} <= p.roles for column in columns for p in column.patterns)
 
     @property
     def heading_titles(self) -> list[str]:
-        """The headings that `head` names; empty if it has patterns, or a single heading, which many texts have."""
+        """Headings in `head`; empty if it has patterns, or a single heading, which is ambiguous."""
         titles = [title.strip() for title in re.split(r"\s\|\s", self.head)] if self.head not in ("", "none") else []
         is_plain = len(titles) > 1 and not any(title == "*" or title.startswith("~") for title in titles)
         return titles if is_plain and not self.transpose else []
 
     @property
     def column_titles(self) -> list[str]:
-        """The headings that `columns`, `lines` and `ignore` name."""
+        """Headings in `columns`, `lines` and `ignore`."""
         named = [title for column in (*self.columns, *self.lines) for title in column.titles]
         return [title for title in (*named, *self.ignore) if title != "*" and not title.startswith("~")]
 
@@ -257,7 +260,7 @@ class _Reader:
                 )
 
     def patterns(self, value: Any, place: Place) -> tuple[Pattern, ...]:
-        """The patterns of a text, or of a list of them."""
+        """Return the patterns of a text, or of a list of texts."""
         compiled = []
         for index, text in enumerate(value if isinstance(value, Seq) else [value]):
             where = value.item_at(index) if isinstance(value, Seq) else place
@@ -285,7 +288,7 @@ class _Reader:
             return re.compile("")
 
     def roles(self, tree: Map | None, leave_out: str = "") -> dict[str, str]:
-        """A mapping of roles to values, as texts."""
+        """Return a mapping of roles to values as texts."""
         given = {role: str(value) for role, value in (tree or {}).items() if role != leave_out}
         for role in given:
             assert tree is not None
@@ -330,7 +333,7 @@ class _Reader:
 
 
 def roles_of_message(rule: Rule) -> Iterator[str]:
-    """The roles of a message that the rule may give, by whatever key."""
+    """Return the roles of a message that any key of the rule may give."""
     yield from (role for role in rule.literals if role in MESSAGE_ROLES)
     for patterns in (*rule.sources.values(), *(c.patterns for c in (*rule.columns, *rule.lines))):
         yield from (role for pattern in patterns for role in pattern.roles if role in MESSAGE_ROLES)

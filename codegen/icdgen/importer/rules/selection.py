@@ -1,4 +1,4 @@
-"""Which rule decides about a table, and why others do not."""
+"""Selection of the rule for a table, with the reasons why other rules do not apply."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NO_HEAD = "none"
 
 @dataclass
 class Choice:
-    """The rules that apply to a table, and for each rule before the last one why it does not."""
+    """The rules that apply to a table, and the reason why each rule before does not."""
 
     table: SourceTable
     rules: list[Rule] = field(default_factory=list)
@@ -25,7 +25,10 @@ class Choice:
 
 
 def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
-    """The texts of the cells of each row, or of each column for a table whose headings stand on the left."""
+    """Return the texts of the cells of each row.
+
+    If the headings are on the left, return the texts of each column.
+    """
     if not transpose:
         return [[normalised(slot.text) for slot in row if slot.is_origin] for row in table.grid()]
     rows = [[normalised(slot.text) for slot in row] for row in table.grid()]
@@ -35,9 +38,10 @@ def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
 
 
 def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
-    """The indices of the heading rows; none for a rule without headings, None if no row fits.
+    """Return the indices of the heading rows, or None if no row matches.
 
-    Some sources print headings in two lines as two rows. Such rows are joined if no single row fits.
+    The range is empty for a rule without headings. Some sources print headings in two
+    lines as two rows. Such rows are joined if no single row matches.
     """
     if rule.head in ("", NO_HEAD):
         return range(0)
@@ -55,7 +59,7 @@ def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
 
 
 def titles_wanted(rule: Rule) -> list[str]:
-    """The cells of `head`."""
+    """Return the cells of `head`."""
     return [normalised(title) for title in re.split(r"\s\|\s", rule.head)]
 
 

@@ -85,7 +85,10 @@ def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
 
 
 def _last_line(lines: list[str], start: int, end: int) -> int:
-    """The line behind a rule: blank lines and comments in front of the next one belong to that."""
+    """Return the line after a rule.
+
+    Blank lines and comments before the next rule belong to that rule.
+    """
     while end > start + 1 and (not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#")):
         end -= 1
     return end

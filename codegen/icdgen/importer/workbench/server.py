@@ -1,4 +1,4 @@
-"""The workbench over HTTP, on this machine only."""
+"""HTTP server of the workbench, for this machine only."""
 
 from __future__ import annotations
 

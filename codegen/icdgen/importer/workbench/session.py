@@ -80,7 +80,7 @@ class Session:
             }
 
     def node(self) -> dict[str, Any]:
-        """The `node:` section of the profile."""
+        """Return the `node:` section of the profile."""
         tree = source.parse(self.text.encode("utf-8"), "profile")
         return dict(tree.get("node") or {})
 
@@ -95,14 +95,14 @@ class Session:
         }
 
     def words_rules(self) -> list[Any]:
-        """The rules as they were applied, in the order of the profile."""
+        """Return the rules as applied, in the order of the profile."""
         assert self.result is not None
         return self.result.interpretation.rules
 
     def summary(
         self, table: SourceTable, applied: dict[int, list[int]], import_findings: list[ImportFinding]
     ) -> dict[str, Any]:
-        """A line of the list of tables."""
+        """Return a line of the list of tables."""
         own = [
             import_finding.severity
             for import_finding in import_findings
@@ -143,7 +143,10 @@ class Session:
             }  # fmt: skip
 
     def head(self, table: SourceTable) -> int:
-        """The index of the heading row: by the rule of the table, else the first row of several filled cells."""
+        """Return the index of the heading row, by the rule of the table.
+
+        Without a rule, return the first row with several filled cells.
+        """
         if self.result is not None:
             for choice in self.result.interpretation.choices:
                 if choice.table.number == table.number and choice.rules:
