@@ -95,8 +95,8 @@ def _framed(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) ->
     for framing in dict.fromkeys(endpoint.link.framing for endpoint in endpoints if endpoint.link.framing):
         if bytes((framing.escape, framing.start)) not in data:
             continue
-        nodes = [endpoint for endpoint in endpoints if endpoint.link.framing == framing]
-        decoder = UartDecoder(nodes[0].link, max(len(data), 1))
+        with_framing = [endpoint for endpoint in endpoints if endpoint.link.framing == framing]
+        decoder = UartDecoder(with_framing[0].link, max(len(data), 1))
         events = decoder.feed(data)
         bodies = [event.message for event in events if event.event == "message"]
         if not bodies:
@@ -105,15 +105,15 @@ def _framed(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) ->
                     _framing_error(events), 0, len(data), "the frame is cut off, or a byte of it is damaged"
                 )
             continue
-        matches, failures = match.read_each(bodies, partial(_of_body, nodes, selection=selection))
+        matches, failures = match.read_each(bodies, partial(_of_body, with_framing, selection=selection))
         errors = [event.event for event in events if event.event != "message"]
-        left = [str(error) for error in failures] + [
+        reports = [str(error) for error in failures] + [
             f"the stream has an error: {error_name.replace('_', ' ')}" for error_name in errors
         ]
         if decoder.pending > 1:
-            left.append(_framing_error([]))
-        around = match.stream_remarks(decoder.discarded + decoder.pending, ())
-        return [matches[0].with_left_out(*left).with_remarks(*around), *matches[1:]]
+            reports.append(_framing_error([]))
+        remarks = match.stream_remarks(decoder.discarded + decoder.pending, ())
+        return [matches[0].with_left_out(*reports).with_remarks(*remarks), *matches[1:]]
     return []
 
 

@@ -29,7 +29,7 @@ from icdgen.values import numbers
 from icdgen.values.chosen import values_of
 from icdgen.values.find import find_node, is_part
 
-Way = tuple[Any, ...]  # name of a function of `serve`, and its arguments
+Transport = tuple[Any, ...]  # name of a function of `serve`, and its arguments
 
 
 @dataclass
@@ -93,32 +93,38 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, con
         EnvelopeLine(computer, line_faults, chosen) if computer.program.facts.stream else Line(computer, line_faults)
     )
     steps = control.read(options.script, icd, node) if options.script else []
-    controlled = control.Control(icd, node, line, steps)
+    controller = control.Control(icd, node, line, steps)
     for message, text in options.values:
-        controlled.assign(message, text)
-    return line, controlled
+        controller.assign(message, text)
+    return line, controller
 
 
-def run(icd: Icd, name: str | None, transports: list[Way], options: Options, tell: Callable[[str], None]) -> None:
+def run(
+    icd: Icd, name: str | None, transports: list[Transport], options: Options, report: Callable[[str], None]
+) -> None:
     """Run the device until interrupted. Raise `icdgen.errors.UserError`."""
-    line, controlled = build(icd, name, options)
+    line, controller = build(icd, name, options)
     if line.keeps_packets and any("udp" not in transport[:2] for transport in transports):
         raise UserError("only packets delimit messages here, and a stream of bytes keeps none apart", "use --udp PORT")
-    asyncio.run(_run(line, controlled, transports, options.orders, tell))
+    asyncio.run(_run(line, controller, transports, options.orders, report))
 
 
 async def _run(
-    line: DeviceLine, controlled: control.Control, ways: list[Way], reads_commands: bool, tell: Callable[[str], None]
+    line: DeviceLine,
+    controller: control.Control,
+    transports: list[Transport],
+    reads_commands: bool,
+    report: Callable[[str], None],
 ) -> None:
-    server, holders = serve.Server(line, controlled), []
-    for transport, *arguments in ways:
+    server, holders = serve.Server(line, controller), []
+    for transport, *arguments in transports:
         address, holder = await getattr(serve, transport)(server, *arguments)
         holders.append(holder)
-        tell(address)
+        report(address)
     running = asyncio.create_task(server.run())
     waiting = [running]
     if reads_commands:
-        waiting.append(asyncio.create_task(_listen(server, tell)))
+        waiting.append(asyncio.create_task(_listen(server, report)))
     done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
     running.cancel()
     for task in done:
@@ -126,7 +132,7 @@ async def _run(
             raise task.exception()  # type: ignore[misc]
 
 
-async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
+async def _listen(server: serve.Server, report: Callable[[str], None]) -> None:
     """Execute commands from standard input until it ends."""
     loop = asyncio.get_running_loop()
     lines: asyncio.Queue[str | None] = asyncio.Queue()
@@ -145,7 +151,7 @@ async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
         except UserError as error:
             answer = f"error: {error}" + (f"; {error.help}" if error.help else "")
         if answer:
-            tell(answer.replace("\n", " "))
+            report(answer.replace("\n", " "))
 
 
 def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
