@@ -318,7 +318,7 @@ class Message(NodeMessageBase[N_contra], MessageFacts, Struct):
     ) -> dict[str, _types.Any]:
         """Decode consecutive frames into one numpy array per field.
 
-        The keys are those of `as_dict`. Byte-aligned fields are views of the frames, or
+        The keys are equal to the keys of `as_dict`. Byte-aligned fields are views of the frames, or
         of a copy if the frames are mutable. Raise `LengthError` if the data is not a
         multiple of the length of a frame.
 

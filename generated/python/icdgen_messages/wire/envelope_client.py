@@ -131,7 +131,7 @@ class EnvelopeClient(Generic[N]):
         return self._begin(now, request, reply)
 
     def output(self) -> bytes:
-        """Return the next encoded message to send; empty if there is none."""
+        """Return the next encoded message to send, or no bytes."""
         if not self._unsent:
             return b""
         slot = self._unsent.pop(0)

@@ -156,7 +156,7 @@ class I2cCarrier:
 def _library_class(port: object, name: str) -> Any:
     """Return a class of the library that defines the class of ``port`` or a base class.
 
-    Raise `TypeError` if there is none.
+    Raise `TypeError` if it does not exist.
     """
     for kind in type(port).__mro__:
         for module in (kind.__module__, kind.__module__.partition(".")[0]):

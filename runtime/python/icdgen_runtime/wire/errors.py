@@ -1,4 +1,4 @@
-"""Exceptions of the wire layer, in addition to those of messages."""
+"""Exceptions of the wire layer, in addition to the exceptions of messages."""
 
 from __future__ import annotations
 
