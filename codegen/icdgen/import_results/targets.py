@@ -34,7 +34,7 @@ def prepare(
 ) -> list[Target]:
     """Prepare the files.
 
-    ``given_keys`` are keys that the source itself gives, of those that users add to manuals.
+    ``given_keys`` are the keys in the source among the keys that users add to manuals.
     Raise `UserError` if a file exists and ``over`` does not allow an update, unless
     ``dry`` is set.
     """

@@ -98,7 +98,7 @@ def _left_out(endpoint: Endpoint, packets: list[CanPacket]) -> int:
 
 
 def _can_events(endpoint: Endpoint, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
-    """Return the events of the packets, and those of messages that lack packets."""
+    """Return the events of the packets, and the events of messages that lack packets."""
     joiner = CanJoiner(endpoint.link, senders=len(packets))
     return [event for packet in packets for event in joiner.feed(0, packet)], joiner.expire(math.inf)
 

@@ -75,10 +75,10 @@ class DirectionResult:
 
 
 def readings(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> list[Reading]:
-    """Return the messages in the data, including those of the other direction.
+    """Return the messages in the data, including messages of the other direction.
 
     The direction with the fewest unused bytes is chosen, among those with a message
-    that the user has named. Return no messages if there are none.
+    that the user has named. The list may be empty.
 
     Raise `BadLength` or `NotFound` for a packet that is cut off, damaged or unknown,
     and `Ambiguous`.

@@ -161,7 +161,7 @@ def _of_body(endpoints: Sequence[Endpoint], body: bytes, selection: Selection) -
 def _unframed(icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection) -> list[Reading]:
     """Return the messages of CAN packets by their identifiers, or the message of bytes.
 
-    If no identifier matches, the bytes are those of a message that the user has named.
+    If no identifier matches, the bytes belong to the message that the user has named.
     """
     if not pasted.packets:
         return [_message_of_bytes(icd, endpoints, pasted.data, selection)]

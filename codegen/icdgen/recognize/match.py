@@ -1,4 +1,4 @@
-"""Candidate messages of an id and bytes, and the error if there are none."""
+"""Candidate messages of an id and bytes, and the error without a candidate."""
 
 from __future__ import annotations
 
