@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import defaultdict
+from functools import wraps
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from icdgen import backends
 from icdgen.backends.c.short_names import short_names
 from icdgen.backends.python.names import IN_MESSAGE
 from icdgen.describe import describe
+from icdgen.describe.symbols import NamingPolicy
 from icdgen.loading import load
 from icdgen.render import Renderer
 
@@ -179,3 +181,27 @@ def _used_in_rust() -> set[str]:
     from icdgen.backends.rust import names
 
     return {*names.USED_TYPES, "Option", "From", "Enumeration"}
+
+
+@pytest.mark.parametrize(("language", "comments"), [("python", r'"""(?:\\.|[^\\])*?"""|#.*'), ("rust", r"//.*")])
+def test_types_have_their_name_from_the_table_wherever_code_uses_them(monkeypatch, language, comments):
+    icd = load([SETS["shipped"]], check=False).icd
+    original, names = NamingPolicy.symbol, set()
+
+    @wraps(original)
+    def symbol(policy, part, role):
+        text = original(policy, part, role)
+        if role not in ("class", "type", "variant"):
+            return text
+        # Variants can have names of Rust's own, such as `None`.
+        names.update((text,) if role != "variant" else ())
+        return f"{text}Marked"
+
+    monkeypatch.setattr(NamingPolicy, "symbol", symbol)
+    files = {path: text for path, text in generate(icd, language).items() if "cubemag" in path}
+    unmarked = set()
+    for text in files.values():
+        code = re.sub(rf'{comments}|"(?:\\.|[^"\\])*"', "", text)
+        unmarked.update(names.intersection(re.findall(r"(?<!\.)\b\w+\b", code)))
+    assert files and names
+    assert unmarked == set()

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import jinja2
 
 from icdgen import codec
-from icdgen.backends.rust.names import type_name
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.icd.places import NodePlace
@@ -112,7 +111,7 @@ def _row(icd: Icd, row: MessageDescription, raw: dict[str, int | bytes]) -> Row:
 
 
 def _type(row: MessageDescription) -> str:
-    return f"icd::{row.node.name}::{type_name(row)}"
+    return f"icd::{row.node.name}::{row.camel_name}"
 
 
 def _field(row: MessageDescription, name: str) -> str:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.backends.rust.names import type_name
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.conformance import odd
@@ -61,7 +60,7 @@ def everything(icd: Icd) -> Iterator[str]:
     described = describe(icd)
     for node in described.nodes:
         for message in node.messages:
-            name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{type_name(message)}"
+            name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{message.camel_name}"
             yield MESSAGE.format(name=name, type=type_)
             for field in (field for field in message.declared_members if field.is_scaled):
                 one, templates = field.physical_name, (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
@@ -73,7 +72,7 @@ def everything(icd: Icd) -> Iterator[str]:
                 type_ = f"icd::{node.name}::{way.capitalize()}"
                 yield DISPATCHER.format(name=f"{node.name}_{way}", type=type_, id=f"u{described.id_bits}")
         for enum in node.enums:
-            name, type_ = f"{node.name}_{type_name(enum)}", f"icd::{node.name}::enums::{type_name(enum)}"
+            name, type_ = f"{node.name}_{enum.camel_name}", f"icd::{node.name}::enums::{enum.camel_name}"
             yield ENUM.format(name=name, type=type_, raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.backends.rust.names import type_name
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import Icd
 from tests.conformance import composites
@@ -22,7 +21,7 @@ def odd(tmp_path_factory) -> Subject:
 
 
 def path(message: MessageDescription) -> str:
-    return f"icd::{message.node.name}::{type_name(message)}"
+    return f"icd::{message.node.name}::{message.camel_name}"
 
 
 def program(icd: Icd) -> str:

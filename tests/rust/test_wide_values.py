@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen import codec
-from icdgen.backends.rust.names import field_name, integer_type, type_name
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import string
+from icdgen.backends.rust.types import integer_type
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.rust.tools import Toolchain, run
@@ -37,7 +38,7 @@ def cases(icd: Icd) -> Iterator[str]:
                 yield CASE.format(
                     bytes=list(frame),
                     node=node.name,
-                    type=type_name(message),
+                    type=message.camel_name,
                     length=length,
                     field=field_name(one),
                     widest=coded.format(f"{kind}::MAX"),

@@ -89,10 +89,10 @@ class MemberDescription(Named[Member]):
 
     def __init__(self, member: Member, enum: EnumDescription, declared: Member) -> None:
         super().__init__(member, declared, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
-        self._enum = enum
+        self.enum = enum
 
     @cached_property
     def comment(self) -> Comment:
         return member_comment(
-            self.model, owners_elsewhere(self.model, self._enum.first_owners) if self.model.errata else {}
+            self.model, owners_elsewhere(self.model, self.enum.first_owners) if self.model.errata else {}
         )

@@ -77,16 +77,18 @@ class NamingPolicy:
         """
         return ()
 
-    def symbol(self, part: NodeDescription | Part, role: str) -> str:
+    def symbol(self, part: NodeDescription | Part | MemberDescription, role: str) -> str:
         """Return the name of a part in a role. Raises `KeyError` if the table has no such name."""
         texts = self._texts.get(part)
         if texts is None:
             texts = self._texts[part] = {symbol.role: symbol.text for symbol in self._symbols_of(part) if symbol.role}
         return texts[role]
 
-    def _symbols_of(self, part: NodeDescription | Part) -> Symbols:
+    def _symbols_of(self, part: NodeDescription | Part | MemberDescription) -> Symbols:
         if isinstance(part, NodeDescription):
             return (*self.node(part), *(self.link(part) if part.is_linked else ()))
+        if isinstance(part, MemberDescription):
+            return self.member(part.enum, part)
         return self.enumeration(part) if isinstance(part, EnumDescription) else self.composite(part)
 
 

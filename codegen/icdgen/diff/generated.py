@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 from icdgen.backends.c import types as c_types
 from icdgen.backends.c.symbols import C_NAMES
-from icdgen.backends.packages import Packages
 from icdgen.backends.python import fields as python_fields
-from icdgen.backends.python.symbols import PythonNames
-from icdgen.backends.rust import names as rust_names
+from icdgen.backends.python.symbols import PYTHON_NAMES
+from icdgen.backends.rust import types as rust_types
 from icdgen.backends.rust.symbols import RUST_NAMES
 from icdgen.describe import EnumDescription, FieldDescription, describe
 from icdgen.describe.description import Composite
@@ -26,7 +25,7 @@ from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Icd, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 
-POLICIES: dict[str, NamingPolicy] = {"c": C_NAMES, "python": PythonNames(Packages.python), "rust": RUST_NAMES}
+POLICIES: dict[str, NamingPolicy] = {"c": C_NAMES, "python": PYTHON_NAMES, "rust": RUST_NAMES}
 """Names of each language."""
 
 Symbol = tuple[str, Identifier]  # language, and an identifier of it
@@ -67,7 +66,7 @@ class NamesOfIcd:
         """Return the names of a field or member that is ``declared`` there; ``owner`` can be another one."""
         here = self.owner(declared)
         owner = here if owner is None else owner
-        type_in_rust = rust_names.type_name(owner)
+        type_in_rust = RUST_NAMES.symbol(owner, "type")
         return _names(symbols_in(owner, here, part), type_in_rust)
 
     def owner(self, declared: Declared) -> Composite[Message] | EnumDescription:
@@ -209,7 +208,7 @@ def type_of(language: str, field: FieldDescription) -> str:
     if place.type == "enum" and field.enum is None:
         return f"u{place.bits}" if language == "rust" else "int"
     if language == "rust":
-        return rust_names.raw_type(field)
+        return rust_types.raw_type(field)
     if language == "c":
         array = f"[{place.count}]" if place.count else ""
         return f"uint8_t{array}[{place.bits // 8}]" if place.is_bytes else f"{c_types.type_of(field)}{array}"

@@ -9,7 +9,7 @@ from typing import Any
 import jinja2
 
 from icdgen.backends.rust.accessors import accessors
-from icdgen.backends.rust.names import field_name, type_name
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.parts import parts
 from icdgen.backends.rust.text import string
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription, describe
@@ -28,7 +28,7 @@ def source(icd: Icd) -> str:
 def _node(node: NodeDescription) -> dict[str, Any]:
     return {
         "name": node.name,
-        "enums": [{"type": type_name(one), "numbers": _values(one)} for one in node.enums],
+        "enums": [{"type": one.camel_name, "numbers": _values(one)} for one in node.enums],
         "messages": [
             {"path": _path(one), "frame": ", ".join(["0"] * one.model.length), "lines": list(_lines(one))}
             for one in node.messages
@@ -55,7 +55,7 @@ def _values(enum: EnumDescription) -> list[tuple[int, str]]:
 
 
 def _path(message: MessageDescription) -> str:
-    return f"icd::{message.node.name}::{type_name(message)}"
+    return f"icd::{message.node.name}::{message.camel_name}"
 
 
 def _lines(message: MessageDescription) -> Iterator[str]:

@@ -76,7 +76,7 @@ class NodeEntry:
         self.routes = [[self._route(*route) for route in routes] for routes in ways.values()]
         self.enums = [
             EnumEntry(
-                f"{crate}::{node.name}::enums::{names.type_name(enum)}",
+                f"{crate}::{node.name}::enums::{enum.camel_name}",
                 f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}",
             )
             for enum in node.enums
@@ -91,7 +91,7 @@ class NodeEntry:
         return "None" if value is None else f"Some({self.crate}::{self.name}::{name} as u64)"
 
     def _path(self, message: MessageDescription) -> str:
-        return f"{self.crate}::{message.node.name}::{names.type_name(message)}"
+        return f"{self.crate}::{message.node.name}::{message.camel_name}"
 
     def _route(self, message: MessageDescription, id: str) -> Route:
         path = self._path(message)
@@ -124,7 +124,7 @@ def _field(field: FieldDescription) -> FieldEntry:
         set = set if field.is_settable else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     owner = field.declaration.message
-    type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{names.type_name(owner)}"
+    type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{owner.camel_name}"
     known = [(one.key, f"{type}::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:
         bits = ".to_bits()" if field.model.type == "float" else ""

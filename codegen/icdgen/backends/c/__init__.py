@@ -151,7 +151,7 @@ def _repeated(message: MessageDescription, array: StructArray) -> dict[str, obje
     ]
     return {
         "field": array.field,
-        "type": f"{names.stem(array.element_struct)}_t",
+        "type": C_NAMES.symbol(array.element_struct, "t"),
         "reading": names.reading(message, array.name),
         "writing": names.writing(message, array.name),
         "read": decoding.statements(array.element_struct, fields),
@@ -165,7 +165,7 @@ def _of_variable_length(message: MessageDescription, last: VariablePartDescripti
     if last.element_struct is not None:
         reading, writing = names.reading(message, last.field.name), names.writing(message, last.field.name)
         of_element = {
-            "type": f"{names.stem(last.element_struct)}_t",
+            "type": C_NAMES.symbol(last.element_struct, "t"),
             "reading": reading,
             "walking": names.walking(message, last.field.name) if not message.earlier_parts else "",
             "there": decoding.there(last),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from icdgen.backends.c import decoding, physical
-from icdgen.backends.c.names import RESERVED, stem
+from icdgen.backends.c.names import RESERVED, getter
 from icdgen.backends.c.statement import call, either
 from icdgen.backends.c.text import WIDTH, described
 from icdgen.backends.c.types import type_of
@@ -99,7 +99,7 @@ def _constant(head: str, value: str) -> str:
 def _as_double(field: FieldDescription) -> str:
     """Return the physical value of a field of ``message`` as a double; the raw value without a scale."""
     if field.is_scaled:
-        return f"{stem(field.message)}_{field.physical_name}(message)"
+        return f"{getter(field.message, field.physical_name)}(message)"
     raw = _raw(field)
     return raw if field.model.type == "float" and field.model.bits == 64 else f"ICDGEN_CAST(double, {raw})"
 
@@ -118,7 +118,7 @@ def overlay(field: FieldDescription) -> dict[str, str]:
 
 def _raw(field: FieldDescription) -> str:
     """Return the raw value of a field of ``message``."""
-    return f"{stem(field.message)}_{field.name}(message)" if field.model.is_read_only else _member(field)
+    return f"{getter(field.message, field.name)}(message)" if field.model.is_read_only else _member(field)
 
 
 def _member(field: FieldDescription) -> str:

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from icdgen.backends.c import names
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import literal
 from icdgen.backends.c.types import mask
 from icdgen.describe import EnumDescription, FieldDescription
@@ -93,7 +94,7 @@ def table(composite: Composite[Any]) -> Fields:
         model, bounds = field.model, field.bounds
         limits = f"&limits[{len(table.limits)}]" if bounds else "NULL"
         unit = literal(model.unit_symbol)
-        inside = "NULL" if field.struct is None else f"{names.stem(field.struct)}_fields"
+        inside = "NULL" if field.struct is None else C_NAMES.symbol(field.struct, "fields")
         place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
         table.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
         for bound in bounds:

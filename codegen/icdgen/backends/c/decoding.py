@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.names import constant, stem
+from icdgen.backends.c.names import constant
 from icdgen.backends.c.statement import call, either, failed_length_test, loop
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
@@ -176,7 +177,7 @@ def _group(group: Flags | Row | LoopElements | Structs, message: Composite[Any])
     if isinstance(group, Structs):
         return of_array(group.array, group.reading)
     members = [field.member for field in group.fields]
-    target = f"{stem(message)}_t", "message"
+    target = C_NAMES.symbol(message, "t"), "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
         return call(f"ICDGEN_READ_{macro_of(group)}", (*target, value, *members))

@@ -15,8 +15,8 @@ from icdgen.backends.c.decoding import (
     macro_of,
     of_array,
 )
-from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, VariablePartDescription
 from icdgen.describe.groups import Flags, FrameBytes, LoopElements, Row
@@ -93,7 +93,7 @@ class _Frame:
             self.bytes.add_whole(group.array.begin, group.length, of_array(group.array, group.writing))
             return
         names = [field.member for field in group.fields]
-        byte, source = group.byte, (f"{stem(self.message)}_t", "message")
+        byte, source = group.byte, (C_NAMES.symbol(self.message, "t"), "message")
         if isinstance(group, Row):
             arguments = (*source, f"&buffer[{byte}]", f"{len(names)}u", names[0], names[-1])
             self.bytes.add_whole(byte, group.length, call(f"ICDGEN_WRITE_{macro_of(group)}", arguments))

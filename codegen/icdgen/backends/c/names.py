@@ -104,3 +104,8 @@ def client_verbs(node: NodeDescription, direction: str) -> tuple[str, ...]:
 def client_function(node: str, verb: str, message: MessageDescription) -> str:
     """``demo_send_reset``: the function of a client for a message."""
     return f"{node}_{verb}_{message.name}"
+
+
+def part_name(part: MessageDescription) -> str:
+    """Return the end of the name of the function for a contained message."""
+    return f"part_{part.name}"

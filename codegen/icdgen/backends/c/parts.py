@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.backends.c.names import stem
+from icdgen.backends.c.names import part_name
 from icdgen.backends.c.statement import call
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import comment
 from icdgen.describe import MessageDescription
 from icdgen.describe.comments import part_comment
@@ -24,13 +25,8 @@ def _part(message: MessageDescription, part: ContainedDescription) -> dict[str, 
             f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(positions) - 1}."
         )
     copies = [[line for copied in part.copies(message, begin) for line in _statements(copied)] for begin in positions]
-    name, type = part_name(part.message), f"{stem(part.message)}_t"
+    name, type = part_name(part.message), C_NAMES.symbol(part.message, "t")
     return {"name": name, "type": type, "about": comment(paragraphs), "copies": copies}
-
-
-def part_name(part: MessageDescription) -> str:
-    """Return the end of the name of the function for a contained message."""
-    return f"part_{part.name}"
 
 
 def headers(message: MessageDescription) -> list[str]:

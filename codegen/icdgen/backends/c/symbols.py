@@ -7,7 +7,6 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
-from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
 from icdgen.describe.accessors import accessors_of
 from icdgen.describe.arrays import all_struct_arrays
@@ -104,7 +103,7 @@ class CNames(NamingPolicy):
         if last is not None and last.element_struct is not None and not composite.earlier_parts:
             yield composite.identifier(FILE, names.walking(composite, last.field.name))
         for part in contained_messages(composite):
-            yield composite.identifier(FILE, f"{stem}_{part_name(part.message)}")
+            yield composite.identifier(FILE, f"{stem}_{names.part_name(part.message)}")
 
     def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
         members = f"members of {names.stem(composite)}_t"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from icdgen.backends.c.names import stem
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.describe import FieldDescription
 
 
@@ -16,7 +16,7 @@ def type_of(field: FieldDescription) -> str:
     if kind == "float":
         return "float" if field.model.bits == 32 else "double"
     if field.enum is not None:
-        return f"{stem(field.enum)}_t"
+        return C_NAMES.symbol(field.enum, "t")
     return f"{'int' if field.storage.signed else 'uint'}{field.storage.bits}_t"
 
 
@@ -25,7 +25,7 @@ def declaration(field: FieldDescription) -> str:
     name = field.name + (f"[{field.count}]" if field.count else "")
     if field.model.is_bytes:
         return f"uint8_t {name}[{field.size}]"
-    return f"{f'{stem(field.struct)}_t' if field.struct is not None else type_of(field)} {name}"
+    return f"{C_NAMES.symbol(field.struct, 't') if field.struct is not None else type_of(field)} {name}"
 
 
 @cache

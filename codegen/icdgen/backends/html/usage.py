@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.backends.c.names import enumerator, stem
+from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.packages import Packages
 from icdgen.backends.rust.names import field_name
 from icdgen.describe import MessageDescription
 from icdgen.describe.examples import worth_showing
-from icdgen.naming import camel
 
 if TYPE_CHECKING:
     from icdgen.render import Renderer
@@ -54,7 +54,7 @@ def _values(message: MessageDescription, packages: Packages) -> dict[str, object
         "is_sent": message.model.telecommand_id is not None,
         "is_received": message.model.telemetry_id is not None,
         "stem": stem(message),
-        "type": camel(message.words),
+        "type": message.camel_name,
         "package": packages.python,
         "crate": packages.rust,
         "field": field,
@@ -62,11 +62,11 @@ def _values(message: MessageDescription, packages: Packages) -> dict[str, object
         "zero": _ZEROS.get(field.model.type, "0") if field else "",
         "member": member,
         "enumerator": enumerator(enum, member) if enum and member else "",
-        "enum_type": camel(enum.words) if enum else "",
-        "member_type": camel(member.words) if member else "",
+        "enum_type": enum.camel_name if enum else "",
+        "member_type": member.camel_name if member else "",
     }
 
 
 def names(message: MessageDescription, in_c: MessageDescription) -> list[tuple[str, str]]:
     """Return the name of the message's type in each language."""
-    return [("C", f"{stem(in_c)}_t"), ("Python", camel(message.words)), ("Rust", camel(message.words))]
+    return [("C", C_NAMES.symbol(in_c, "t")), ("Python", message.camel_name), ("Rust", message.camel_name)]

@@ -11,7 +11,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.backends.python import names
-from icdgen.backends.python.symbols import PythonNames
+from icdgen.backends.python.symbols import PYTHON_NAMES, PythonNames
 from icdgen.describe import describe
 from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
@@ -94,7 +94,7 @@ def _functions() -> dict[str, object]:
 
     functions = (
         fields.annotation, fields.accessors, fields.declaration, fields.getter, fields.inner, fields.open_part, fields.physical,
-        fields.view_info, names.accessors_in_python, names.class_name, nodes.listing, nodes.literals,
+        fields.view_info, names.accessors_in_python, names.constant_name, PYTHON_NAMES.symbol, nodes.listing, nodes.literals,
         nodes.mapping, text.docstring, text.documented, text.literal, text.prose,
     )  # fmt: skip
     return {function.__name__: function for function in functions}

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from icdgen.backends.lines import STEP, exploded
-from icdgen.backends.python.names import accessors_in_python, class_name
+from icdgen.backends.python.names import accessors_in_python, constant_name
+from icdgen.backends.python.symbols import PYTHON_NAMES
 from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.accessors import Accessor
@@ -36,10 +37,14 @@ def _optional(field: FieldDescription, note: str) -> str:
 
 def _annotation(field: FieldDescription) -> str:
     if field.struct is not None:
-        return class_name(field.struct)
+        return PYTHON_NAMES.symbol(field.struct, "class")
     if field.is_text:
         return "bytes"
-    return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
+    return (
+        PYTHON_NAMES.symbol(field.enum, "class")
+        if field.enum
+        else "int" if field.model.type == "uint" else field.model.type
+    )
 
 
 def default(field: FieldDescription) -> str:
@@ -62,8 +67,8 @@ def _default(field: FieldDescription) -> str:
         return f"bytes({field.model.bits // 8})"
     if field.enum is None:
         return str(bool(value)) if kind == "bool" else "0.0" if kind == "float" else str(value)
-    name, member = class_name(field.enum), field.enum.member(value)
-    return f"{name}.{member.name.upper()}" if member else f"{name}({value})"
+    name, member = PYTHON_NAMES.symbol(field.enum, "class"), field.enum.member(value)
+    return f"{name}.{constant_name(member.name)}" if member else f"{name}({value})"
 
 
 def _keywords(field: FieldDescription) -> list[str]:
@@ -75,7 +80,7 @@ def _keywords(field: FieldDescription) -> list[str]:
         items.append("is_open=True")
         items += [f"fewest={field.initial_count}"] if field.initial_count else []
     if field.is_in_last_part and field.enum is not None:
-        items.append(f"enum={class_name(field.enum)}")
+        items.append(f"enum={PYTHON_NAMES.symbol(field.enum, 'class')}")
     if field.needs:
         needs = (f'("{need.field.name}", ({", ".join(map(str, need.values))},))' for need in field.needs)
         items.append(f"when=({', '.join(needs)},)")
@@ -111,7 +116,7 @@ def declaration(field: FieldDescription) -> str:
             literal(place.name),
             str(place.at),
             str(place.bits),
-            f"factory={class_name(field.struct)}",
+            f"factory={PYTHON_NAMES.symbol(field.struct, 'class')}",
             *_keywords(field),
         ]
         return _statement(field.name, annotation(field), "part", items)
@@ -160,7 +165,7 @@ def view_info(field: FieldDescription) -> str:
         listed = exploded("(", pieces, ")", " " * 12) if len(pieces) > 1 else f"({pieces[0]},)"
         items += [f'physical="{field.physical_name}"', f"curve={listed}"]
     if field.enum is not None:
-        items.append(f"enum={class_name(field.enum)}")
+        items.append(f"enum={PYTHON_NAMES.symbol(field.enum, 'class')}")
     if place.derived is not None:
         operands = (operand for _, operand in derived(field).fields)
         attributes = tuple(operand.physical_name if operand.is_scaled else operand.name for operand in operands)

@@ -40,11 +40,6 @@ def accessors_in_python(field: FieldDescription) -> Iterator[Accessor]:
     return accessors_of(field, "text", "double", "integer", "long integer")
 
 
-def class_name(one: Composite[Any] | EnumDescription) -> str:
-    """``EstimatedAttitudeAngles``"""
-    return one.camel_name
-
-
 def module_name(one: Composite[Any] | EnumDescription) -> str:
     """``estimated_attitude_angles``; it never stands in a user's program."""
     if len(one.name) > _LONGEST:

@@ -8,6 +8,7 @@ from typing import Any
 from icdgen.backends.lines import exploded
 from icdgen.backends.python import names
 from icdgen.backends.python.fields import constant
+from icdgen.backends.python.symbols import PYTHON_NAMES
 from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.comments import sentence
@@ -27,7 +28,7 @@ _OF_PACKAGE = (
 
 def of_node(node: NodeDescription) -> dict[str, object]:
     """Return the modules and names that can be imported from a node, and its docstring."""
-    declared = [(names.home(part, node.name, ".."), names.class_name(part)) for part in node.usable]
+    declared = [(names.home(part, node.name, ".."), PYTHON_NAMES.symbol(part, "class")) for part in node.usable]
     declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),
@@ -35,7 +36,7 @@ def of_node(node: NodeDescription) -> dict[str, object]:
         "public": sorted({*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}),
         "homes": [(name, home) for home, name in sorted(declared)],
         "telecommands": _by_id(node, "telecommand"),
-        "enums": [(part.model.name, names.class_name(part)) for part in node.enums],
+        "enums": [(part.model.name, PYTHON_NAMES.symbol(part, "class")) for part in node.enums],
         "telemetry": _by_id(node, "telemetry"),
     }
 
@@ -47,13 +48,12 @@ def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
 
 def _candidates(under: MessagesOfId) -> str:
     if not under.is_shared:
-        return literal(names.class_name(under.first.message))
+        return literal(PYTHON_NAMES.symbol(under.first.message, "class"))
     rows = []
     for candidate in under.messages:
         signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in candidate.constant_bytes)
-        rows.append(
-            f"({literal(names.class_name(candidate.message))}, {_lengths(candidate.message.model)}, ({signs.rstrip(' ')})),"
-        )
+        name = PYTHON_NAMES.symbol(candidate.message, "class")
+        rows.append(f"({literal(name)}, {_lengths(candidate.message.model)}, ({signs.rstrip(' ')})),")
     return "(\n        " + "\n        ".join(rows) + "\n    )"
 
 
@@ -127,4 +127,4 @@ def _import(used: EnumDescription | StructDescription, by: Composite[Any]) -> st
     module = names.module_name(used)
     if used.node is not by.node:
         module = f"..{used.node.name}.{names.TYPES}.{module}"
-    return f"from .{module} import {names.class_name(used)}"
+    return f"from .{module} import {PYTHON_NAMES.symbol(used, 'class')}"

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from icdgen.backends import Identifier
+from icdgen.backends.packages import Packages
 from icdgen.backends.python import names
 from icdgen.describe import EnumDescription, FieldDescription, NodeDescription
 from icdgen.describe.description import Composite
@@ -34,15 +35,18 @@ class PythonNames(NamingPolicy):
 
     def in_node(self, node: NodeDescription, part: Part) -> Symbols:
         # The module of a node also has the classes of included nodes.
-        yield part.identifier(f"module {self._package}.{node.name}", names.class_name(part))
+        if part.node.name != node.name:
+            yield self._class(part, node.name)
 
     def enumeration(self, enum: EnumDescription) -> Symbols:
+        yield self._class(enum, enum.node.name)
         yield enum.identifier(self._files(enum.node.name), names.module_name(enum))
 
     def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
         yield member.identifier(self._members(enum), names.constant_name(member.name))
 
     def composite(self, composite: Composite[Any]) -> Symbols:
+        yield self._class(composite, composite.node.name)
         if not isinstance(composite.model, Message):  # messages have files in every language
             yield composite.identifier(self._files(composite.node.name), names.module_name(composite))
 
@@ -57,8 +61,15 @@ class PythonNames(NamingPolicy):
                 if text in names.IN_MESSAGE:
                     yield Identifier(scope, text, names.IN_MESSAGE[text].format(text), None)
 
+    def _class(self, part: Part, node: str) -> Identifier:
+        return part.identifier(f"module {self._package}.{node}", part.camel_name, "class")
+
     def _files(self, node: str) -> str:
         return f"files of {self._package}.{node}"
 
     def _members(self, part: Part) -> str:
-        return f"members of {self._package}.{part.node.name}.{names.class_name(part)}"
+        return f"members of {self._package}.{part.node.name}.{part.camel_name}"
+
+
+PYTHON_NAMES = PythonNames(Packages.python)
+"""For names that do not depend on the package."""

@@ -85,7 +85,7 @@ class RustBackend:
 
 def _functions() -> dict[str, object]:
     """Return the functions with which templates spell names and text."""
-    from icdgen.backends.rust import text
+    from icdgen.backends.rust import text, types
     from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of, texts
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
     from icdgen.backends.rust.messages import imports
@@ -94,10 +94,11 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.numbers import byte_count, count_text
 
     functions = (
-        accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example, field_row,
-        imports, message_example, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type,
-        names.type_name, scale_of, sentence, text.arm, text.assigned, text.code, text.described, text.doc, text.integer,
-        text.prose, text.signature, text.string, texts, words,
+        accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example,
+        field_row, imports, message_example, names.constant_name, names.field_name, names.scale_name, names.setter,
+        RUST_NAMES.symbol, types.message_path, types.open_type, types.raw_type, scale_of, sentence, text.arm,
+        text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,
+        texts, words,
     )  # fmt: skip
     return {function.__name__: function for function in functions}
 

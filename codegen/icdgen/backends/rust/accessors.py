@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from icdgen.backends.lines import STEP, exploded
-from icdgen.backends.rust.names import field_name, struct_path
+from icdgen.backends.rust.names import field_name, scale_name
 from icdgen.backends.rust.physical import (
     accessors_in_rust,
     curve_name,
@@ -16,6 +16,7 @@ from icdgen.backends.rust.physical import (
     single,
 )
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
+from icdgen.backends.rust.types import struct_path
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor
 from icdgen.describe.description import Composite
@@ -71,7 +72,7 @@ def scale_of(field: FieldDescription) -> str:
     terms = field.steps.terms if field.steps else (1, 0, 1)
     place = field.model
     numbers = [f"({', '.join(map(integer, row))})" for row in ((place.raw_min, place.raw_max), terms)]
-    return _constant(field.name.upper(), "Scale", [string(place.name), string(field.allowed_text), *numbers])
+    return _constant(scale_name(field), "Scale", [string(place.name), string(field.allowed_text), *numbers])
 
 
 def _constant(name: str, type: str, items: list[str]) -> str:
@@ -109,7 +110,7 @@ def field_row(field: FieldDescription) -> str:
         limits = [f'("{bound.key}", {double(bound.double)})' for bound in field.bounds]
         chain.append(f".limits(&[{', '.join(limits)}])")
     if field.steps is not None:
-        chain.append(f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{field.name.upper()})")
+        chain.append(f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{scale_name(field)})")
     if field.curve is not None:
         chain.append(f".curve(&{curve_name(field)})")
     line = "".join(chain)

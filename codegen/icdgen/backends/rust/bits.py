@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from icdgen.backends.lines import STEP, bracketed
 from icdgen.backends.rust.arrays import helper_of, reader, writer
-from icdgen.backends.rust.names import field_name, integer_type, own_name, struct_path
+from icdgen.backends.rust.names import field_name, own_name, scale_name
 from icdgen.backends.rust.text import WIDTH, mask
+from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.storage import holding
 from icdgen.icd.pieces import Piece
@@ -163,9 +164,9 @@ def fitting(field: FieldDescription) -> list[str]:
         ]
     raw = ".raw()" if field.enum is not None else ""
     if not field.count:
-        return [f"{field.name.upper()}.fit({_source(field)}{raw})?;"]
+        return [f"{scale_name(field)}.fit({_source(field)}{raw})?;"]
     values = f"{member}().iter().copied()" if field.is_in_last_part else member
-    return [f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"]
+    return [f"for value in {values} {{", f"{STEP}{scale_name(field)}.fit(value{raw})?;", "}"]
 
 
 def _source(field: FieldDescription, owner: str = "self") -> str:

@@ -7,7 +7,8 @@ from typing import Any
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust import arrays, bits
-from icdgen.backends.rust.names import one_type, own_name, struct_path
+from icdgen.backends.rust.names import own_name
+from icdgen.backends.rust.types import one_type, struct_path
 from icdgen.describe import FieldDescription, StructDescription
 from icdgen.describe.arrays import ArrayLoop, loop_of
 from icdgen.describe.description import Composite, Into

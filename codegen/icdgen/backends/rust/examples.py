@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 from icdgen import codec
 from icdgen.backends.rust.accessors import accessors
-from icdgen.backends.rust.names import ENUMS_MODULE, field_name, type_name
+from icdgen.backends.rust.names import ENUMS_MODULE, constant_name, field_name, setter
+from icdgen.backends.rust.symbols import RUST_NAMES
 from icdgen.backends.rust.text import double, integer, mask
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription
 from icdgen.describe.examples import Example, Shown, example
@@ -27,9 +28,12 @@ def message_example(message: MessageDescription, crate: str) -> list[str]:
 
 def enum_example(enum: EnumDescription, crate: str) -> list[str]:
     """Return lines that compare a value with its name."""
-    name, member = type_name(enum), enum.members[-1] if enum.members else None
+    name, member = RUST_NAMES.symbol(enum, "type"), enum.members[-1] if enum.members else None
     first = enum.member(member.model.value) if member else None
-    tests = [f"assert_eq!({name}::from({integer(first.model.value)}), {name}::{type_name(first)});"] if first else []
+    tests = []
+    if first is not None:
+        variant = RUST_NAMES.symbol(first, "variant")
+        tests.append(f"assert_eq!({name}::from({integer(first.model.value)}), {name}::{variant});")
     path = f"{crate}::{enum.node.name}::{ENUMS_MODULE}::{name}"
     return _fenced([f"use {path};", "", *tests, f"assert_eq!({name}::default().raw(), 0);"])
 
@@ -37,12 +41,12 @@ def enum_example(enum: EnumDescription, crate: str) -> list[str]:
 def direction_example(direction: Direction, node: NodeDescription, crate: str) -> list[str]:
     """Return lines that decode a frame of zeros by its id."""
     message, id = direction.messages[0]
-    name, path = direction.kind.capitalize(), f"{crate}::{message.node.name}::{type_name(message)}"
+    name, path = direction.kind.capitalize(), f"{crate}::{message.node.name}::{RUST_NAMES.symbol(message, 'type')}"
     return _fallible(
         [
             f"use {crate}::{node.name}::{name};",
             "",
-            f"let message = {name}::from_bytes({path}::{id.upper()}, &[0; {message.model.layout.shortest}])?;",
+            f"let message = {name}::from_bytes({path}::{constant_name(id)}, &[0; {message.model.layout.shortest}])?;",
             f"assert_eq!(message.name(), {path}::NAME);",
         ],
         crate,
@@ -57,7 +61,7 @@ def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> 
         return []
     scaled = (message for message in short if any(field.is_scaled for field in message.members))
     message = next(scaled, short[0])
-    reply, name = example(message), type_name(message)
+    reply, name = example(message), RUST_NAMES.symbol(message, "type")
     answer = _bytes(bytes([message.model.telemetry_id or 0, *reply.frame]))
     client = f"Client::<{node.name}::Node, {{ {node.name}::LONGEST }}>"
     return _fallible(
@@ -91,7 +95,7 @@ def _fenced(lines: Iterable[str]) -> list[str]:
 
 
 def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> list[str]:
-    home, name = f"{crate}::{message.node.name}", type_name(message)
+    home, name = f"{crate}::{message.node.name}", RUST_NAMES.symbol(message, "type")
     enum = shown.field.enum if shown else None
     if enum is None:
         return [f"use {home}::{name};"]
@@ -103,19 +107,19 @@ def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> li
 def _received(message: MessageDescription, shown: Example) -> list[str]:
     lines = [f"let frame = {_bytes(shown.frame)};"]
     if len(shown.frame) > _SHORT:
-        size = str(len(shown.frame)) if message.last_part else f"{type_name(message)}::LENGTH"
+        size = str(len(shown.frame)) if message.last_part else f"{RUST_NAMES.symbol(message, 'type')}::LENGTH"
         lines = [f"let mut frame = [0; {size}];"]
         lines += [_put(start, run) for start, run in shown.runs]
     return [
         *lines,
-        f"let message = {type_name(message)}::from_bytes(&frame)?;",
+        f"let message = {RUST_NAMES.symbol(message, 'type')}::from_bytes(&frame)?;",
         *([_read(shown.shown)] if shown.shown else []),
         "assert_eq!(message.to_bytes()?, frame);",
     ]
 
 
 def _sent(message: MessageDescription, shown: Example) -> list[str]:
-    name = type_name(message)
+    name = RUST_NAMES.symbol(message, "type")
     lines = [f"let command = {name}::default();"]
     if shown.shown:
         lines = [f"let mut command = {name}::default();", _written(shown.shown)]
@@ -138,7 +142,7 @@ def _read(shown: Shown) -> str:
 def _written(shown: Shown) -> str:
     field = shown.field
     if shown.physical is not None and accessors(field)[0].raw:
-        return f"command.set_{field.physical_name}({double(shown.physical)})?;"
+        return f"command.{setter(field.physical_name)}({double(shown.physical)})?;"
     into = ".into()" if field.enum else ""
     return f"command.{field_name(field)} = {_value(shown)}{into};"
 
@@ -149,7 +153,7 @@ def _value(shown: Shown) -> str:
     if field.enum is not None:
         member = field.enum.member(raw)
         assert member is not None, "an example of an enumeration is a member of it"
-        return f"{ENUMS_MODULE}::{type_name(field.enum)}::{type_name(member)}"
+        return f"{ENUMS_MODULE}::{RUST_NAMES.symbol(field.enum, 'type')}::{RUST_NAMES.symbol(member, 'variant')}"
     if field.model.type == "bool":
         return "true" if raw else "false"
     return double(codec.float_value(field.model, raw)) if field.model.type == "float" else integer(raw)

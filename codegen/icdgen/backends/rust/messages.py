@@ -6,9 +6,10 @@ import re
 from typing import Any
 
 from icdgen.backends.rust import arrays, bits, conditional, elements, parts
-from icdgen.backends.rust.names import field_name, integer_type, struct_path
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import double, integer
+from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite, Into, VariablePartDescription

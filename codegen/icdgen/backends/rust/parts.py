@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.backends.rust.names import field_name, own_name, struct_path
+from icdgen.backends.rust.names import field_name, own_name
 from icdgen.backends.rust.text import WIDTH
+from icdgen.backends.rust.types import struct_path
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
 from icdgen.describe.comments import part_comment
 from icdgen.describe.contained import ContainedDescription, CopiedMember, contained_messages

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.backends.lines import STEP
-from icdgen.backends.rust.names import RESERVED, field_name
+from icdgen.backends.rust.names import RESERVED, field_name, scale_name
 from icdgen.backends.rust.text import assigned, double, integer, mask, whole_double
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor, accessors_of
@@ -50,7 +50,7 @@ def raw_value(field: FieldDescription) -> str:
 
 def curve_name(field: FieldDescription) -> str:
     """Return the name of the constant of a calibration: ``TEMPERATURE__CURVE``. Names of fields have no double underscore."""
-    return f"{field.declared_name.upper()}__CURVE"
+    return f"{scale_name(field)}__CURVE"
 
 
 def double_value(field: FieldDescription) -> str:
@@ -64,14 +64,14 @@ def double_value(field: FieldDescription) -> str:
             return f"{curve_name(field)}.whole({raw})"
         return f"{curve_name(field)}.physical({raw if is_long else f'f64::from({raw})'})"
     if not field.arithmetic.is_exact_in_doubles:
-        return f"{field.declared_name.upper()}.physical({raw})"
+        return f"{scale_name(field)}.physical({raw})"
     return _quotient(field.arithmetic.steps, f"f64::from({raw})")
 
 
 def double_raw(field: FieldDescription) -> str:
     """Return the raw value of the double ``value``, a Result."""
     if field.curve is None:
-        return f"{field.declared_name.upper()}.raw(value)"
+        return f"{scale_name(field)}.raw(value)"
     kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
     return f"{curve_name(field)}.{kind}(value)"
 
@@ -87,16 +87,14 @@ def integer_value(field: FieldDescription, access: IntegerAccess) -> str:
 def integer_raw(field: FieldDescription, access: IntegerAccess) -> str:
     """Return the raw value of ``value`` in whole parts of the unit, a Result."""
     value = "value" if access.bits == 64 else "value.into()"
-    return (
-        f"{field.declared_name.upper()}.whole({value}, {integer(access.scale.factor)}, {integer(access.scale.offset)})"
-    )
+    return f"{scale_name(field)}.whole({value}, {integer(access.scale.factor)}, {integer(access.scale.offset)})"
 
 
 def single(field: FieldDescription) -> str:
     """Return the physical value of a field with a scale in single precision."""
     assert field.arithmetic is not None
     if not field.arithmetic.is_exact_in_singles:
-        return f"{field.declared_name.upper()}.single({raw_value(field)})"
+        return f"{scale_name(field)}.single({raw_value(field)})"
     return _quotient(field.arithmetic.steps, f"f32::from({raw_value(field)})")
 
 

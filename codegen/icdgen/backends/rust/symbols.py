@@ -21,6 +21,8 @@ _METHODS_OF_STRUCTS = ("fit", "rows", "default")
 _CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")
 _USED_BY_ENUMS = ("Option", "From", "Enumeration")
 _CRATE = "modules of the crate"
+_OWN = "a name of the generated code"
+_CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 
 
 class RustNames(NamingPolicy):
@@ -43,19 +45,19 @@ class RustNames(NamingPolicy):
 
     def message_of_direction(self, node: NodeDescription, direction: str, message: MessageDescription) -> Symbols:
         scope = f"variants of {node.name}::{direction.capitalize()}"
-        yield message.identifier(scope, names.type_name(message))
+        yield message.identifier(scope, message.camel_name)
 
     def enumeration(self, enum: EnumDescription) -> Symbols:
-        yield enum.identifier(f"enumerations of {enum.node.name}", names.type_name(enum))
-        yield from _used(_variants(enum), (names.catch_all(enum),))
+        yield enum.identifier(f"enumerations of {enum.node.name}", enum.camel_name, "type")
+        yield Identifier(_variants(enum), _catch_all(enum), _OWN, None, "catch_all")
 
     def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
-        yield member.identifier(_variants(enum), names.type_name(member))
+        yield member.identifier(_variants(enum), member.camel_name, "variant")
 
     def composite(self, composite: Composite[Any]) -> Symbols:
         node, scope = composite.node.name, _scope(composite)
         yield composite.identifier(f"modules of {node}", composite.name)
-        yield composite.identifier(f"types of {node}", names.type_name(composite))
+        yield composite.identifier(f"types of {node}", composite.camel_name, "type")
         methods, constants = f"methods of {scope}", f"constants of {scope}"
         if not isinstance(composite, MessageDescription):
             yield from _used(methods, _METHODS_OF_STRUCTS)
@@ -100,6 +102,12 @@ def _variants(enum: EnumDescription) -> str:
     return f"variants of {enum.node.name}::{enum.model.name}"
 
 
-def _used(scope: str, texts: Iterable[str], use: str = "a name of the generated code") -> Iterator[Identifier]:
+def _catch_all(enum: EnumDescription) -> str:
+    """Return the variant that keeps values without a name: the first name that no member has."""
+    taken = {member.camel_name for member in enum.members}
+    return next((name for name in _CATCH_ALL if name not in taken), _CATCH_ALL[0])
+
+
+def _used(scope: str, texts: Iterable[str], use: str = _OWN) -> Iterator[Identifier]:
     """Names that the generated code itself declares or refers to in a scope."""
     return (Identifier(scope, text, use, None) for text in texts)

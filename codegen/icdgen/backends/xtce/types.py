@@ -8,7 +8,6 @@ from itertools import chain, count
 from math import ceil, floor
 from typing import Any
 
-from icdgen import naming
 from icdgen.describe import FieldDescription
 from icdgen.describe.bounds import bounds
 from icdgen.describe.description import VariablePartDescription
@@ -126,7 +125,7 @@ def _usual_name(field: FieldDescription, of: Type) -> str:
     other types.
     """
     if field.enum is not None:
-        return naming.camel(field.enum.words)
+        return field.enum.camel_name
     if of.unit or of.terms or of.points or of.limits:
         return ""
     little = "_le" if of.byte_order.startswith("least") else ""

@@ -1,0 +1,60 @@
+"""Types of raw values in Rust, and paths of the types of messages, structs and enumerations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from icdgen.backends.rust.names import ENUMS_MODULE
+from icdgen.backends.rust.symbols import RUST_NAMES
+from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
+from icdgen.describe.description import Composite
+from icdgen.icd.model import Node
+
+
+def enum_path(enum: EnumDescription, node: Node) -> str:
+    """The type as the messages of ``node`` write it."""
+    name = f"{ENUMS_MODULE}::{RUST_NAMES.symbol(enum, 'type')}"
+    return name if enum.node.name == node.name else f"crate::{enum.node.name}::{name}"
+
+
+def message_path(message: MessageDescription, node: Node) -> str:
+    """The type of a message as the module of ``node`` writes it."""
+    name = RUST_NAMES.symbol(message, "type")
+    return name if message.node.name == node.name else f"crate::{message.node.name}::{name}"
+
+
+def struct_path(struct: Composite[Any], node: Node) -> str:
+    """The type of a struct, or of a message, as the messages of ``node`` write it."""
+    module = "super" if struct.node.name == node.name else f"crate::{struct.node.name}"
+    return f"{module}::{RUST_NAMES.symbol(struct, 'type')}"
+
+
+def integer_type(field: FieldDescription) -> str:
+    """The integer that holds the raw value."""
+    return f"{'i' if field.storage.signed else 'u'}{field.storage.bits}"
+
+
+def raw_type(field: FieldDescription) -> str:
+    """Type of the raw value in the message's struct."""
+    if field.model.conditions:
+        return f"Option<{one_type(field)}>"
+    return f"[{one_type(field)}; {field.count}]" if field.count else one_type(field)
+
+
+def open_type(field: FieldDescription) -> str:
+    """Type of the elements that are in a frame."""
+    return f"[{one_type(field)}]" if field.count else "[u8]"
+
+
+def one_type(field: FieldDescription) -> str:
+    """Type of the raw value, or of an element."""
+    one = field.model
+    if field.struct is not None:
+        return struct_path(field.struct, field.message.node)
+    if field.enum is not None:
+        return f"Coded<{enum_path(field.enum, field.message.node)}>"
+    if one.is_bytes:
+        return f"[u8; {one.bits // 8}]"
+    if one.type == "float":
+        return f"f{one.bits}"
+    return "bool" if one.type == "bool" else integer_type(field)
