@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
@@ -99,8 +100,10 @@ def _meant(
     of_number = [enum for enum in everything if enum.table.label == described.enum_table is not None]
     # Parts of a manual that number their tables from 1 have several tables with this number.
     of_number.sort(key=lambda enum: enum.table.run != message.table.run)  # where numbers start anew, several have it
-    numbered = next(iter(of_number), None)
+    of_table = [enum for enum in of_number if enum.table is of_number[0].table]
     titled = _by_title(described.enum_title, everything, node)
+    is_ambiguous = len(of_table) > 1 and titled not in of_table
+    numbered = titled if titled in of_table else None if is_ambiguous else next(iter(of_table), None)
     chosen = numbered or titled
     if numbered and described.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
         chosen = titled
@@ -110,7 +113,10 @@ def _meant(
                     "the title was followed")
         )  # fmt: skip
     if chosen is None:
-        if described.enum_table is not None:
+        if is_ambiguous:
+            names = " and ".join(f"`{enum.name}`" for enum in of_table[:3])
+            what = f"it points to table {table_name(described.enum_table)}, which has {len(of_table)} enumerations: {names}"
+        elif described.enum_table is not None:
             what = f"it points to table {table_name(described.enum_table)}, which is not there or no enumeration"
         elif described.enum_title:
             what = f"there is no enumeration `{described.enum_title}`"
@@ -122,13 +128,24 @@ def _meant(
 
 
 def _by_title(title: str, everything: list[ReadEnum], node: NodeParts) -> ReadEnum | None:
+    """Return the enumeration of a title: its name, the caption of its table, or the beginning of both."""
     wanted = squeezed(title)
     if not wanted:
         return None
     near = [*node.enums, *everything]
-    equal = (enum for enum in near if wanted in (squeezed(enum.name), squeezed(enum.table.caption)))
-    torn = (enum for enum in near if len(wanted) > 5 and squeezed(enum.table.caption).startswith(wanted))
-    return next(itertools.chain(equal, torn), None)
+    tables = Counter(id(enum.table) for enum in everything)
+    equal = (enum for enum in near if wanted == squeezed(enum.name))
+    # The caption of a table with several enumerations is the title of none.
+    captioned = (enum for enum in near if wanted == squeezed(enum.table.caption) and tables[id(enum.table)] == 1)
+    # A cell can break off a title. A caption that goes on can also be about another enumeration.
+    torn = [
+        enum
+        for enum in near
+        if len(wanted) > 5 and all(squeezed(text).startswith(wanted) for text in (enum.table.caption, enum.name))
+    ]
+    if len({squeezed(enum.name) for enum in torn}) > 1:
+        torn = []
+    return next(itertools.chain(equal, captioned, torn), None)
 
 
 def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> str:

@@ -7,10 +7,9 @@ import unicodedata
 from functools import lru_cache
 
 _LIGATURES = {c: unicodedata.normalize("NFKC", c) for c in "ﬀﬁﬂﬃﬄﬅﬆ"}
-_PLAIN = str.maketrans(
-    {**_LIGATURES, "\u00a0": " ", "\u2007": " ", "\u202f": " ", "\u2009": " ", "\u200b": "", "\u2010": "-",
-     "\u2011": "-", "\u2212": "-", "\ufeff": ""}
-)  # fmt: skip
+HYPHENS = str.maketrans(dict.fromkeys("\u2010\u2011\u2212", "-"))
+_BLANKS = {"\u00a0": " ", "\u2007": " ", "\u202f": " ", "\u2009": " ", "\u200b": "", "\ufeff": ""}
+_PLAIN = {**str.maketrans({**_LIGATURES, **_BLANKS}), **HYPHENS}
 _WORD = re.compile(r"[A-Za-z0-9%]+")
 SUPERSCRIPTS = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")

@@ -327,3 +327,19 @@ def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
     assert (tree["node"]["name"], tree["messages"][0]["group"]) == ("pump", "State")
     assert tree["loggable"] == [{"bit": 9, "id": 33}]
     assert [one["name"] for one in tree["missing"]] == ["Tank"]
+
+
+@pytest.mark.parametrize("printed", ["–", ""])
+def test_a_reserved_row_needs_no_type(tmp_path, printed):
+    text = f"{HEADING}Byte\tName\tType\tBits\n0\tMode\tu8\t8\n1\tReserved\t{printed}\t72\n"
+    result, tree = read(tmp_path, text, RULE.replace("Type: type", "Type: type, Bits: bits"))
+    assert fields(tree) == [(0, 8, "Mode")] and tree["messages"][0]["length"] == 10
+    assert [t.message for t in result.troubles if t.severity == "error"] == []
+
+
+@pytest.mark.parametrize("minus", ["-", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}"])
+def test_a_minus_sign_of_a_pattern_is_that_of_the_document(tmp_path, minus):
+    text = f"{HEADING}Byte\tName\tType\tScale\n0\tHeat\tu8\t0.5 N \N{MINUS SIGN} 55\n"
+    rules = RULE.replace("Type: type", f"Type: type, Scale: '^{{scale}} N {{offset:{minus} ?[\\d.]+}}$'")
+    _, tree = read(tmp_path, text, rules)
+    assert tree["messages"][0]["fields"][0]["formula"] == "raw*0.5 - 55"

@@ -74,7 +74,7 @@ def test_a_field_of_a_repeated_group_has_the_enumeration_that_its_description_na
 @pytest.mark.parametrize(
     ("what", "right", "wrong", "role", "kinds"),
     [
-        ("bits", "Flag: name", "Flag: enumeration", "enumeration", "`what: message`, `registers`, `enumeration`"),
+        ("bits", "Flag: name", "Flag: length", "length", "`what: message`, `registers`, `index`, `list`"),
         (
             "bits",
             "{of: State}",

@@ -19,7 +19,8 @@ _SAID = ("kind", "length")
 def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) -> None:
     """Give enumerations, lookup tables and bits to the fields that their `of` names."""
     for part in parts:
-        if part.rule.what not in ("enumeration", "lookup", "bits") or part.given.get("enumeration"):
+        has_own_name = part.rule.what == "enumeration" and part.given.get("enumeration")
+        if part.rule.what not in ("enumeration", "lookup", "bits") or has_own_name:
             continue
         name = normalised(part.given.get("of", ""))
         hosts = _hosts(name, part, parts, messages)
@@ -110,7 +111,9 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
             continue
         own_order = run[1] if run[1] != order else None
         roles = replace(draft.roles, given=draft.roles.given | group)
-        pieces.append(replace(draft, at=run[0], order=own_order, facts=dict(draft.facts), roles=roles))
+        pieces.append(
+            replace(draft, at=run[0], order=own_order, facts=dict(draft.facts), roles=roles, table=part.table)
+        )
     index = next(i for i, draft in enumerate(host.drafts) if draft is field)
     host.drafts[index : index + 1] = pieces
 
@@ -130,7 +133,8 @@ def check_index(index: list[Part], results: list[Found], notes: Notes) -> None:
                 "IMP061",
                 f"{entry.table.title}: it lists `{name or id}`, and no table describes it",
                 entry.table.spot,
-                "write a rule for its table, or leave the row out with `skip`",
+                "write a rule for its table; if it has no data and no table, a second rule can read it from this one (`also: true` "
+                "here, `keep` there); or leave the row out with `skip`",
                 entry.rule.place,
             )
         for message in same:

@@ -189,7 +189,7 @@ class Builder:
         for name in (*stated, draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):
             own = self.enums.get(name)
             if own is None:
-                own = self.enums[name] = ReadEnum(name, members, part.table)
+                own = self.enums[name] = ReadEnum(name, members, draft.table or part.table)
                 self.enums_found.append(Found(own.table, "enumeration", own))
             if own.members == members:
                 return name

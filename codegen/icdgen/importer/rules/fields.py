@@ -45,6 +45,7 @@ class Draft:
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
     part: tuple[int, int] | None = None  # bit numbers of the whole field that this piece has
     order: Order | None = None  # where it is not the node's
+    table: SourceTable | None = None  # the table of bits that gives the field; None for the table of its message
     frame_bits: list[Bit] = field(default_factory=list)  # from the least significant one, if `at` does not state them
 
     @property
@@ -204,6 +205,10 @@ class FieldReader:
         name = roles.get("type")
         if not name and roles.members:
             return TypeName("enum")
+        own = self.profile.types_of_profile.get("".join(name.casefold().split()))
+        type_name = own or (type_of(name) if name else None)
+        if type_name is None and self.profile.is_reserved(roles.get("name")):
+            return TypeName("reserved")  # tables print a dash as its type, or nothing
         if not name:
             self.error(
                 "IMP026",
@@ -212,8 +217,6 @@ class FieldReader:
                 "give a column the role `type`, or state one for all: `each: {type: uint}`",
             )
             return None
-        own = self.profile.types_of_profile.get("".join(name.casefold().split()))
-        type_name = own or type_of(name)
         if type_name is None:
             self.error(
                 "IMP026",

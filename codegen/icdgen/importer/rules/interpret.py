@@ -101,14 +101,14 @@ class _Interpreter:
         reader = FieldReader(rule, table, self.profile, self.order, self.notes)
         parts: dict[tuple[str, ...], Part] = {}
         of_message = set(MESSAGE_ROLES)
-        if rule.what in ("message", "registers"):
+        if rule.what in ("message", "registers", "bits"):
             of_message.remove("enumeration")  # the name of the enumeration of a field
         for roles in role_reader.read(rows):
             # Tables of messages have rows that name a message only: it has no fields.
             is_field = not set(roles.given) <= of_message | set(rule.each)
             roles.given = {**shared, **roles.given}
             own = {role: roles.given.pop(role) for role in list(roles.given) if role in of_message}
-            key = tuple(own.get(role, "") for role in ("message", "id", "set_id", "get_id", "of"))
+            key = tuple(own.get(role, "") for role in ("message", "id", "set_id", "get_id", "of", "enumeration"))
             part = parts.setdefault(key, Part(rule, table, dict(message)))
             self.check_rows_agree(part, own)
             part.given.update(own)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from icdgen.diagnostics import Place
 from icdgen.importer.rules import positions
-from icdgen.importer.words import join, plain
+from icdgen.importer.words import HYPHENS, join, plain
 
 INTEGER = r"(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH]\b|[0-9]+)"
 NUMBER = r"[-+−–]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
@@ -67,7 +67,7 @@ MESSAGE_ROLES = {
     "message_text": "description of the message",
     "section": "group heading of the message in a list",
     "node": "name of the node that a list is about",
-    "enumeration": "name of an enumeration to which descriptions refer",
+    "enumeration": "name of the enumeration of a field, or that a table of values gives",
     "mask": "mask of bytes in hexadecimal of which one bit selects a frame for a log",
 }
 ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
@@ -83,7 +83,7 @@ ROLES_OF = {
     "loggable": {*_PROSE, "message", "id", "mask", "bit"},
     "enumeration": {*_PROSE, "value", "member", "of", "message", "enumeration"},
     "lookup": {*_PROSE, "value", "points", "of", "message"},
-    "bits": {*_FIELD_ROLES, *_PROSE, "of", "message"},
+    "bits": {*_FIELD_ROLES, *_PROSE, "of", "message", "enumeration"},
 }
 """The roles that each kind of rule (`what`) uses."""
 INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to", "const"} - {"part"})
@@ -147,6 +147,8 @@ def compile_pattern(text: str, place: Place) -> Pattern:
         close = close_to(unknown, ROLES)
         help = f"did you mean `{{{close}}}`?" if close else f"roles are {', '.join(sorted(ROLES))}"
         raise PatternError(f"unknown role `{unknown}` in the pattern `{text}`", help)
+    # Cells have the hyphen for each kind of minus sign.
+    text = text.translate(HYPHENS)
     expanded = _ROLE.sub(lambda m: f"(?P<{m[1]}>{m[2] or _PATTERN_OF[m[1]]})", text)
     if _BRACE.search(expanded):
         raise PatternError(

@@ -228,9 +228,8 @@ class _Reader:
 
     def belongs(self, rule: Rule) -> None:
         """Check that a table of values or bits says to which field it belongs."""
-        if rule.what in ("enumeration", "lookup", "bits") and not any(
-            role in ("of", "enumeration") for role in roles_of_message(rule)
-        ):
+        owners = {"enumeration": {"of", "enumeration"}, "lookup": {"of"}, "bits": {"of"}}.get(rule.what)
+        if owners and not owners & set(roles_of_message(rule)):
             self.add(
                 f"the rule does not say to which field the {rule.what} belongs",
                 rule.place,
