@@ -41,7 +41,7 @@ def test_a_table_with_a_column_of_names_gives_several_enumerations(tmp_path):
     result, tree = read(tmp_path, text, RULES.replace("PATTERN", "enumeration"))
     assert enumerations(tree) == {"Switch action": ["Off", "On"], "Charge mode": ["Slow", "Fast"]}
     assert [field["enum"] for field in tree["messages"][0]["fields"]] == ["Switch action", "Charge mode"]
-    assert not [finding for finding in result.findings if finding.severity == "error"]
+    assert not [finding for finding in result.import_findings if finding.severity == "error"]
 
 
 @pytest.mark.parametrize("name", ["Switch action and charge mode", "Switch action and"])
@@ -88,4 +88,4 @@ def test_the_fields_of_bits_have_enumerations_and_these_the_source_of_their_tabl
     ]
     sources = {enum["name"]: enum["source"]["table"] for enum in tree["enums"]}
     assert sources["State"] == 2 and sources["Switch action"] == 3
-    assert not [finding for finding in result.findings if finding.severity == "error"]
+    assert not [finding for finding in result.import_findings if finding.severity == "error"]

@@ -334,7 +334,7 @@ def test_a_reserved_row_needs_no_type(tmp_path, printed):
     text = f"{HEADING}Byte\tName\tType\tBits\n0\tMode\tu8\t8\n1\tReserved\t{printed}\t72\n"
     result, tree = read(tmp_path, text, RULE.replace("Type: type", "Type: type, Bits: bits"))
     assert fields(tree) == [(0, 8, "Mode")] and tree["messages"][0]["length"] == 10
-    assert [t.message for t in result.troubles if t.severity == "error"] == []
+    assert [t.message for t in result.import_findings if t.severity == "error"] == []
 
 
 @pytest.mark.parametrize("minus", ["-", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}"])
