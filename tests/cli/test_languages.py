@@ -17,14 +17,14 @@ def restrict(demo):
 def test_check_reports_a_name_that_fails_in_any_language(icdgen, restrict):
     result = icdgen("check", restrict)
     assert result.status == 1
-    assert "ICD070" in result.out + result.err and "reserved word in c" in result.out + result.err
+    assert "ICD070" in result.out + result.err and "reserved word in C/C++" in result.out + result.err
 
 
 @pytest.mark.parametrize("language", ["c", "c-selftest", "html", "assurance"])
 def test_an_output_with_c_names_is_not_generated_with_a_reserved_word_of_c(icdgen, restrict, tmp_path, language):
     result = icdgen("--lang", language, "--out", "out", restrict)
     assert result.status == 1
-    assert "reserved word in c" in result.err
+    assert "reserved word in C/C++" in result.err
     assert not (tmp_path / "out").exists()
 
 
