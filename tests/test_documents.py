@@ -61,3 +61,22 @@ def test_the_index_lists_every_page():
     index = documents.DOCS / "README.md"
     listed = {(index.parent / link.partition("#")[0]).resolve() for link in links(index)}
     assert [page.name for page in documents.pages() if page.resolve() not in listed | {index}] == []
+
+
+def test_the_way_of_a_field_names_functions_that_exist():
+    page = (ROOT / "docs" / "explanation" / "architecture.md").read_text("utf-8")
+    section = page.split("## One field from YAML to C")[1].split("\n## ")[0]
+    rows = [row.split("|")[2] for row in section.splitlines() if row.startswith("|") and "`" in row]
+    assert len(rows) > 15
+    for row in rows:
+        source = ""
+        for word in re.findall(r"`([^`]+)`", row):
+            if "/" in word:
+                file = (
+                    ROOT / word
+                    if word.split("/")[0] in ("templates", "runtime")
+                    else ROOT / "codegen" / "icdgen" / word
+                )
+                source = file.read_text("utf-8")
+            else:
+                assert re.search(rf"(def |class |\s|\*){word}\(|class {word}\b|def {word}\b", source), (row, word)

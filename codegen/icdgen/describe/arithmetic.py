@@ -51,7 +51,8 @@ class Arithmetic:
     def is_exact_in_int64(self) -> bool:
         """Whether raw*p + c is exact in a signed integer of 64 bits and as a double, so that only the division rounds.
 
-        It holds for all values of the storage, which has more of them than the field if its bits are fewer.
+        The integer does not overflow for any value of the storage. The double is exact for the values of the field, which
+        are fewer if the field has fewer bits than its storage.
         """
         p, c, _ = self.steps.terms
         return not self.steps.is_wide and self.steps.exact_in_doubles and computable(self.storage, p, c, 64)
