@@ -61,7 +61,11 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
     least = owner.LENGTH - tail.most * tail.step
 
     def to_bytes(self: _types.Any) -> bytes:
-        gaps = [_gap(self, *inner) for inner in owner.INNER]
+        gaps = (
+            _gaps(owner, lambda part, _: _count_of_message(self, part))
+            if owner.INNER
+            else []
+        )
         values = getattr(self, tail.part)
         try:
             values = tuple(values) if is_array else memoryview(values).tobytes()
@@ -87,19 +91,61 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
     return to_bytes
 
 
-def _gap(
-    self: _types.Any, part: _types.Any, begin: int, _: _types.Any
-) -> tuple[int, int]:
-    """Return the place and number of the bytes of a part that are only in the longest frame.
+def _count_of_message(self: _types.Any, part: _types.Any) -> int:
+    """Return the number of elements of a part of a message.
 
     Raise `RangeError` if the counter is out of range.
     """
-    counter = getattr(self, part.counter)
+    counter: int = getattr(self, part.counter)
     low, high = max(0, -part.plus), part.most - part.plus
     if not low <= counter <= high:
         raise RangeError(part.counter, f"{low} to {high}", counter)
-    count = counter + part.plus
-    return begin + count * part.step, (part.most - count) * part.step
+    count: int = counter + part.plus
+    return count
+
+
+def _gaps(
+    message: _types.Any, count_of: _types.Callable[[_types.Any, _types.Any], int]
+) -> list[tuple[int, int]]:
+    """Return place and number of each run of bytes that is only in the longest frame.
+
+    They are in the order of the frame. ``count_of`` returns the number of elements of a
+    part, given its counter's pieces.
+    """
+    counts = [count_of(part, pieces) for part, _, pieces in message.INNER]
+    nested = [
+        (group, begin + count * part.step, (part.most - count) * part.step)
+        for group, part, begin, pieces in message.NESTED
+        for count in [count_of(part, pieces)]
+    ]
+    gaps = []
+    for (part, begin, _), count in zip(message.INNER, counts):
+        inner = [(place, size) for group, place, size in nested if group == part.part]
+        for element in range(begin, begin + count * part.step, part.step):
+            gaps += [(element + place, size) for place, size in inner]
+        if part.part != message.TAIL.part:
+            gaps.append((begin + count * part.step, (part.most - count) * part.step))
+    return gaps
+
+
+def _shortest(message: _types.Any) -> int:
+    """Return the length of the shortest frame."""
+    length: int = message.LENGTH
+    parts = {part.part: part for part, *_ in message.INNER}
+    for part in (parts | {message.TAIL.part: message.TAIL}).values():
+        step = part.step - sum(
+            _most_missing(inner)
+            for group, inner, *_ in message.NESTED
+            if group == part.part
+        )
+        length -= part.most * part.step - max(0, part.plus) * step
+    return length
+
+
+def _most_missing(part: _types.Any) -> int:
+    """Return the number of bytes of a part that are only in the longest frame."""
+    size: int = (part.most - max(0, part.plus)) * part.step
+    return size
 
 
 def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
@@ -109,13 +155,13 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
     `LengthError` if the frame is too short, or if its counter is out of range.
     """
     frame, actual = memoryview(data).tobytes(), memoryview(data).nbytes
-    if message.INNER:
-        parts = [*(part for part, *_ in message.INNER), message.TAIL]
-        fewer = sum((item.most - max(0, item.plus)) * item.step for item in parts)
-        if actual < message.LENGTH - fewer:
-            raise LengthError(message.NAME, message.LENGTH - fewer, actual)
-    for part, begin, pieces in message.INNER:
-        count = part.plus
+    if not message.INNER:
+        return frame, 0
+    if actual < (shortest := _shortest(message)):
+        raise LengthError(message.NAME, shortest, actual)
+
+    def count_of(part: _types.Any, pieces: _types.Any) -> int:
+        count: int = part.plus
         for byte, shift, bits, at in pieces:
             count += (frame[byte] >> shift & (1 << bits) - 1) << at
         if not max(0, part.plus) <= count <= part.most:
@@ -123,12 +169,12 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
             longest = message.LENGTH
             expected = message.INNER[0][1] if actual == longest else longest
             raise LengthError(message.NAME, expected, actual)
-        place, lacking = (
-            begin + count * part.step,
-            bytes((part.most - count) * part.step),
-        )
-        frame = frame[:place] + lacking + frame[place:]
-    return frame, len(frame) - actual
+        return count
+
+    whole = frame
+    for place, lacking in _gaps(message, count_of):
+        whole = whole[:place] + bytes(lacking) + whole[place:]
+    return whole, len(whole) - actual
 
 
 def count_in(message: _types.Any, frame: bytes, lacking: int) -> int:

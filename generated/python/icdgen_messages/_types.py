@@ -349,16 +349,26 @@ class MessageFacts(StructFacts):
         INNER: ClassVar[
             tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
         ]
-        """Variable-length fields in front of `TAIL`.
+        """Variable-length fields after which a frame differs from the longest one.
 
         Each has its first byte in the longest frame, and the pieces of its counter.
+        These are the fields in front of `TAIL`, and `TAIL` itself if its elements have
+        variable-length arrays.
+        """
+        NESTED: ClassVar[
+            tuple[tuple[str, Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
+        ]
+        """Variable-length arrays in the elements of such a field.
+
+        Each has the name of the field, its first byte in the longest element, and the
+        pieces of its counter.
         """
         ENDS_EARLY: ClassVar[bool]
         """Whether frames may lack the zeros at their end."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = PARTS = INNER = ()
+        IDS = PARTS = INNER = NESTED = ()
         TABLE = TAIL = None
         ENDS_EARLY, ACKNOWLEDGED = False, True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
