@@ -123,7 +123,7 @@ def _members_of_class(declared: ast.ClassDef) -> set[str]:
     return members
 
 
-USED_IN_PYTHON = {*IN_MESSAGE, "ENDS_EARLY", "CONDITIONAL", "TAIL", "INNER", "__ranges__"}
+USED_IN_PYTHON = {*IN_MESSAGE, "ENDS_EARLY", "CONDITIONAL", "TAIL", "INNER", "NESTED", "__ranges__"}
 
 
 def test_python_declares_the_names_of_the_table(icd):

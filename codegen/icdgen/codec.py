@@ -20,7 +20,8 @@ from typing import TypeAlias
 
 from icdgen.icd.curve import Curve
 from icdgen.icd.frames import FrameField, frame_fields
-from icdgen.icd.layout import Derived, Layout, Overlay, Scalar, Sizes, Special, VariablePart
+from icdgen.icd.layout import Derived, Layout, Overlay, Scalar, Sizes, VariablePart
+from icdgen.icd.meanings import Special
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.places import AnyScalar
 
@@ -108,17 +109,21 @@ def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
     if actual < layout.shortest:
         raise LengthError(message, layout.shortest, actual)
     counters = _counters(node, layout, frame)
-    sizes: dict[str, int] = {}
-    end = layout.length
-    for part in layout.parts[:-1]:
-        if not part.low <= counters[part.counter] <= part.high:
-            raise LengthError(message, layout.length if actual == layout.longest else layout.longest, actual)
-        sizes[part.name] = counters[part.counter] + part.plus
-        end += sizes[part.name] * part.step
     if not layout.parts:
         _check_length(message, layout.lengths, actual)
-        return sizes
+        return {}
     last = layout.parts[-1]
+    sizes = {last.name: 0}
+    # If elements of the last part have variable-length arrays, its own counter is needed to place them.
+    for name, part in layout.parts_by_size.items():
+        if part is not last or part.inner:
+            if not part.low <= counters[part.counter] <= part.high:
+                raise LengthError(message, layout.length if actual == layout.longest else layout.longest, actual)
+            sizes[name] = counters[part.counter] + part.plus
+    end = layout.size_of_frame(sizes)
+    if last.inner:
+        _check_length(message, range(end, end + 1), actual)
+        return sizes
     _check_length(message, range(end + last.fewest * last.step, end + last.most * last.step + 1, last.step), actual)
     sizes[last.name] = (actual - end) // last.step
     if not last.is_rest and counters[last.counter] + last.plus != sizes[last.name]:
@@ -128,12 +133,9 @@ def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
 
 def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
     """Return the raw values of the fields that count the elements of variable-length nodes."""
-    names = {part.counter for part in layout.parts if not part.is_rest}
-    if not names:
-        return {}
+    names = {part.counter for part in layout.counted_parts if not part.is_rest}
     bits = int.from_bytes(frame, "little")
-    # The fixed part.
-    fields = frame_fields(layout, node.orders, {part.name: 0 for part in layout.parts})
+    fields = frame_fields(layout, node.orders, dict.fromkeys(layout.parts_by_size, 0))
     return {field.name: _number(_read(field, bits)) for field in fields if field.name in names}
 
 
@@ -150,7 +152,7 @@ def _number(raw: Raw) -> int:
 
 def sizes_of_values(message: Message, raw: Mapping[str, Raw]) -> Sizes:
     """Return the size of each variable-length node, from the values of its counter. Raises `CodecError`."""
-    return {part.name: size_of_values(part, raw) for part in message.layout.parts}
+    return {name: size_of_values(part, raw) for name, part in message.layout.parts_by_size.items()}
 
 
 def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
@@ -245,10 +247,11 @@ def new(node: Node, message: Message) -> dict[str, Raw]:
     Generated code sets constants also in absent elements of variable-length nodes, except of the last node.
     """
     values = initial_values(node, message)
-    inner = {part.name for part in message.layout.parts[:-1]}
+    numbers = message.layout.initial_numbers
     fields = frame_fields(message.layout, node.orders)
+    arrays = (f for f in fields if f.steps[0].element is not None)
     elements = {
-        f.name: values[f.name] for f in fields if f.steps[0].element is not None and f.steps[0].node.name in inner
+        f.name: values[f.name] for f in arrays if (f.steps[0].element or 0) < numbers.get(f.steps[0].node.name, 0)
     }
     return decode(node, message, encode(node, message, values)) | elements
 
@@ -267,8 +270,7 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
                 raise CodecError(f"{field.name!r} takes {field.scalar.length.most} bytes")
             value = value[: field.bits // 8]
         bits |= _written(field, value)
-    length = layout.length + sum(sizes[part.name] * part.step for part in layout.parts)
-    return bits.to_bytes(length, "little")
+    return bits.to_bytes(layout.size_of_frame(sizes), "little")
 
 
 def check_raw(field: AnyScalar, value: int | bytes) -> None:

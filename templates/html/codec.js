@@ -40,20 +40,32 @@ const icdgenCodec = (() => {
     return raw;
   }
 
-  /** Where the longest frame has bytes of inner open parts that one with these counts has not, and how many; null of a count that cannot be. */
-  function gaps(message, counts) {
-    return (message.inner ?? []).map(({ begin, step, most, plus }, index) => {
-      const count = Number(counts[index]) + plus;
-      return count < Math.max(0, plus) || count > most ? null : [begin + count * step, (most - count) * step];
+  /**
+   * Places and sizes of the bytes of the longest frame that a frame does not have, in order; null of a count that is not valid.
+   * `counter` returns the raw value of the field at an index.
+   */
+  function gaps(message, counter) {
+    const elements = (part) => {
+      const count = Number(counter(part.counter)) + part.plus;
+      return count < Math.max(0, part.plus) || count > part.most ? null : count;
+    };
+    const gap = (part, count) => (count === null ? null : [part.begin + count * part.step, (part.most - count) * part.step]);
+    return message.inner.flatMap((part) => {
+      const [count, found] = [elements(part), []];
+      const nested = (part.nested ?? []).map((inner) => gap(inner, elements(inner)));
+      if (nested.includes(null)) return [null];
+      for (let element = 0; element < count; element += 1) {
+        found.push(...nested.map(([place, size]) => [part.begin + element * part.step + place, size]));
+      }
+      return part.begin === message.tail.least && count !== null ? found : [...found, gap(part, count)];
     });
   }
 
   /** The beginning of the longest frame: with zeros for what inner open parts do not have. Throws a CodecError for a frame that cannot be. */
   function spread(message, frame) {
     if (frame.length < message.fewest) throw misfit(message, message.fewest, frame.length);
-    const counts = message.inner.map(({ counter }) => read(message.fields[counter], frame));
     let whole = frame;
-    for (const gap of gaps(message, counts)) {
+    for (const gap of gaps(message, (index) => read(message.fields[index], frame))) {
       if (!gap) throw misfit(message, frame.length === message.length ? message.inner[0].begin : message.length, frame.length);
       const [place, lacking] = gap;
       const wider = new Uint8Array(whole.length + lacking);
@@ -66,8 +78,7 @@ const icdgenCodec = (() => {
 
   /** The frame of the beginning of the longest one. Throws a CodecError for a count that cannot be. */
   function squeezed(message, raw, frame) {
-    const counts = message.inner.map(({ counter }) => raw[counter]);
-    for (const [place, lacking] of gaps(message, counts).reverse()) {
+    for (const [place, lacking] of gaps(message, (index) => raw[index]).reverse()) {
       const left = new Uint8Array(frame.length - lacking);
       left.set(frame.subarray(0, place));
       left.set(frame.subarray(place + lacking), place);
@@ -122,11 +133,17 @@ const icdgenCodec = (() => {
     return field.pieces.every(([byte]) => byte < size);
   }
 
+  /** Parts with their own counters, and the arrays in their elements. */
+  function countedParts(message) {
+    const parts = message.inner ?? [];
+    return [...parts, ...parts.flatMap((part) => part.nested ?? [])];
+  }
+
   /** The frame of raw values in the order of the fields; reserved bits are 0. Throws a CodecError for a value that does not fit; views have none. */
   function encode(message, raw) {
     const frame = new Uint8Array(message.length);
     const size = sizeOf(message, raw);
-    (message.inner ?? []).forEach(({ counter, most, plus }) => {
+    countedParts(message).forEach(({ counter, most, plus }) => {
       const [low, high] = [Math.max(0, -plus), most - plus];
       check(message.fields[counter], raw[counter]);
       if (raw[counter] < low || raw[counter] > high) throw unfit(message.fields[counter], `takes ${low} to ${high}, not ${raw[counter]}`);
@@ -183,7 +200,11 @@ const icdgenCodec = (() => {
 
   /** The raw values of a fresh message: 0, or what is demanded. */
   function fresh(message) {
-    const counted = new Map((message.inner ?? []).map(({ counter, plus }) => [message.fields[counter].name, Math.max(0, -plus)]));
+    const counted = new Map();
+    countedParts(message).forEach(({ counter, plus }) => {
+      const { name } = message.fields[counter];
+      counted.set(name, Math.max(0, -plus, counted.get(name) ?? 0));
+    });
     if (message.tail) counted.set(message.tail.counter, Math.max(0, -plusOf(message)));
     const first = (field) => BigInt(field.const ?? counted.get(field.name) ?? 0);
     const raw = message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : first(field)));

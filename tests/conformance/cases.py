@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -37,6 +37,18 @@ def name_of(members: list[list], value: int) -> str | None:
     return next((name for first, name, *last in members if first <= value <= (last or [first])[0]), None)
 
 
+def _is_among(name: str, parts: Sequence[dict], raw: dict) -> bool:
+    """Whether an element of one of these parts is in a frame of these raw values; what is in no part is in every frame."""
+    for one in parts:
+        element = name.removeprefix(one["part"] + "[")
+        if element != name:
+            number, _, inner = element.partition("]")
+            if int(number) >= raw[one["counter"]] + one.get("plus", 0):
+                return False
+            return _is_among(inner.removeprefix("."), one.get("nested", ()), raw)
+    return True
+
+
 class MessageCases:
     """The cases of one message, as spoken by ``node`` (the one that declares it or one that includes that)."""
 
@@ -60,7 +72,12 @@ class MessageCases:
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
         self.tail: dict | None = message.get("tail")
         self.parts: list[dict] = [*message.get("inner", ()), *([self.tail] if self.tail else ())]
-        self.full = self.fresh | {one["counter"]: one["most"] - one.get("plus", 0) for one in self.parts}
+        self.full = dict(self.fresh)
+        highest: dict[str, int] = {}
+        for one in (*self.parts, *(nested for part in self.parts for nested in part.get("nested", ()))):
+            high = one["most"] - one.get("plus", 0)
+            highest[one["counter"]] = min(high, highest.get(one["counter"], high))
+        self.full |= highest
         self.conditional = {field["name"]: field["when"] for field in self.fields if "when" in field}
         self.given = self.owned(self.full)  # what makes such a message, with all elements
 
@@ -105,11 +122,7 @@ class MessageCases:
 
     def is_sent(self, name: str, raw: dict) -> bool:
         """Whether a frame of these raw values has a field: elements of open parts beyond the count are 0, set or not."""
-        for one in self.parts:
-            element = name.removeprefix(one["part"] + "[")
-            if element != name:
-                return int(element.partition("]")[0]) < raw[one["counter"]] + one.get("plus", 0)
-        return True
+        return _is_among(name, self.parts, raw)
 
     def owned(self, values: dict) -> dict:
         """Without those of views, which are not set."""
@@ -194,7 +207,7 @@ class MessageCases:
             return self.message["length"] if actual else Maybe(...)
         if self.tail is None:
             return self.message["length"]
-        if "inner" in self.message:
+        if "inner" in self.message or "nested" in self.tail:
             return Maybe(...)
         step = self.tail["step"]
         least = self.tail["least"] + step * max(0, self.tail.get("plus", 0))

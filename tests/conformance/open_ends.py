@@ -35,6 +35,44 @@ def open_parts(draw, place: dict, fields: list[dict], elements: st.SearchStrateg
     return [*found, draw(open_end(_named(place, 9, found) if found else place, free, elements, structs))]
 
 
+@st.composite
+def nested_end(
+    draw, length: int, names: list[dict], struct: dict, inner: list[dict], elements: st.SearchStrategy
+) -> tuple[list[dict], dict]:
+    """Counters behind ``length`` bytes, and an array of structs with arrays that one of them counts; and the struct.
+
+    ``names`` are for both counters and the array, ``inner`` for the fields that come behind those of ``struct``.
+    """
+    count, inner_count, end = names
+    counters = [
+        {"at": 8 * (length + index), "bits": 8, "type": "uint", **one} for index, one in enumerate((count, inner_count))
+    ]
+    fields: list[dict] = []
+    for name in inner:
+        element = draw(elements.filter(lambda one: one["type"] != "bool" and one["bits"] % 8 == 0 and one["bits"]))
+        before = {"after": fields[-1]["name"]} if fields else {}
+        there = (
+            _counted(draw, "count", counters[1], draw(st.integers(1, 4))) if not fields or draw(st.booleans()) else {}
+        )
+        fields.append({"at": 8 * struct["length"], **before, **name, **element, **there})
+    part = {"at": 8 * (length + 2), **end, "struct": struct["name"], **_counted(draw, "count", counters[0], 2)}
+    # Several arrays have one counter: there must be a value that all can have.
+    lows, highs = zip(
+        *((-plus, one["up_to"] - plus) for one in fields if "up_to" in one for plus in [_plus(one)]), strict=True
+    )
+    if max(0, *lows) > min(highs):
+        for one in fields[1:]:
+            if "up_to" in one:
+                one["count"], one["up_to"] = fields[0]["count"], fields[0]["up_to"]
+    return [*counters, part], {**struct, "fields": [*struct["fields"], *fields]}
+
+
+def _plus(part: dict) -> int:
+    """What is added to what a counter says."""
+    said = part["count"]
+    return said["plus"] if isinstance(said, dict) else 0
+
+
 def _counter(part: dict) -> str:
     """What says how many elements it has: the name of a field, or `rest`."""
     said = part.get("size", part.get("count"))

@@ -133,7 +133,7 @@ class Reference:
                 raw[field.name] = raw_value(field, given[field.name])
             else:
                 raise Refusal("missing-field", field=field.name)
-        for part in message.layout.parts:
+        for part in message.layout.counted_parts:
             try:
                 codec.size_of_values(part, raw)
             except codec.CodecError as error:

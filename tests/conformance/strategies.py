@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from icdgen.icd import exact, formula
 from icdgen.icd.curve import OUTSIDE
 from tests.conformance.derived import derived
-from tests.conformance.open_ends import open_end, open_parts
+from tests.conformance.open_ends import nested_end, open_end, open_parts
 from tests.conformance.sharing import sharing
 
 # Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
@@ -94,6 +94,7 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
     }
     structs: list[dict] = []
+    variable: list[dict] = []  # structs of variable length
     for _ in range(draw(st.sampled_from((0, 0, 1, 2)))):
         structs.append(draw(_struct(names.one("struct"), enums, structs, orders)))
     messages = []
@@ -117,6 +118,15 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         if not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
             place = {"at": 8 * message["length"], **Names(draw, {field["name"] for field in fields}).one("end")}
             fields = [*fields, *draw(open_parts(place, fields, _field(enums), structs))]
+        elif not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
+            struct = draw(_struct(names.one("struct"), enums, structs, orders))
+            own_names = Names(draw, {field["name"] for field in fields})
+            inner_names = Names(draw, {field["name"] for field in struct["fields"]})
+            named = [own_names.one(name) for name in ("count", "inner count", "groups")]
+            inner = [inner_names.one("behind") for _ in range(draw(st.integers(1, 4)))]
+            ends, struct = draw(nested_end(length, named, struct, inner, _field(enums)))
+            fields, message["length"] = [*fields, *ends], length + 2
+            variable.append(struct)
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
@@ -135,7 +145,7 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
     node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
     if ids.bits != 8:
         node["id_bits"] = ids.bits
-    return {"icdgen": 1, "node": node, "enums": enums, "structs": structs, "messages": messages}
+    return {"icdgen": 1, "node": node, "enums": enums, "structs": [*structs, *variable], "messages": messages}
 
 
 @st.composite

@@ -40,7 +40,8 @@ def test_the_frame_of_a_new_message_has_as_many_elements_as_code_gives_them_init
         assert all(field.initial_count == field.count for field in message.members if not field.is_in_last_part)
         for part in message.variable_parts[-1:]:
             assert part.field.initial_count == sizes[part.model.name]
-        assert len(frame) == layout.length + sum(part.fewest * part.step for part in layout.parts)
+        assert all(sizes[part.name] == part.fewest for part in layout.parts)
+        assert len(frame) == layout.size_of_frame(sizes)
 
 
 @pytest.mark.parametrize("path", SETS)
@@ -59,4 +60,4 @@ def test_what_is_zero_in_a_new_message_has_no_other_value_in_any_element(path):
 
 
 def _sizes(message: MessageDescription) -> dict[str, int]:
-    return {part.name: part.fewest for part in message.model.layout.parts}
+    return {name: part.fewest for name, part in message.model.layout.parts_by_size.items()}

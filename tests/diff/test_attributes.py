@@ -11,8 +11,9 @@ from icdgen.diff.compare import compare
 from icdgen.icd.curve import table
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import Scale
-from icdgen.icd.layout import Array, Condition, Limits, Orders, Scalar, Special, StructRef
+from icdgen.icd.layout import Array, Condition, Orders, Scalar, StructRef
 from icdgen.icd.layout_copies import with_attributes, with_enum, with_node, with_struct_layout
+from icdgen.icd.meanings import Limits, Special
 from icdgen.icd.model import Enum, Icd, Member, Message, Part
 from icdgen.icd.units import STANDARD
 from icdgen.loading import load

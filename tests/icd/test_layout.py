@@ -8,7 +8,8 @@ import pytest
 
 from icdgen.icd import pieces as bits
 from icdgen.icd.frames import flatten
-from icdgen.icd.layout import Array, Counted, Layout, Orders, Overlay, Scalar, StructRef, size_of, walk
+from icdgen.icd.layout import Array, Layout, Orders, Overlay, Scalar, StructRef
+from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Icd, Message, Node
 from tests.conformance.icds import read
 from tests.conftest import ROOT
@@ -60,7 +61,7 @@ def test_lengths_of_frames_follow_from_the_sizes_of_their_variable_parts(path):
     for _, node, message in messages(path):
         layout = message.layout
         for most in (False, True):
-            sizes = {part.name: part.most if most else part.fewest for part in layout.parts}
+            sizes = {name: part.most if most else part.fewest for name, part in layout.parts_by_size.items()}
             placed = flatten(layout, node.orders, sizes)
             end = max((one.at + one.bits for one in placed if one.role == "field"), default=0)
             expected = layout.longest if most else layout.shortest
@@ -123,15 +124,43 @@ def messages_of(icd: Icd) -> list[tuple[Icd, Node, Message]]:
 @pytest.mark.parametrize("path", SETS)
 def test_a_counter_is_a_plain_number_of_the_fixed_part_that_can_hold_the_size(path):
     for _, _, message in messages(path):
-        counters = [size_of(one) for one in message.layout.sequence]
-        counted = [size for size in counters if isinstance(size, Counted)]
-        assert len({size.counter for size in counted}) == len(counted), "a field counts one part"
-        assert all(isinstance(size, Counted) for size in counters[:-1]), "only the last part is the rest of the frame"
-        for size in counted:
-            (counter,) = (one for one in message.layout.fixed if one.name == size.counter)
-            assert isinstance(counter, Scalar) and counter.type == "uint"
-            assert counter.scale is None and counter.const is None and not counter.present_if
-            assert size.most - size.plus < 1 << counter.bits
+        parts = message.layout.parts
+        counters = [part.counter for part in parts if not part.is_rest]
+        assert len(set(counters)) == len(counters), "a field counts one part"
+        assert not any(part.is_rest for part in parts[:-1]), "only the last part is the rest of the frame"
+        assert not any(
+            part.is_rest and part.inner for part in parts
+        ), "a field counts elements with arrays of variable length"
+        for part in message.layout.counted_parts:
+            if not part.is_rest:
+                (counter,) = (one for one in message.layout.fixed if one.name == part.counter)
+                assert isinstance(counter, Scalar) and counter.type == "uint"
+                assert counter.scale is None and counter.const is None and not counter.present_if
+                assert part.high < 1 << counter.bits
+
+
+def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
+    """Every field of a frame has the bytes that it has in the longest frame without the gaps."""
+    icd = read(ROOT / "tests" / "conformance" / "odd_icds")
+    (node,) = (one for one in icd.nodes if one.name == "curves")
+    assert any(message.layout.parts[-1].inner for message in node.messages)
+    for message in node.messages:
+        layout = message.layout
+        longest = flatten(layout, Orders("big", "msb0"))
+        for share in (0, 1, 2):
+            sizes = {
+                name: part.fewest + share * (part.most - part.fewest) // 2
+                for name, part in layout.parts_by_size.items()
+            }
+            gaps = list(layout.gaps(sizes))
+            placed = {one.name: one for one in flatten(layout, Orders("big", "msb0"), sizes)}
+            assert layout.size_of_frame(sizes) == layout.longest - sum(gap.length for gap in gaps)
+            for one in longest:
+                if one.role == "field" and one.scalar.length is None:
+                    is_missing = any(gap.begin <= one.at // 8 < gap.end for gap in gaps)
+                    assert (one.name not in placed) == is_missing
+                    before = sum(gap.length for gap in gaps if gap.end <= one.at // 8)
+                    assert is_missing or placed[one.name].at == one.at - 8 * before
 
 
 def test_an_array_of_structs_is_one_node_however_many_elements_it_can_have():

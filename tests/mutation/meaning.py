@@ -20,7 +20,7 @@ def _facts(node: Node, message: Message) -> tuple:
         )
         for f in message.fields
     ]  # fmt: skip
-    parts = [(part.name, part.counter, part.step, part.most, part.plus) for part in message.layout.parts]
+    parts = [(part.name, part.counter, part.step, part.most, part.plus) for part in message.layout.counted_parts]
     return message.name, message.kind, message.ids, message.length, parts, message.may_end_early, fields
 
 

@@ -39,6 +39,31 @@ def test_what_is_shown_for_programs_is_read_back_with_the_open_ends():
     assert list(map(_facts, again.nodes[0].messages)) == list(map(_facts, icd.nodes[0].messages))
 
 
+def test_arrays_in_elements_are_shown_with_their_counters_and_read_back():
+    loaded = load([odd.FOLDER / "curves.yaml"])
+    assert loaded.findings == []
+    icd = loaded.icd
+    table = field_table(icd.node("curves").messages[0], icd.node("curves"))
+    assert "up to 4 of Points, as many as Points Count says" in " ".join(table.split())
+    tree = to_json(icd)
+    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
+    (curve,) = (struct for struct in tree["nodes"][0]["structs"] if struct["name"] == "Curve")
+    counted = {
+        field["name"]: (field["counter"], field.get("plus", 0)) for field in curve["fields"] if "counter" in field
+    }
+    assert counted == {"Points": ("Points Count", 0), "Levels": ("Last Level", 1)}
+    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    for old, new in zip(icd.nodes[0].messages, again.nodes[0].messages, strict=True):
+        assert _facts(old) == _facts(new)
+        assert _counted(old) == _counted(new)
+
+
+def _counted(message):
+    return [
+        (part.name, part.counter, part.begin, part.step, part.most, part.plus) for part in message.layout.counted_parts
+    ]
+
+
 def _facts(message):
     parts = [(part.name, part.counter, part.begin, part.step, part.most, part.plus) for part in message.layout.parts]
     return message.name, message.length, message.layout.lengths, parts, [field.name for field in message.fields]

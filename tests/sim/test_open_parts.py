@@ -15,7 +15,21 @@ protocol:
   stream: {delimited_by: slip, header: [{at: 0, bits: 8, role: id}]}
 structs:
   - {name: Key, length: 2, fields: [{at: 0, bits: 8, name: Week, type: uint}, {at: 8, bits: 8, name: Hour, type: uint}]}
+  - name: Curve
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Kind, type: uint}
+      - {at: 8, bits: 8, name: Points, type: uint, count: Points Count, up_to: 3}
+      - {at: 8, after: Points, bits: 8, name: Last, type: uint}
 messages:
+  - name: Curves
+    id: 3
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Points Count, type: uint}
+      - {at: 8, bits: 8, name: Curves Count, type: uint}
+      - {at: 16, name: Curves, struct: Curve, count: Curves Count, up_to: 2}
   - name: Keys
     id: 1
     kind: telemetry
@@ -63,6 +77,10 @@ def frame(icd, message: str, *assigned: str) -> str:
         ("Keys", ("levels=[7, 8]", "levels=[6]"), "00 00 00 06"),
         ("Keys", ("keys[0].hour=3", "keys count=2"), "02 00 00 0003 0000 00"),
         ("Keys", ("words=hello", "words="), "00 00 00 00"),
+        ("Curves", ("curves[1].last=9",), "00 02 0000 0009"),
+        ("Curves", ("curves[0].points[1]=7", "curves[0].last=9"), "02 01 00000709"),
+        ("Curves", ("curves[0].points=[5, 6]", "curves[1].points=[7]"), "01 02 000500 000700"),
+        ("Curves", ("curves[1].kind=1", "points count=3"), "03 02 0000000000 0100000000"),
         ("Data", ("data=01 02 03",), "010203"),
         ("Data", ("data=01 02 03", "data=04"), "04"),
     ],

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from icdgen.errors import UserError
-from icdgen.icd.layout import overlay_of
+from icdgen.icd.layout_nodes import overlay_of
 from icdgen.protocol import transfer
 from icdgen.sim.control import _check_wave, raw_value_of
 from icdgen.sim.values import Values

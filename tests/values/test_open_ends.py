@@ -43,6 +43,46 @@ def test_what_is_given_is_counted(icd, message, values, expected):
     assert frame(icd, message, *values) == expected
 
 
+CURVE = ["between=First", "flags=[1,0,0,0,0,0,0,1]", "pair[0].v=0", "pair[1].v=0.1", "word=ab"]
+
+
+@pytest.fixture(scope="module")
+def curves():
+    return load([odd.FOLDER / "curves.yaml"]).icd
+
+
+def given_curves(*values):
+    """What is given for two curves: the same for each, but for the values, which have the names of their curves."""
+    return [*(f"curves[{number}].{value}" for number in (0, 1) for value in CURVE), *values]
+
+
+def test_points_of_each_curve_are_counted_for_all(curves):
+    points = [
+        "curves[0].points[0].v=0.5",
+        "curves[1].points[0].v=0.6",
+        "curves[0].levels=[0.01]",
+        "curves[1].levels[0]=0.02",
+    ]
+    frame = encode.encode(curves, "curves", "Curves", given_curves(*points))
+    ends = "0001" "{:06x}" "81" "0000fffe0001fffe" "616200"
+    assert frame.data.hex() == "01000002" + "00070005fffe" + ends.format(1) + "00070006fffe" + ends.format(2)
+    assert {row.field.name: row.raw for row in frame.rows}["Points Count"] == 1
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        (["curves[0].points[0].v=1", "curves[0].levels[0]=0", "curves[1].levels[0]=0"], r"`Curves\[1\].Points\[0\].V`"),
+        (["curves[0].points[1].v=1", "curves[0].levels[0]=0", "curves[1].levels[0]=0"], r"`Curves\[0\].Points\[0\].V`"),
+        (["points count=1", "curves[0].points[1].v=1"], "`Points Count` is 1, so `Points` has 1 element, 2 given"),
+        (["points count=0"], r"no value for `Curves\[0\].Levels\[0\]`"),
+    ],
+)
+def test_points_that_one_curve_lacks_are_said(curves, values, said):
+    with pytest.raises(BadValue, match=said):
+        encode.encode(curves, "curves", "Curves", given_curves(*values))
+
+
 @pytest.mark.parametrize(
     ("message", "values", "said"),
     [

@@ -64,7 +64,7 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
             fields = frame_fields(message.layout, owner.orders)
             frame = chance.randbytes(message.length)
             frame = codec.frame_of(frame, {one: one.const for one in fields if one.const is not None})
-            if len(message.layout.parts) == 1:
+            if message.layout.parts and not message.layout.has_gaps:
                 (part,) = message.layout.parts
                 has_more = has_open_end(message) and not part.is_rest
                 more = chance.randint(0, min(MOST, part.high - part.low)) if has_more else 0

@@ -15,6 +15,7 @@ from icdgen.describe.numbers import (
     bit_range,
     byte_count,
     byte_range,
+    count_text,
     exact_text,
     length_text,
     octets_text,
@@ -24,7 +25,7 @@ from icdgen.describe.numbers import (
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.layout import LayoutNode, Scalar, VariablePart
+from icdgen.icd.layout import Array, Counted, LayoutNode, Scalar, VariablePart
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 from icdgen.wording import listing
@@ -141,7 +142,8 @@ def _table(number: int | None) -> str:
 
 def struct_comment(struct: Struct) -> Comment:
     """Return the comment of a struct: name, length and table; summary."""
-    head = f"{words(struct.name)}: a struct of {byte_count(struct.length)}.{_table(struct.table)}"
+    size = f"{'up to ' * bool(struct.layout.inner_parts)}{byte_count(struct.length)}"
+    head = f"{words(struct.name)}: a struct of {size}.{_table(struct.table)}"
     return _comment(head, (sentence(struct.summary),), struct.errata, {})
 
 
@@ -194,11 +196,11 @@ def field_comment(field: NodePlace, elsewhere: Mapping[str, str], message: Messa
     if field.limits is not None:
         facts.append(_limits(field))
     facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
-    for part in (part for part in parts if part.counter == field.name):
+    for part in (part for part in message.layout.counted_parts if part.counter == field.name):
         plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
     own_part = next((part for part in parts if part.name == field.name), None)
-    place = _variable_place(field, message, own_part) if own_part else _place(field)
+    place = _variable_place(field, message, own_part) if own_part else _place(field) + _inner_count(field)
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere)
 
@@ -223,6 +225,12 @@ def _place(field: NodePlace) -> str:
     where = bit_range(field.at, field.width)
     elements = array_text(field.count, field.bits) if field.count else ""
     return ", ".join(filter(None, (where, elements, orders_text(field))))
+
+
+def _inner_count(field: NodePlace) -> str:
+    """Return the number of elements of a variable-length array in a struct; empty for any other field."""
+    size = field.node.size if isinstance(field.node, Array) else None
+    return f", as many as {words(count_text(size.counter, size.plus))} says" if isinstance(size, Counted) else ""
 
 
 def _variable_place(field: NodePlace, message: Message, part: VariablePart) -> str:

@@ -215,12 +215,22 @@ class FieldDescription(ScalarDescription):
         return field_comment(self.model, elsewhere, self.message.model)
 
 
+class Chunk(NamedTuple):
+    """Bytes of an element that are contiguous in every frame: bytes of fixed size, then the elements of an array."""
+
+    begin: int  # in the longest element
+    fixed: int
+    inner: VariablePartDescription | None
+
+
 class VariablePartDescription(NamedTuple):
     """Part of variable length: an array, bytes or text."""
 
     model: VariablePart
     field: FieldDescription  # the array, or the bytes or text
     counter: FieldDescription  # number of elements: a field of the frame, or a count that follows from its length
+    inner: tuple[VariablePartDescription, ...] = ()
+    """Variable-length arrays in an element, placed as in the longest element."""
 
     @property
     def element_struct(self) -> StructDescription | None:
@@ -252,6 +262,16 @@ class VariablePartDescription(NamedTuple):
     def bytes_beyond_fewest(self) -> ElementBytes:
         """Bytes up to the end of the part in the longest frame, by the number of elements beyond the fewest."""
         return ElementBytes(self.model.shortest, self.model.step)
+
+    @property
+    def chunks(self) -> tuple[Chunk, ...]:
+        """Runs of bytes of an element that are contiguous in every frame, at their places in the longest element."""
+        chunks, begin = [], 0
+        for inner in self.inner:
+            chunks.append(Chunk(begin, inner.model.begin - begin, inner))
+            begin = inner.model.begin + inner.model.most * inner.model.step
+        end = self.model.step - begin
+        return (*chunks, Chunk(begin, end, None)) if end else tuple(chunks)
 
     @property
     def counter_of_text(self) -> int:

@@ -47,7 +47,7 @@ class Example(NamedTuple):
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """Return the first field that can be set by a physical value; else the first number that is not constant."""
     # Counters keep their smallest value, because the frame of an example has the fewest elements.
-    counters = {part.counter for part in message.model.layout.parts}
+    counters = {part.counter for part in message.model.layout.counted_parts}
     selectors = {need.field.model.name for member in message.optional_members for need in member.needs}
     numbers = [
         member

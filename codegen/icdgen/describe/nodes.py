@@ -66,9 +66,27 @@ class MessageDescription(Composite[Message]):
     def variable_parts(self) -> tuple[VariablePartDescription, ...]:
         """Parts of variable length, in the order of the frame."""
         by_name = {member.model.name: member for member in self.members}
-        return tuple(
-            VariablePartDescription(part, by_name[part.name], by_name[part.counter]) for part in self.model.layout.parts
-        )
+        parts = []
+        for part in self.model.layout.parts:
+            field = by_name[part.name]
+            inner = (
+                VariablePartDescription(model, field.struct.member_for[id(model.node)], by_name[model.counter])
+                for model in (part.inner if field.struct is not None else ())
+                if field.struct is not None
+            )
+            parts.append(VariablePartDescription(part, field, by_name[part.counter], tuple(inner)))
+        return tuple(parts)
+
+    @property
+    def counted_parts(self) -> tuple[VariablePartDescription, ...]:
+        """Parts of variable length and those in elements of them."""
+        inner = (inner for part in self.variable_parts for inner in part.inner)
+        return (*self.variable_parts, *inner)
+
+    @property
+    def spread_parts(self) -> tuple[VariablePartDescription, ...]:
+        """Parts after which a frame differs from the longest one: all but the last, and all with arrays in elements."""
+        return tuple(part for part in self.variable_parts if part is not self.last_part or part.inner)
 
     @property
     def length_tests(self) -> tuple[LengthTest, ...]:
@@ -76,7 +94,7 @@ class MessageDescription(Composite[Message]):
         assert self.last_part is not None
         last = self.last_part.model
         # Before these tests, a decoder with several parts has put all of the earlier ones in front of the last.
-        return length_tests(last.lengths, last.begin if self.earlier_parts else 0)
+        return length_tests(last.lengths, last.begin if self.spread_parts else 0)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
@@ -116,7 +134,7 @@ class MessageDescription(Composite[Message]):
     @property
     def is_narrow(self) -> bool:
         """Whether the type of a field can store raw values or counts that the message cannot have."""
-        return super().is_narrow or any(part.needs_count_check for part in self.variable_parts)
+        return super().is_narrow or any(part.needs_count_check for part in self.counted_parts)
 
     @cached_property
     def comment(self) -> Comment:

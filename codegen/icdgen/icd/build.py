@@ -8,10 +8,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
-from icdgen.icd import annex, conditions, curve, division, floats, formula, model, variable_length, wire_ids
+from icdgen.icd import (
+    annex,
+    conditions,
+    curve,
+    division,
+    formula,
+    model,
+    variable_length,
+    variable_structs,
+    wire_ids,
+)
 from icdgen.icd.derived import Derivation
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
@@ -30,16 +39,13 @@ from icdgen.icd.layout import (
     Size,
     StructRef,
     VariableNode,
-    counter_of_rest,
-    derived_of,
-    overlay_of,
     stride,
 )
+from icdgen.icd.layout_nodes import counter_of_rest, derived_of, overlay_of
 from icdgen.icd.located import Map, plain, unread
+from icdgen.icd.meanings import Special, limits, special
 from icdgen.icd.trees import mappings
 from icdgen.icd.units import STANDARD, Unit
-
-_LIMITS = frozenset({"min", "max", "above", "below"})
 
 
 class Scope:
@@ -154,11 +160,35 @@ class Builder:
 
     def struct(self, item: Map) -> model.Struct:
         return model.Struct(
-            layout=Layout(item["name"], item["length"], self.fixed_nodes(item), owner=self.name),
+            layout=self.struct_layout(item),
             table=_printed(item).get("table"),
             node=self.name,
             **self.named(item),
         )
+
+    def struct_layout(self, item: Map) -> Layout:
+        """Return the layout of a struct, with the nodes behind a variable-length array as in the longest element."""
+        fixed, length = self.fixed_nodes(item), item["length"]
+        nodes: list[FixedNode] = []
+        for row in self.sequence_of_struct(item):
+            size: Size | None = row.get("count")
+            if variable_length.is_variable(row):
+                counter, plus = variable_length.counting(row)
+                size = Counted(counter, row["up_to"], plus)
+            node = self.node_of(row, 8 * length, size)
+            if node is None or not stride(node):
+                return Layout(item["name"], item["length"], fixed, owner=self.name)
+            nodes.append(node)
+            length += stride(node) * (node.most if isinstance(node, Array) else 1) // 8
+        return Layout(item["name"], length, (*fixed, *nodes), owner=self.name)
+
+    def sequence_of_struct(self, item: Map) -> list[Map]:
+        """Return the variable-length arrays of a struct and the fields behind them; none if one has an error."""
+        rows, structs = variable_structs.sequence_of_struct(item), self.scope.structs
+        lengths = {name: struct.length for name, struct in structs.items()}
+        variable = {name for name, struct in structs.items() if struct.layout.inner_parts}
+        is_valid = variable_structs.is_variable_struct(item) and not any(id(row) in self.broken for row in rows)
+        return rows if is_valid and not any(variable_structs.faults_in_struct(item, lengths, variable)) else []
 
     def message(self, item: Map) -> model.Message:
         return model.Message(
@@ -203,9 +233,12 @@ class Builder:
     def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
         """Return the nodes at fixed positions of a message or struct; a split field has one node per part."""
         nodes: list[FixedNode] = []
+        # These rows of a struct are nodes behind the others.
+        rows = variable_structs.sequence_of_struct(owner) if "kind" not in owner else ()
+        sequence = set(map(id, rows)) if any(map(variable_length.is_variable, rows)) else ()
         for item in self.items("fields", owner):
             is_broken = any(id(item.get(key)) in self.broken for key in ("when", "count", "size"))
-            if is_broken or variable_length.is_variable(item):
+            if is_broken or variable_length.is_variable(item) or id(item) in sequence:
                 continue
             if "when" in item and item.keys().isdisjoint(("struct", "count")):
                 present_if = conditions.conditions_of(owner, item, self.scope.enums)
@@ -245,6 +278,10 @@ class Builder:
             return ()
         if any(any(variable_length.faults(message, item, lengths)) for item in items):
             return ()
+        structs = {name: struct.source for name, struct in self.scope.structs.items()}
+        uses = (item for item in items if "struct" in item)
+        if any(any(variable_structs.faults_of_inner_counts(message, item, structs)) for item in uses):
+            return ()
         nodes: list[VariableNode] = []
         for item in items:
             counter, counting = variable_length.counter_of(message, item), variable_length.counting(item)
@@ -260,7 +297,7 @@ class Builder:
         return tuple(nodes)
 
     def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
-        """Return the node of a line; None if it refers to an unknown struct.
+        """Return the node of a line; None if it refers to an unknown struct, or to one of variable length without a counter.
 
         With a size, the node is an array, or bytes or text of variable length.
         """
@@ -268,7 +305,7 @@ class Builder:
         node: Scalar | StructRef
         if "struct" in item:
             struct = self.scope.structs.get(item["struct"])
-            if struct is None:
+            if struct is None or (struct.layout.inner_parts and not isinstance(size, Counted)):
                 return None
             node = StructRef(layout=struct.layout, at=0 if is_array else at, **self.named(item))
         else:
@@ -301,7 +338,7 @@ class Builder:
             **self.named(item),
         )
 
-    def special(self, item: Map, kind: str) -> tuple[model.Special, ...]:
+    def special(self, item: Map, kind: str) -> tuple[Special, ...]:
         """Return the special values of a field, without values that its type cannot represent."""
         bits = item.get("bits", 0)
         values = (special(kind, bits, row["value"], row["meaning"]) for row in self.items("special", item))
@@ -392,35 +429,3 @@ def table(item: Map, kind: str) -> curve.Curve | None:
     with suppress(formula.FormulaError):
         return curve.table(curve.doubles(item["points"]), item.get("outside", ""))
     return None
-
-
-def special(kind: str, bits: int, value: int | float | str, meaning: str) -> model.Special | None:
-    """Return a special value; None if a field of this type and width cannot have the value."""
-    if kind != "float":
-        return model.Special(value, meaning) if isinstance(value, int) else None
-    raw = float_bits(value, bits)
-    return None if raw is None else model.Special(raw, meaning, floats.text_of(floats.value_of(raw, bits), bits))
-
-
-def float_bits(value: int | float | str, bits: int) -> int | None:
-    """Return the bits of a float of this width from its value in an ICD; None if the width or the value is not valid."""
-    if bits not in floats.WIDTHS or (isinstance(value, str) and value not in floats.NAMED):
-        return None
-    with suppress(OverflowError):
-        return (
-            floats.bits_of(floats.NAMED[value], bits) if isinstance(value, str) else floats.nearest(exact(value), bits)
-        )
-    return None
-
-
-def limits(item: Map) -> model.Limits | None:
-    """Return the limits of a field as exact numbers; None if it has no limits."""
-    if _LIMITS.isdisjoint(item):
-        return None
-    return model.Limits(**{key: exact(item[key]) for key in _LIMITS & item.keys()})
-
-
-def exact(number: int | float) -> Fraction:
-    """Return the exact value of a number of a file."""
-    # repr() gives the shortest decimal, so 0.1 is one tenth and not the nearest double.
-    return Fraction(number) if isinstance(number, int) else Fraction(repr(number))

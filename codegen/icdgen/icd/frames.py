@@ -7,6 +7,7 @@ position of a scalar into runs of bits within bytes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any, Literal, TypeAlias
 
@@ -21,19 +22,19 @@ from icdgen.icd.layout import (
     Condition,
     Derived,
     FixedNode,
+    Gap,
     Layout,
     LayoutNode,
-    Limits,
     Orders,
     Overlay,
     Rest,
     Scalar,
     Sizes,
-    Special,
     StructRef,
     size_of,
     stride,
 )
+from icdgen.icd.meanings import Limits, Special
 from icdgen.icd.units import Unit
 from icdgen.once import cached_by_owner, cached_property
 
@@ -150,7 +151,7 @@ class FrameField(OfScalar):
 def frame_fields(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> tuple[FrameField, ...]:
     """Return the scalars of a frame as `flatten` lists them. Caches the last results of each layout."""
     frames = _frames(layout)
-    key = orders, None if sizes is None or not layout.sequence else tuple(sizes[node.name] for node in layout.sequence)
+    key = orders, None if sizes is None or not layout.sequence else tuple(map(sizes.__getitem__, layout.parts_by_size))
     fields = frames.get(key)
     if fields is None:
         cached_scalars = sum(map(len, frames.values()))
@@ -174,23 +175,35 @@ def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[
     for node in layout.fixed:
         fields += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
     end = 8 * layout.length
-    for part in layout.sequence:
-        size = size_of(part)
-        number = size.most if sizes is None else sizes[part.name]
-        own = part.orders.within(orders)
-        if isinstance(part, Array):
+    for part in layout.parts:
+        node, size = part.node, size_of(part.node)
+        number, gaps = (size.most, ()) if sizes is None else (sizes[part.name], part.gaps_of(sizes))
+        step = 8 * (part.step - sum(gap.length for gap in gaps))
+        own = node.orders.within(orders)
+        if isinstance(node, Array):
             for element in range(number):
-                fields += _scalars(part.item, (PathStep(part, element),), end + element * stride(part), own)
+                begin = end + element * step
+                scalars = _scalars(node.item, (PathStep(node, element),), begin, own)
+                fields += _without_gaps(scalars, begin, gaps) if gaps else scalars
         else:
-            fields.append(FrameField((PathStep(part),), end, 8 * number, part, own.byte, own.bit))
-        end += number * stride(part)
+            fields.append(FrameField((PathStep(node),), end, 8 * number, node, own.byte, own.bit))
+        end += number * step
         if isinstance(size, Rest):
             counter = size.counter
             fields.append(FrameField((PathStep(counter),), end, counter.bits, counter, own.byte, own.bit, "count"))
     for derived in layout.derived:
-        scalar, step = derived.scalar, PathStep(derived)
-        fields.append(FrameField((step,), end, scalar.bits, scalar, orders.byte, orders.bit, "derived"))
+        scalar = derived.scalar
+        fields.append(FrameField((PathStep(derived),), end, scalar.bits, scalar, orders.byte, orders.bit, "derived"))
     return fields
+
+
+def _without_gaps(fields: Iterator[FrameField], begin: int, gaps: Sequence[Gap]) -> Iterator[FrameField]:
+    """Yield the scalars of the longest element that are not in a gap, at their positions in the shorter element."""
+    for field in fields:
+        at = (field.at - begin) // 8
+        if not any(gap.begin <= at < gap.end for gap in gaps):
+            missing = sum(gap.length for gap in gaps if gap.end <= at)
+            yield replace(field, at=field.at - 8 * missing) if missing else field
 
 
 def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[FrameField]:
@@ -203,7 +216,7 @@ def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orde
         case StructRef(layout=layout):
             for inner in layout.fixed:
                 yield from _scalars(inner, (*steps, PathStep(inner)), at + inner.at, inner.orders.within(orders))
-        case Array(item=item, size=int(count)):
+        case Array(item=item, most=count):
             for element in range(count):
                 steps_to = (*steps[:-1], PathStep(node, element))
                 yield from _scalars(item, steps_to, at + element * stride(item), orders)

@@ -1,6 +1,6 @@
 """Layout of a message or a struct as a tree with one node per line of the ICD.
 
-`icdgen.icd.build` makes the nodes from the mappings of a file. `walk` visits all declarations.
+`icdgen.icd.build` makes the nodes from the mappings of a file. `icdgen.icd.layout_nodes.walk` visits all declarations.
 Nodes store positions and orders as the ICD declares them. Orders in effect are resolved on the way down, because messages
 of different orders can use the same struct.
 
@@ -9,11 +9,10 @@ Read next: `icdgen.icd.places` for the longest frame, `icdgen.icd.frames` for a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
-from fractions import Fraction
 from math import gcd
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from icdgen.frozen import dataclass
 from icdgen.icd.curve import Curve, has_inverse
@@ -23,30 +22,12 @@ from icdgen.icd.enumeration import Enum
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
+from icdgen.icd.meanings import Limits, Special
 from icdgen.icd.units import Unit
 from icdgen.once import cached_property
 
 Sizes: TypeAlias = Mapping[str, int]
-"""Number of elements, or of bytes, of each variable-length node of one frame, by the name of the node."""
-
-
-@dataclass(frozen=True, slots=True)
-class Special:
-    """A raw value with a special meaning, such as 0xFFFF for 'no time-out', or NaN for 'not available'."""
-
-    value: int  # of a float: its IEEE 754 bits
-    meaning: str
-    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """Bounds of the physical value (of the raw value if there is no scale); None where the ICD gives no bound."""
-
-    min: Fraction | None = None
-    max: Fraction | None = None
-    above: Fraction | None = None
-    below: Fraction | None = None
+"""Number of elements, or of bytes, of each variable-length node of one frame, by `VariablePart.name` and `inner_name`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +179,11 @@ class Array(LayoutNode):
     item: Scalar | StructRef  # at bit 0 of an element
     size: Size
 
+    @property
+    def most(self) -> int:
+        """Number of elements, of an array of variable length the greatest."""
+        return self.size if isinstance(self.size, int) else self.size.most
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overlay(LayoutNode):
@@ -222,7 +208,11 @@ VariableNode: TypeAlias = Scalar | Array
 
 @dataclass(frozen=True)
 class Layout:
-    """Nodes of a message or of a struct. A struct has fixed nodes only."""
+    """Nodes of a message or of a struct.
+
+    A struct has fixed nodes only. An array of variable length in a struct is placed as in the longest element, with the
+    nodes behind it; `inner_parts` lists these arrays.
+    """
 
     name: str
     length: int  # bytes of the fixed part
@@ -246,14 +236,14 @@ class Layout:
     @property
     def shortest(self) -> int:
         """Length of the shortest frame in bytes; at least 1 if frames may end early, unless the message is empty."""
-        shortest = self.length + sum(part.fewest * part.step for part in self.parts)
+        shortest = self.length + sum(part.fewest * part.shortest_step for part in self.parts)
         return min(1, shortest) if self.may_end_early else shortest
 
     @property
     def lengths(self) -> range:
         """Possible lengths of a frame in bytes. With several variable parts, it includes lengths that no counters give."""
         # gcd() of no arguments is 0, and a range needs a step.
-        step = gcd(*(part.step for part in self.parts)) or 1
+        step = gcd(*(step for part in self.parts for step in part.steps)) or 1
         return range(self.shortest, self.longest + 1, step)
 
     @cached_property
@@ -271,16 +261,77 @@ class Layout:
             begin += size.most * step
         return tuple(parts)
 
+    @cached_property
+    def inner_parts(self) -> tuple[VariablePart, ...]:
+        """Arrays of variable length in a struct, at their positions in its longest element."""
+        return tuple(
+            VariablePart(
+                node, node.size.counter, False, node.at // 8, stride(node) // 8, node.size.most, node.size.plus
+            )
+            for node in self.fixed
+            if isinstance(node, Array) and isinstance(node.size, Counted)
+        )
+
+    @cached_property
+    def parts_by_size(self) -> dict[str, VariablePart]:
+        """Variable-length parts and those in elements of them, by the keys of `Sizes`."""
+        parts = {part.name: part for part in self.parts}
+        return parts | {part.inner_name(inner): inner for part in self.parts for inner in part.inner}
+
+    @property
+    def counted_parts(self) -> Iterable[VariablePart]:
+        """Variable-length parts and those in elements of them."""
+        return self.parts_by_size.values()
+
+    @property
+    def initial_numbers(self) -> dict[str, int]:
+        """Number of elements that have initial values in a new message: the fewest of the last part, all of other parts."""
+        return {part.name: part.fewest if part is self.parts[-1] else part.most for part in self.parts}
+
     def smallest_raw(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
         if not self.sequence:
             return 0
-        return max((part.low for part in self.parts if part.counter == counter), default=0)
+        return max((part.low for part in self.counted_parts if part.counter == counter), default=0)
+
+    def largest_raw(self, counter: str) -> int:
+        """Return the largest raw value of a field that counts."""
+        return min(part.high for part in self.counted_parts if part.counter == counter)
+
+    @property
+    def has_gaps(self) -> bool:
+        """Whether a frame can differ from the beginning of the longest frame: a variable part is not the end of it."""
+        return len(self.parts) > 1 or any(part.inner for part in self.parts)
+
+    def gaps(self, sizes: Sizes) -> Iterator[Gap]:
+        """Yield the bytes of the longest frame that a frame of these sizes does not have, in order."""
+        for part in self.parts:
+            size = sizes[part.name]
+            for begin in range(part.begin, part.begin + size * part.step, part.step):
+                yield from (Gap(begin + gap.begin, gap.length) for gap in part.gaps_of(sizes))
+            yield part.gap(size)
+
+    def size_of_frame(self, sizes: Sizes) -> int:
+        """Return the length in bytes of a frame of these sizes."""
+        return self.length + sum(sizes[part.name] * part.step_of(sizes) for part in self.parts)
+
+
+class Gap(NamedTuple):
+    """Bytes of the longest frame or element that a shorter one does not have."""
+
+    begin: int  # offset in bytes
+    length: int
+
+    @property
+    def end(self) -> int:
+        """Offset of the first byte behind it."""
+        return self.begin + self.length
 
 
 class VariablePart(NamedTuple):
     """Variable-length array, bytes or text of a message, at its position in the longest frame.
 
+    Its elements can have variable-length arrays themselves. All elements of a frame then have the same number of bytes.
     A frame can have fewer elements than `most`. Generated code sets absent elements to 0 when it decodes a frame.
     """
 
@@ -302,6 +353,38 @@ class VariablePart(NamedTuple):
     def is_array(self) -> bool:
         """Whether the part is an array, not bytes or text."""
         return isinstance(self.node, Array)
+
+    @property
+    def inner(self) -> tuple[VariablePart, ...]:
+        """Variable-length arrays in an element, at their positions in the longest element."""
+        struct = struct_layout_of(self.node)
+        return () if struct is None else struct.inner_parts
+
+    def inner_name(self, inner: VariablePart) -> str:
+        """Return the key of `Sizes` for a variable-length array in the elements."""
+        return f"{self.name}.{inner.name}"
+
+    def step_of(self, sizes: Sizes) -> int:
+        """Return the bytes of an element in a frame of these sizes."""
+        return self.step - sum(gap.length for gap in self.gaps_of(sizes))
+
+    def gaps_of(self, sizes: Sizes) -> tuple[Gap, ...]:
+        """Return the bytes of the longest element that elements in a frame of these sizes do not have."""
+        return tuple(inner.gap(sizes[self.inner_name(inner)]) for inner in self.inner)
+
+    def gap(self, size: int) -> Gap:
+        """Return the bytes of the longest frame that a part of ``size`` elements does not have."""
+        return Gap(self.begin + size * self.step, (self.most - size) * self.step)
+
+    @property
+    def shortest_step(self) -> int:
+        """Bytes of an element whose variable-length arrays have the fewest elements."""
+        return self.step - sum((inner.most - inner.fewest) * inner.step for inner in self.inner)
+
+    @property
+    def steps(self) -> tuple[int, ...]:
+        """Numbers of bytes of which lengths consist: the shortest element, and an element of each array in it."""
+        return self.shortest_step, *(inner.step for inner in self.inner)
 
     @property
     def fewest(self) -> int:
@@ -348,21 +431,6 @@ def stride(node: LayoutNode) -> int:
     raise TypeError(f"{node.name} has no bits")
 
 
-def overlay_of(scalar: Scalar) -> Overlay:
-    """Return the overlay node of a scalar. Both have the same name and position."""
-    return Overlay(scalar=scalar, **_attributes(scalar))
-
-
-def derived_of(scalar: Scalar, derivation: Derivation) -> Derived:
-    """Return the derived node of a scalar. Both have the same name."""
-    return Derived(scalar=scalar, derivation=derivation, **_attributes(scalar))
-
-
-def _attributes(node: LayoutNode) -> dict[str, Any]:
-    """Return the attributes of `LayoutNode`, which all kinds of nodes have."""
-    return {name: getattr(node, name) for name in LayoutNode.__dataclass_fields__}
-
-
 def scalar_of(node: LayoutNode) -> Scalar | None:
     """Return the scalar of a node, or of an element of an array of scalars; None for structs."""
     match node:
@@ -377,43 +445,3 @@ def struct_layout_of(node: LayoutNode) -> Layout | None:
     """Return the layout of the struct that a node, or an element of an array, refers to; None for scalars."""
     item = node.item if isinstance(node, Array) else node
     return item.layout if isinstance(item, StructRef) else None
-
-
-def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:
-    """Return the scalar that counts the elements of `name` if the length of the frame is their only counter.
-
-    Generated code has a member of this name, such as ``Records Count``, or ``Text Size`` for bytes and text.
-    """
-    noun = "Count" if is_array else "Size"
-    return Scalar(
-        name=f"{name} {noun}",
-        identifier=f"{identifier} {noun}" if identifier else None,
-        type="uint",
-        bits=8 if most < 256 else 16,
-        source=source,
-    )
-
-
-class Visit(NamedTuple):
-    """A node that `walk` visits."""
-
-    node: LayoutNode
-    # Arrays and struct references that contain it, the outermost first.
-    owners: tuple[LayoutNode, ...]
-    orders: Orders  # in effect
-
-
-def walk(layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()) -> Iterator[Visit]:
-    """Visit each line of the ICD once. The nodes of a struct follow the node that refers to it.
-
-    `orders` are the defaults of the ICD node.
-    """
-    orders = layout.orders.within(orders)
-    for node in layout.nodes:
-        own = node.orders.within(orders)
-        yield Visit(node, owners, own)
-        inner = struct_layout_of(node)
-        # The fields of a struct are visited for each use of it, because orders in
-        # effect can differ.
-        if inner is not None:
-            yield from walk(inner, own, (*owners, node))

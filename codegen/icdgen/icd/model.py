@@ -19,9 +19,9 @@ from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.layout import Condition as Condition
 from icdgen.icd.layout import Layout, Orders
-from icdgen.icd.layout import Limits as Limits
-from icdgen.icd.layout import Special as Special
 from icdgen.icd.located import Map, unread
+from icdgen.icd.meanings import Limits as Limits
+from icdgen.icd.meanings import Special as Special
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.icd.units import Unit
 

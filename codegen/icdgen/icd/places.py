@@ -231,7 +231,7 @@ def _place(
     """Return the place of a node of fixed size in a frame, struct or element that begins at bit `begin`."""
     own, at, steps = node.orders.within(orders), begin + node.at, (*owners, PathStep(node))
     match node:
-        case Array(item=item, size=int(count)):
+        case Array(item=item, most=count):
             return _place_of_item(steps, item, at, own, count)
         case StructRef() | Scalar():
             return _place_of_item(steps, node, at, own, 0, smallest_raw)

@@ -50,7 +50,7 @@ def counting(item: Map) -> Counting:
 
 def variable_fields(message: Map) -> list[Map]:
     """Return the variable-length fields of a message, in the order of the file."""
-    return [item for item in _fields(message, is_variable) if type(item.get("up_to", 0)) is int]
+    return [item for item in placed_fields(message, is_variable) if type(item.get("up_to", 0)) is int]
 
 
 def fixed_fields_after(message: Map) -> list[Map]:
@@ -58,7 +58,7 @@ def fixed_fields_after(message: Map) -> list[Map]:
     first = next(iter(variable_fields(message)), None)
     if first is None or _is_unknown(message, first):
         return []
-    fixed = _fields(message, lambda item: not is_variable(item) and not item.get("view") and "after" not in item)
+    fixed = placed_fields(message, lambda item: not is_variable(item) and not item.get("view") and "after" not in item)
     return [item for item in fixed if item["at"] >= first["at"]]
 
 
@@ -75,11 +75,11 @@ def counter_of(message: Map, item: Map) -> Map | None:
     name = counting(item).name
     if name == REST:
         return None
-    counter = next((field for field in _fields(message) if field.get("name") == name), None)
+    counter = next((field for field in placed_fields(message) if field.get("name") == name), None)
     return None if counter is None or "struct" in counter else counter
 
 
-def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
+def placed_fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
     """Return the fields of a message with a valid position and width. The schema check reports the other fields."""
     return [
         item
@@ -102,7 +102,7 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     if _is_unknown(message, item):
         text = f"`{message['name']}` has no field `{counter_name}` that could count {name}"
         numbers = "a number, " if key == "count" else ""
-        counters = [*(field["name"] for field in _fields(message) if _can_count(field, message)), REST]
+        counters = [*(field["name"] for field in placed_fields(message) if _can_count(field, message)), REST]
         help, fix = suggestion(counter_name, counters, f"`{key}` is {numbers}the name of an earlier field, or `{REST}`")
         yield Fault.at(item, key, text, help, "" if isinstance(item[key], dict) else fix)
         return
@@ -123,7 +123,7 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     if earlier is not None:
         text = f"`{counter_name}` counts both `{earlier['name']}` and {name}"
         yield Fault.at(item, key, text, "name another counter: each variable-length field needs its own")
-    reason = _reason_against(counter, message)
+    reason = reason_against(counter, message)
     if reason:
         text = f"`{counter['name']}` cannot count {name}: it {reason}"
         help = "name an unsigned number without a formula, within the `length` of the message"
@@ -151,10 +151,10 @@ def _is_unknown(message: Map, item: Map) -> bool:
 
 def _can_count(field: Map, message: Map) -> bool:
     """Return whether a field can count elements."""
-    return not _is_sized(field) and not _reason_against(field, message)
+    return not _is_sized(field) and not reason_against(field, message)
 
 
-def _reason_against(counter: Map, message: Map) -> str:
+def reason_against(counter: Map, message: Map) -> str:
     """Return why a field cannot count elements, as the end of a sentence; empty if it can."""
     reasons = reasons_against(counter, COUNTER)
     if reasons:

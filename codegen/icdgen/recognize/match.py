@@ -215,7 +215,7 @@ def counter_error(endpoint: Endpoint, message: Message, data: bytes) -> BadLengt
     try:
         codec.decode(endpoint.icd.node(message.node), message, data)
     except codec.LengthError as error:
-        parts = message.layout.parts
+        parts = list(message.layout.counted_parts)
         source = f"`{parts[0].counter}` says" if len(parts) == 1 else "they say"
         text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {source}"
         return BadLength(text, error.expected, error.actual, "bytes are missing, or too many, or damaged")

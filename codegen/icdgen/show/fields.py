@@ -17,7 +17,7 @@ from icdgen.describe.numbers import (
     special_text,
     value_text,
 )
-from icdgen.icd.layout import VariablePart
+from icdgen.icd.layout import Array, Counted, VariablePart
 from icdgen.icd.lines import Line, lines
 from icdgen.icd.model import Message, Node, Struct
 from icdgen.icd.places import NodePlace
@@ -83,6 +83,10 @@ def remarks(
             most = "up to " if part is not None else ""
             every = f", every {byte_count(level.struct.length)}"
             yield f"{most}{level.count} times{every}" if level.count > 1 else f"{most}once"
+        size = level.node.size if isinstance(level.node, Array) else None
+        # That of a part of the message is above.
+        if isinstance(size, Counted) and (part is None or level.node is not part.node):
+            yield f"up to {size.most} of {level.node.name}, as many as {count_text(size.counter, size.plus)} says"
     if field.display is not None:
         yield field.display.words
     if field.curve is not None and field.curve.points:

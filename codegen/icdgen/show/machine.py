@@ -145,7 +145,8 @@ def _field(field: NodePlace) -> _Object:
 
 def _struct(struct: Struct) -> _Object:
     """Return a struct with its fields."""
-    fields = list(map(_field, places_in(struct.layout)))
+    counts = {id(part.node): {"counter": part.counter, "plus": part.plus or None} for part in struct.layout.inner_parts}
+    fields = [_field(place) | _present(**counts.get(id(place.node), {})) for place in places_in(struct.layout)]
     return {"name": struct.name, "length": struct.length} | _row(struct) | {"fields": fields}
 
 

@@ -141,7 +141,8 @@ def fields_of(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
     fields = icd.longest_frame(message)
     elements = find_array(fields, key, vocabulary)
     nodes = by_name(message.layout.sequence, key, vocabulary)
-    part = next((part for part in message.layout.parts if nodes and part.node is nodes[0]), None)
+    node_of_array = nodes[0] if nodes else elements[0].steps[-1].node if elements else None
+    part = next((part for part in message.layout.counted_parts if part.node is node_of_array), None)
     is_none = part is not None and str(value).strip() == "[]"
     if not elements and not is_none:
         return [(message, find_field(message, fields, key, vocabulary), value)]

@@ -48,14 +48,17 @@ class Values:
         all elements up to the last one that is set.
         """
         current, new = self.raw(message), dict(raw)
-        steps = [field.steps[0] for field in self.icd.longest_frame(message) if field.name in raw]
-        for part in message.layout.parts:
+        steps = [step for field in self.icd.longest_frame(message) if field.name in raw for step in field.steps]
+        counters: dict[str, int] = {}
+        for part in message.layout.counted_parts:
             octets, count = new.get(part.name), codec.size_of_values(part, {**current, **raw})
             if isinstance(octets, bytes):
                 new[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
             elements = (step.element for step in steps if step.node is part.node)
             count = max([count, *(element + 1 for element in elements if element is not None)])
-            new.setdefault(part.counter, count - part.plus)
+            # Several arrays can have one counter.
+            counters[part.counter] = max(count - part.plus, counters.get(part.counter, 0))
+        new = {**counters, **new}
         self.put(message, self.encode(message, {**current, **new}))
         return new
 

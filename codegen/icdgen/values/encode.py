@@ -61,6 +61,10 @@ def encode(
         missing = _without_elements(part, elements, missing, given, is_empty)
         with errors.collect():
             _count(part, elements, given, values)
+        for inner in part.inner:
+            missing = [name for name in missing if name != inner.counter]
+            with errors.collect():
+                _count_inner(part, inner, elements, given, values)
     # A field that seems to be missing may have been given under a wrong name.
     if not has_wrong_names:
         with errors.collect():
@@ -143,7 +147,13 @@ def _count(
         count = len(indexes)
         if indexes and indexes[-1] != count - 1:
             raise BadValue(f"`{part.name}[{indexes[-1]}]` is given, and not all elements before it")
-        present = (field for field in elements if (field.steps[0].element or 0) < count)
+        nested = [inner.node for inner in part.inner]
+        present = (
+            field
+            for field in elements
+            if (field.steps[0].element or 0) < count
+            and not any(step.node is node for step in field.steps for node in nested)
+        )
         _require([field.name for field in present if field.const is None and field.name not in given])
     if count < part.fewest:
         least = f"{part.fewest} element{'s' * (part.fewest != 1)}"
@@ -153,6 +163,36 @@ def _count(
     elif values[part.counter] != count - part.plus:
         given_text = f"{count} element{'s' * (count != 1)} of `{part.name}` {'are' if count != 1 else 'is'} given"
         raise BadValue(f"`{part.counter}` is {given[part.counter]}, and {given_text}", f"leave `{part.counter}` out")
+
+
+def _count_inner(
+    part: VariablePart,
+    inner: VariablePart,
+    fields: list[FrameField],
+    given: dict[str, str],
+    values: dict[str, int | bytes],
+) -> None:
+    """Set the counter of an array in elements of a part to the number of given elements, which all of them must have.
+
+    Raises `BadValue` if an element is missing, or if the counter is given with another number.
+    """
+    nested = [field for field in fields if field.steps[1].node is inner.node]
+    numbers = [1 + (field.steps[1].element or 0) for field in nested if field.name in given]
+    if inner.counter in given or not numbers:
+        value = values[inner.counter]
+        assert isinstance(value, int)
+        count = value + inner.plus
+    else:
+        count = max(numbers)
+        # Several arrays can have the same counter; then the longest of them sets it first.
+        values[inner.counter] = count - inner.plus
+        given[inner.counter] = str(count - inner.plus)
+    if count < max(numbers, default=0) or count < inner.fewest:
+        text = f"`{inner.counter}` is {count - inner.plus}, so `{inner.name}` has {count} element{'s' * (count != 1)}"
+        raise BadValue(f"{text}, {max(numbers, default=0)} given", f"leave `{inner.counter}` out")
+    outer = {field.steps[0].element for field in fields if field.name in given}
+    present = (f for f in nested if f.steps[0].element in outer and (f.steps[1].element or 0) < count)
+    _require([field.name for field in present if field.const is None and field.name not in given])
 
 
 def split(

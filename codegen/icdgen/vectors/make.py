@@ -111,7 +111,7 @@ def _refused_lengths(message: Message) -> tuple[int, ...]:
     # With several variable parts, any length from the shortest to the longest may be
     # permitted.
     # With one variable part, the fixed part alone is the shortest decodable frame.
-    least = layout.shortest if len(layout.parts) > 1 else layout.length
+    least = layout.shortest if layout.has_gaps else layout.length
     ends = {end + step for end in (least, layout.shortest, layout.shortest + 1, layout.longest) for step in (-1, 1)}
     if not layout.parts:
         ends = {layout.longest - 1, layout.longest + 1}
@@ -126,7 +126,7 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         return
     # The last part takes the remaining bytes, so its count determines the length.
     last = message.layout.parts[-1]
-    if len(message.layout.parts) > 1:
+    if message.layout.has_gaps:
         for count in (last.fewest, last.most):
             yield from _miscounted_inside(node, message, count)
         return
@@ -153,13 +153,13 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
     sizes = codec.sizes_of_frame(node, message, frame)
     invalid = [frame[:-1], frame[: message.layout.length]]
     highest: dict[FrameField, int] = {}
-    for part in message.layout.parts:
+    for name, part in message.layout.parts_by_size.items():
         if part.is_rest:
             continue
         counter = _counter(message, node, part)
-        highest[counter] = part.high
+        highest[counter] = message.layout.largest_raw(part.counter)
         for step in (-1, 1, part.most, 1 << counter.bits - 1):
-            stated = sizes[part.name] - part.plus + step
+            stated = sizes[name] - part.plus + step
             if counter.raw_min <= stated <= counter.raw_max:
                 invalid.append(codec.frame_of(frame, {counter: stated}))
     for counter, high in highest.items():

@@ -101,15 +101,26 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     If ``count`` is the maximum, other variable parts are complete; otherwise their
     number of elements varies.
     """
-    *inner, last = message.layout.parts
+    *earlier, last = message.layout.parts
     counts: dict[str, int] = {}
-    for place, part in enumerate(inner):
+
+    def choose(part: VariablePart) -> int:
         choices = _counts(part)
         is_longest = count == last.most
         # Derived from the frame, so that the choice is deterministic but differs
         # between frames.
-        counts[part.name] = part.most if is_longest else choices[(sum(frame) + place) % len(choices)]
+        return part.most if is_longest else choices[(sum(frame) + len(counts)) % len(choices)]
+
+    for part in earlier:
+        counts[part.name] = choose(part)
     counts[last.name] = count
+    # Arrays in elements can have the same counter.
+    counters: dict[str, int] = {}
+    for part in message.layout.parts:
+        for inner in part.inner:
+            low, high = message.layout.smallest_raw(inner.counter), message.layout.largest_raw(inner.counter)
+            value = counters.setdefault(inner.counter, max(low, min(choose(inner) - inner.plus, high)))
+            counts[part.inner_name(inner)] = value + inner.plus
     return shortened(message, with_counts(message, node, frame, counts), counts)
 
 
@@ -117,16 +128,17 @@ def with_counts(message: Message, node: Node, frame: bytes, counts: Mapping[str,
     """Return the longest frame with these numbers of elements in the counters."""
     fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     values = {}
-    for part in message.layout.parts:
-        if part.name in counts and not part.is_rest:
-            values[fields[part.counter]] = counts[part.name] - part.plus
+    for name, part in message.layout.parts_by_size.items():
+        if name in counts and not part.is_rest:
+            values[fields[part.counter]] = counts[name] - part.plus
     return codec.frame_of(frame, values)
 
 
 def shortened(message: Message, frame: bytes, sizes: Mapping[str, int]) -> bytes:
     """Return the longest frame without the elements beyond these sizes."""
-    parts = (frame[part.begin : part.begin + sizes[part.name] * part.step] for part in message.layout.parts)
-    return frame[: message.layout.length] + b"".join(parts)
+    for gap in reversed(list(message.layout.gaps(sizes))):
+        frame = frame[: gap.begin] + frame[gap.end :]
+    return frame
 
 
 def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -228,7 +240,7 @@ def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]
     Neighboring fields advance out of step.
     """
     fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
-    counters = {part.counter: _counter_values(part) for part in message.layout.parts}
+    counters = {part.counter: _counter_values(message, part) for part in message.layout.counted_parts}
     columns = [counters.get(field.name) or values(field) for field in fields]
     alternatives = dict.fromkeys(
         tuple((condition.field, condition.values[0]) for condition in field.conditions) for field in fields
@@ -244,19 +256,20 @@ def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]
             yield {**raw, **dict(chosen)}
 
 
-def _counter_values(part: VariablePart) -> list[int | bytes]:
+def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
     """Return values of a counter.
 
     Every second value is the maximum, so that all elements are tested.
     """
-    return [number - part.plus for count in _counts(part) for number in (part.most, count)]
+    low, high = message.layout.smallest_raw(part.counter), message.layout.largest_raw(part.counter)
+    return [max(low, min(number - part.plus, high)) for count in _counts(part) for number in (part.most, count)]
 
 
 def unfit(message: Message, field: FrameField) -> list[int]:
     """Return raw values that encoding must refuse."""
-    for part in message.layout.parts:
-        if field.name == part.counter:
-            return list(dict.fromkeys((part.high + 1, part.low - 1, field.raw_max + 1, field.raw_min - 1)))
+    if any(field.name == part.counter for part in message.layout.counted_parts):
+        low, high = message.layout.smallest_raw(field.name), message.layout.largest_raw(field.name)
+        return list(dict.fromkeys((high + 1, low - 1, field.raw_max + 1, field.raw_min - 1)))
     # Languages represent other types by values of exactly their range.
     if field.type not in ("uint", "int", "enum"):
         return []

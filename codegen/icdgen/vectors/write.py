@@ -122,7 +122,9 @@ def _message(vectors: MessageVectors) -> str:
 
 def _variable_part(part: VariablePart, begin: dict[str, int]) -> dict[str, object]:
     row = {"part": part.name, "counter": part.counter, **begin, "step": part.step, "most": part.most}
-    return row | ({"plus": part.plus} if part.plus else {})
+    row |= {"plus": part.plus} if part.plus else {}
+    nested = [_variable_part(inner, {"begin": inner.begin}) for inner in part.inner]
+    return row | ({"nested": nested} if nested else {})
 
 
 def _field(vectors: MessageVectors, field: FrameField) -> str:

@@ -62,7 +62,8 @@ def _plans(icd: Icd) -> dict[str, object]:
             row |= {"when": [[order.index(place), values] for place, values in row["when"]]} if "when" in row else {}
             if "derived" in row:
                 row["derived"][0] = [order.index(place) for place in row["derived"][0]]
-        for one in plan.get("inner", ()):
+        inner = plan.get("inner", ())
+        for one in (*inner, *(nested for part in inner for nested in part.get("nested", ()))):
             one["counter"] = order.index(one["counter"])
         plan["fields"] = [plan["fields"][place] for place in order]
         plans.append(plan | {"ids": list(message.ids)})

@@ -6,8 +6,9 @@ import random
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from icdgen.icd.layout import scalar_of, walk
+from icdgen.icd.layout import scalar_of
 from icdgen.icd.layout_copies import with_enum
+from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Enum, Icd, Message, Node
 from tests.diff.edits import BEYOND, EDITS
 

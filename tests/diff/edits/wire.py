@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from icdgen.icd.layout import Layout, Scalar, overlay_of
+from icdgen.icd.layout import Layout, Scalar
+from icdgen.icd.layout_nodes import overlay_of
 from icdgen.icd.lines import lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Message
 from icdgen.layout import gaps

@@ -14,26 +14,15 @@ from itertools import product
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd import floats
-from icdgen.icd.build import calibration, special
+from icdgen.icd.build import calibration
 from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
 from icdgen.icd.derived import parse
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.frames import frame_fields
-from icdgen.icd.layout import (
-    Array,
-    Counted,
-    Derived,
-    Layout,
-    LayoutNode,
-    Limits,
-    Orders,
-    Scalar,
-    scalar_of,
-    size_of,
-    stride,
-)
+from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, Orders, Scalar, scalar_of, stride
 from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.located import Map, plain
+from icdgen.icd.meanings import Limits, special
 from icdgen.icd.model import Enum, Member, Message, Node
 from icdgen.icd.pieces import Piece, pieces_at
 
@@ -77,13 +66,13 @@ def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[
     if isinstance(node, Derived):
         yield from _derived(node)
         return
-    if any(node is part for part in layout.sequence):
-        # Size and position of a variable-length part are no attributes of a field.
+    behind = layout.inner_parts and node.at >= 8 * layout.inner_parts[0].begin
+    if behind or any(node is part for part in layout.sequence):
+        # Size and position of a variable-length part, and of fields behind it, are no attributes of a field.
         if scalar is not None and not scalar.is_bytes:
             yield from (*_types(node, scalar), *_formulas(node, scalar), *_values(node, scalar))
         return
-    sizes = map(size_of, layout.sequence)
-    counters = {size.counter for size in sizes if isinstance(size, Counted)}
+    counters = {part.counter for part in layout.counted_parts}
     conditions = {condition.field for other in layout.nodes for condition in other.present_if}
     if node.name in counters | conditions:
         return  # other parts of the frame depend on its value

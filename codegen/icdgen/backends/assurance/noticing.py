@@ -17,8 +17,9 @@ from operator import or_
 from typing import Any, NamedTuple
 
 from icdgen import codec
-from icdgen.icd.layout import FixedNode, Layout, overlay_of
+from icdgen.icd.layout import FixedNode, Layout
 from icdgen.icd.layout_copies import with_enum
+from icdgen.icd.layout_nodes import overlay_of
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 from icdgen.vectors.lines import MessageLines
@@ -131,7 +132,7 @@ class MessageWatch:
         ] or old.limits != now.limits:
             return True
         unfit = self.vectors.unfit.get(old.name, ())
-        if any(part.counter == old.name for part in self.message.layout.parts):
+        if any(part.counter == old.name for part in self.message.layout.counted_parts):
             unfit = [value for value in unfit if not old.raw_min <= value <= old.raw_max]
         if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
             return True
@@ -181,14 +182,9 @@ class MessageWatch:
         ``raw``: values of the frame.
         """
         layout = self.message.layout
-        # Bytes after the fixed part belong to the variable parts, in order.
-        longest, remaining = frame[: layout.length].ljust(layout.length, b"\0"), frame[layout.length :]
-        for part in layout.parts:
-            count = raw[part.counter]
-            assert isinstance(count, int), "a counter is a number"
-            size = (count + part.plus) * part.step
-            longest, remaining = longest + remaining[:size].ljust(part.most * part.step, b"\0"), remaining[size:]
-        return longest
+        for gap in layout.gaps(codec.sizes_of_values(self.message, raw)):
+            frame = frame[: gap.begin].ljust(gap.begin, b"\0") + bytes(gap.length) + frame[gap.begin :]
+        return frame.ljust(layout.longest, b"\0")
 
     @cached_property
     def _of_others(self) -> list[list[int]]:

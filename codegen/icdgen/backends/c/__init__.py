@@ -125,8 +125,8 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "decode": decoding.statements(message, fields),
         "repeated": [_repeated(message, array) for array in all_struct_arrays(message)],
         "element": None,
-        "earlier": [],
-        "miscount": "",
+        "spread": [],
+        "counter_tests": [],
         "misfits": members.misfits(message, is_last_part=False),
         "misfits_of_end": members.misfits(message, is_last_part=True),
         "excess": members.excess(message),
@@ -167,7 +167,7 @@ def _of_variable_length(message: MessageDescription, last: VariablePartDescripti
         of_element = {
             "type": C_NAMES.symbol(last.element_struct, "t"),
             "reading": reading,
-            "walking": names.walking(message, last.field.name) if not message.earlier_parts else "",
+            "walking": names.walking(message, last.field.name) if not message.spread_parts else "",
             "there": decoding.there(last),
             "place": decoding.place(last.place),
             "decode": decoding.of_elements(last, reading),
@@ -175,13 +175,14 @@ def _of_variable_length(message: MessageDescription, last: VariablePartDescripti
         }
     return {
         "element": of_element,
-        "earlier": decoding.of_earlier_parts(message),
+        "miscount": decoding.miscount(last),
+        "spread": decoding.of_spread_parts(message),
+        "counter_tests": decoding.counter_tests(message),
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(message),
-        "miscounted": decoding.miscounted(last),
+        "miscounted": None if last.inner else decoding.miscounted(last),
         "elements": decoding.elements(last),
         "counted_text": encoding.counted_text(last),
-        "miscount": decoding.miscount(last),
     }
 
 

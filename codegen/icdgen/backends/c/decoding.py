@@ -14,7 +14,7 @@ from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.arrays import ArrayLoop, StructArray
-from icdgen.describe.description import Composite, VariablePartDescription
+from icdgen.describe.description import Chunk, Composite, VariablePartDescription
 from icdgen.describe.groups import Flags, Group, LoopElements, Row, Thresholds
 from icdgen.describe.lengths import ElementBytes
 
@@ -89,21 +89,56 @@ def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
     return type_of(part.counter), number(part.counter, "value"), f"{value} != {expected}"
 
 
-def of_earlier_parts(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for variable parts in front of the last one: how they are located, decoded and encoded."""
+def of_spread_parts(message: MessageDescription) -> list[dict[str, object]]:
+    """Return the values for parts at other places than in the longest frame: how they are located, decoded and encoded."""
     return [
         {
-            "type": type_of(part.counter),
-            "reading": number(part.counter, "value"),
-            "misfit": miscount(part, "value"),
+            **_of_counter(part),
             "begin": part.model.begin,
-            "there": in_bytes(elements(part, "value"), part.model.step),
-            "given": in_bytes(elements(part), part.model.step),
-            "miscount": miscount(part),
-            "counter": part.counter,
+            "place": place(part.place),
+            "step": part.model.step,
+            "is_last": part is message.last_part,
+            "there": elements(part, "value") if part.inner else in_bytes(elements(part, "value"), part.model.step),
+            "given": elements(part) if part.inner else in_bytes(elements(part), part.model.step),
+            "inner": [_of_inner_part(inner, f"inner_{number}") for number, inner in enumerate(part.inner, 1)],
+            "chunks": [(chunk.begin, _bytes_of_chunk(part, chunk)) for chunk in part.chunks] if part.inner else [],
+            "element": " + ".join(_bytes_of_chunk(part, chunk) for chunk in part.chunks),
         }
-        for part in message.earlier_parts
+        for part in message.spread_parts
     ]
+
+
+def _of_counter(part: VariablePartDescription) -> dict[str, object]:
+    """Return the values for the counter of a part: how it is read from a frame, and tested."""
+    return {
+        "type": type_of(part.counter),
+        "reading": number(part.counter, "value"),
+        "misfit": miscount(part, "value"),
+    }
+
+
+def _of_inner_part(inner: VariablePartDescription, name: str) -> dict[str, object]:
+    """Return the values for an array in elements. The variable ``name`` has its bytes in each element."""
+    step = inner.model.step
+    return {
+        **_of_counter(inner),
+        "name": name,
+        "there": in_bytes(elements(inner, "value"), step),
+        "given": in_bytes(elements(inner), step),
+    }
+
+
+def _bytes_of_chunk(part: VariablePartDescription, chunk: Chunk) -> str:
+    """Return the sum of the bytes of a chunk of an element."""
+    terms = [f"{chunk.fixed}u"] if chunk.fixed or chunk.inner is None else []
+    terms += [f"inner_{part.inner.index(chunk.inner) + 1}"] if chunk.inner is not None else []
+    return " + ".join(terms)
+
+
+def counter_tests(message: MessageDescription) -> list[tuple[str, FieldDescription]]:
+    """Return the conditions for counts that parts cannot have, with the counters."""
+    tests = ((miscount(part), part.counter) for part in message.counted_parts)
+    return [test for test in dict.fromkeys(tests) if test[0]]
 
 
 def in_bytes(count: str, step: int) -> str:

@@ -24,9 +24,16 @@ from icdgen.describe.groups import Flags, FrameBytes, LoopElements, Row
 
 def size(message: MessageDescription) -> list[str]:
     """Return the length of the frame of a message as the terms of a sum."""
-    parts = [in_bytes(_encoded_elements(part), part.model.step) for part in message.variable_parts]
+    parts = [
+        (
+            f"{_encoded_elements(part)} * ({_size_of_element(part)})"
+            if part.inner
+            else in_bytes(_encoded_elements(part), part.model.step)
+        )
+        for part in message.variable_parts
+    ]
     fixed = message.model.layout.length
-    if message.earlier_parts:
+    if message.spread_parts:
         return [f"{fixed}u", *parts]
     if not fixed:
         return parts
@@ -39,6 +46,14 @@ def _encoded_elements(last: VariablePartDescription) -> str:
     if not last.model.low:
         return elements(last)
     return f"((message->{last.counter.name} > {last.model.low}u) ? {elements(last)} : 0u)"
+
+
+def _size_of_element(part: VariablePartDescription) -> str:
+    """Return the bytes of an element with variable-length arrays."""
+    fixed = sum(chunk.fixed for chunk in part.chunks)
+    arrays = (in_bytes(_encoded_elements(inner), inner.model.step) for inner in part.inner)
+    grouped = (f"({array})" if " * " in array else array for array in arrays)
+    return " + ".join((*([f"{fixed}u"] if fixed else []), *grouped))
 
 
 def counted_text(last: VariablePartDescription) -> str:

@@ -100,7 +100,7 @@ class CNames(NamingPolicy):
             yield composite.identifier(FILE, names.reading(composite, array.name))
             yield composite.identifier(FILE, names.writing(composite, array.name))
         last = composite.last_part
-        if last is not None and last.element_struct is not None and not composite.earlier_parts:
+        if last is not None and last.element_struct is not None and not composite.spread_parts:
             yield composite.identifier(FILE, names.walking(composite, last.field.name))
         for part in contained_messages(composite):
             yield composite.identifier(FILE, f"{stem}_{names.part_name(part.message)}")

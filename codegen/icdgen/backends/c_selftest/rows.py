@@ -200,7 +200,7 @@ def _id(id: int, message: Message | None) -> str:
     if message is None:
         return f"{{{id}u, -1, 0u, ICD_ERROR_UNKNOWN_ID}}"
     # Counters of 0 are below the minimum
-    is_refused = any(part.low > 0 for part in message.layout.parts)
+    is_refused = any(part.low > 0 for part in message.layout.counted_parts)
     return f"{{{id}u, {message.length}, {message.layout.shortest}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
 
 

@@ -100,6 +100,10 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
         until = "up to the end" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
         most = count(part.most, "element" if part.is_array else "byte")
         yield "Variable end" if part is parts[-1] else "Variable part", f"{part.name}: up to {most}, {until}", ""
+        for inner in part.inner:
+            until = f"as many as {count_text(inner.counter, inner.plus)} says"
+            text = f"{inner.name} in each of {part.name}: up to {count(inner.most, 'element')}, {until}"
+            yield "Variable part", text, ""
 
 
 def _plan(

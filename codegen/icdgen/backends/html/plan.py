@@ -13,6 +13,7 @@ from icdgen import layout
 from icdgen.describe.bounds import bounds
 from icdgen.describe.display import base_of, digits_of
 from icdgen.describe.steps import EXACT_DOUBLE, steps
+from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.places import NodePlace, scalars_in
 
@@ -30,17 +31,8 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
     if message.may_end_early:
         plan["endsEarly"] = True
     parts = message.layout.parts
-    if len(parts) > 1:
-        plan["inner"] = [
-            {
-                "counter": places[part.counter],
-                "begin": part.begin,
-                "step": part.step,
-                "most": part.most,
-                "plus": part.plus,
-            }
-            for part in parts[:-1]
-        ]
+    if message.layout.has_gaps:
+        plan["inner"] = [_part(part, places) for part in parts if part is not parts[-1] or part.inner]
         plan["fewest"] = message.layout.shortest
     if parts:
         tail = parts[-1]
@@ -49,6 +41,18 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
             **({"plus": tail.plus} if tail.plus else {}),
         }  # fmt: skip
     return plan
+
+
+def _part(part: VariablePart, places: Mapping[str, int]) -> dict[str, object]:
+    """Return the data of a part after which a frame differs from the longest frame."""
+    plan: dict[str, object] = {
+        "counter": places[part.counter],
+        "begin": part.begin,
+        "step": part.step,
+        "most": part.most,
+        "plus": part.plus,
+    }
+    return plan | ({"nested": [_part(inner, places) for inner in part.inner]} if part.inner else {})
 
 
 def enum_plan(enum: Enum) -> list[list[object]]:
@@ -67,7 +71,12 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
     ``places``: positions of the message's fields by name.
     """
     scaled, curve, how = steps(field), field.curve, field.derived
-    variable = message.layout.sequence
+    variable = message.layout.parts
+    earlier = [part.node for part in variable[:-1]]
+    element = field.steps[0].element
+    is_initial = element is not None and any(
+        part.node is field.steps[0].node and element < part.fewest for part in variable if part.inner
+    )
     digits, base = digits_of(field), base_of(field)
     pieces = () if field.is_count or field.is_bytes else layout.pieces(field, node)
     # A lookup table may cover only a part of the raw range.
@@ -105,8 +114,12 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
             [[places[name] for name in how.fields], list(how.numbers), list(map(list, how.steps))] if how else None
         ),
         # a new message stores it, although its part has no elements
-        "inner": field.name != field.steps[0].node.name and any(field.steps[0].node is part for part in variable[:-1]),
+        "inner": is_initial
+        or (field.name != field.steps[0].node.name and any(field.steps[0].node is node for node in earlier)),
         # variable-length bytes or text
-        "isOpen": bool(variable) and field.is_bytes and field.scalar.length is not None and field.node is variable[-1],
+        "isOpen": bool(variable)
+        and field.is_bytes
+        and field.scalar.length is not None
+        and field.node is variable[-1].node,
     }
     return {key: value for key, value in plan.items() if value is not None and value is not False}

@@ -38,7 +38,7 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
         return [{"least": own.shortest, "step": 1, "pieces": []}]
     if not parts:
         return []
-    if len(parts) > 1:  # the decoder evaluates the counters in the frame
+    if own.has_gaps:  # the decoder evaluates the counters in the frame
         return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
     tail, node = parts[-1], relations.icd.node(message.node)
     # A part up to the end of the frame has no counter.

@@ -83,7 +83,7 @@ class Repeats:
         starts = sorted(scalar.at for scalar in scalars)
         for place in _arrays(places_in(message.layout)):
             node = place.node
-            variable = next((part for part in message.layout.parts if part.node is node), None)
+            variable = next((part for part in message.layout.counted_parts if part.node is node), None)
             # Short arrays of numbers are clearer with all elements.
             if place.count < 2 or not (variable or place.struct is not None or place.count > _LONG):
                 continue

@@ -93,8 +93,9 @@ def _functions() -> dict[str, object]:
     from icdgen.backends.python import fields, nodes, text
 
     functions = (
-        fields.annotation, fields.accessors, fields.declaration, fields.getter, fields.inner, fields.open_part, fields.physical,
-        fields.view_info, names.accessors_in_python, names.constant_name, PYTHON_NAMES.symbol, nodes.listing, nodes.literals,
+        fields.annotation, fields.accessors, fields.declaration, fields.getter, fields.inner, fields.nested, fields.open_part,
+        fields.physical, fields.view_info, names.accessors_in_python, names.constant_name, PYTHON_NAMES.symbol,
+        nodes.listing, nodes.literals,
         nodes.mapping, text.docstring, text.documented, text.literal, text.prose,
     )  # fmt: skip
     return {function.__name__: function for function in functions}

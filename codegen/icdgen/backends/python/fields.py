@@ -132,12 +132,19 @@ def declaration(field: FieldDescription) -> str:
 
 
 def inner(message: MessageDescription) -> list[str]:
-    """Return the items of ``INNER``: variable parts in front of the last one, their places, and the bits of their counters."""
-    items = []
-    for part in message.earlier_parts:
-        pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in part.counter.pieces]
-        items.append(f"({open_part(part)}, {part.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
-    return items
+    """Return the items of ``INNER``: variable parts after which frames differ from the longest one."""
+    return [f"({_placed_part(part)})" for part in message.spread_parts]
+
+
+def nested(message: MessageDescription) -> list[str]:
+    """Return the items of ``NESTED``: variable-length arrays in the elements of a part."""
+    return [f'("{part.field.name}", {_placed_part(inner)})' for part in message.variable_parts for inner in part.inner]
+
+
+def _placed_part(part: VariablePartDescription) -> str:
+    """Return a variable part, its place, and the bits of its counter."""
+    pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in part.counter.pieces]
+    return f"{open_part(part)}, {part.model.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)})"
 
 
 def open_part(part: VariablePartDescription) -> str:

@@ -17,9 +17,9 @@ from icdgen.describe.groups import bytes_of_flags
 from icdgen.describe.lengths import ElementBytes
 
 _SUPPORT = frozenset("""
-    array arrays beginning counted each element_of elements first flags longest message number power present put put_array
-    put_each put_element put_rounds put_words quiet rounds spread structure take text text_array there told whole words
-    Big Coded Curve Error Frame Scale Wide
+    array arrays beginning counted each element_of elements exact first flags longest message number power present put put_array
+    put_each put_element put_rounds put_words quiet rounds spread spread_elements structure take text text_array there told
+    valid whole words Big Coded Curve Error Frame Scale Wide
     """.split())
 # Names that code calls or uses as types. Comments and texts are matched first, so that names in them do not count.
 _USED = re.compile(r'//.*|"(?:[^"\\]|\\.)*"|(?<![\w.:&])(?<!fn )([A-Za-z]\w*)(?=[(!<>]|::| = Wide)')
@@ -42,6 +42,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "conditional": conditions,
         "last": last,
         "earlier": list(map(_earlier_part, message.earlier_parts)),
+        "groups": any(part.inner for part in message.variable_parts) and list(map(_spread_part, message.spread_parts)),
         **(_of_variable_length(message, last) if last else {}),
         "tables": sorted(tables),
         "literal": elements.literal(fields, readings),
@@ -69,6 +70,30 @@ def _earlier_part(part: VariablePartDescription) -> tuple[VariablePartDescriptio
     count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
     valid, limited = _times(part.model.step, count), _times(part.model.step, f"{count}.min({part.model.most})")
     return part, bits.reading(part.counter, set(), depth=3), valid, limited
+
+
+def _spread_part(part: VariablePartDescription) -> dict[str, object]:
+    """Return the values for a part of a message in which elements have variable-length arrays."""
+    step = 1 if part.inner else part.model.step
+    inner = [(inner, *_counted_bytes(inner, inner.model.step)) for inner in part.inner]
+    reading, valid, limited = _counted_bytes(part, step)
+    fixed = part.model.step - sum(inner.model.most * inner.model.step for inner in part.inner)
+    return {
+        "part": part,
+        "step": step,
+        "reading": reading,
+        "valid": valid,
+        "limited": limited,
+        "inner": inner,
+        "element": " + ".join((*([str(fixed)] if fixed else []), *(limited for *_, limited in inner))),
+    }
+
+
+def _counted_bytes(part: VariablePartDescription, step: int) -> tuple[str, str, str]:
+    """Return the expression of the counter in a frame, and the bytes of a message for a valid count, and for any count."""
+    _, reading, _, _ = _earlier_part(part)
+    count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
+    return reading, _times(step, count), _times(step, f"{count}.min({part.model.most})")
 
 
 def _times(step: int, count: str) -> str:

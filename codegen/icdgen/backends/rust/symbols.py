@@ -67,7 +67,7 @@ class RustNames(NamingPolicy):
         yield from _used(constants, _CONSTANTS)
         if composite.last_part is not None:
             yield from _used(methods, _METHODS_OF_VARIABLE_LENGTH)
-        if composite.earlier_parts:
+        if composite.spread_parts:
             yield from _used(methods, ("inner",))
         for _, name in arrays.named(composite):
             yield composite.identifier(methods, arrays.reader(name))

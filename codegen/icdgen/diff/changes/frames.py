@@ -143,7 +143,8 @@ def _variable_parts(message: Message) -> str:
 def _variable_part(part: VariablePart) -> str:
     plus = f" {'+' if part.plus > 0 else '-'} {abs(part.plus):,}" if part.plus else ""
     counted = "as many as come" if part.is_rest else f"counted by {quote(part.counter)}{plus}"
-    return f"up to {part.most} of {quote(part.name)}, {counted}"
+    inner = "".join(f", each with {_variable_part(inner)}" for inner in part.inner)
+    return f"up to {part.most} of {quote(part.name)}, {counted}{inner}"
 
 
 @rule("DIF125", "message")

@@ -17,8 +17,8 @@ from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import MOST, formula, number
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import RAW, Scale
-from icdgen.icd.layout import Limits, Special
 from icdgen.icd.lines import Line
+from icdgen.icd.meanings import Limits, Special
 from icdgen.wording import count, listing, quote
 
 

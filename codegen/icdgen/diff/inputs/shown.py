@@ -18,20 +18,8 @@ from icdgen.icd.build import derived_node
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import FormulaError, Scale
-from icdgen.icd.layout import (
-    Array,
-    Counted,
-    FixedNode,
-    Layout,
-    Orders,
-    Overlay,
-    Rest,
-    Scalar,
-    Size,
-    StructRef,
-    counter_of_rest,
-    overlay_of,
-)
+from icdgen.icd.layout import Array, Counted, FixedNode, Layout, Orders, Overlay, Rest, Scalar, Size, StructRef
+from icdgen.icd.layout_nodes import counter_of_rest, overlay_of
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
@@ -247,6 +235,8 @@ class _Reader:
         size: Size = item.get("count", 0)
         if part is not None:
             size = self.size(item, part)
+        elif "counter" in item:
+            size = Counted(item["counter"], item["count"], item.get("plus", 0))
         orders = Orders(item.get("byte_order", ""), item.get("bit_order", ""))
         node: Scalar | StructRef
         if "struct" in item:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from icdgen.icd import curve, exact, formula
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import Scalar, struct_layout_of, walk
+from icdgen.icd.layout import Scalar, struct_layout_of
+from icdgen.icd.layout_nodes import walk
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in

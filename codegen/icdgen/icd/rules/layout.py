@@ -102,8 +102,8 @@ def _are_apart(layout: Layout) -> bool:
 
 
 def _fixed_bits(node: LayoutNode) -> int:
-    """Return the bits of a node of fixed size, or of one element of a variable-length node."""
-    return stride(node) * (node.size if isinstance(node, Array) and isinstance(node.size, int) else 1)
+    """Return the bits of a node of `Layout.fixed`."""
+    return stride(node) * (node.most if isinstance(node, Array) else 1)
 
 
 def _has_own_bits(place: NodePlace) -> bool:

@@ -8,7 +8,8 @@ from math import ceil, floor
 from typing import NamedTuple
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import Limits, Scalar
+from icdgen.icd.layout import Scalar
+from icdgen.icd.meanings import Limits
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.values import NUMBERS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd import division, variable_length
+from icdgen.icd import division, variable_structs
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import struct_layout_of
 from icdgen.icd.located import Map
@@ -93,14 +93,32 @@ def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
                     help = f"move it to the fields of the struct {quote(row['struct'])}, or remove it"
                 yield Fault.at(row, key, message, help)
     for struct, _ in ctx.structs:
-        for row in mappings(struct.source.get("fields")):
-            if variable_length.is_variable(row) and isinstance(row.get("name"), str):
-                message = f"{quote(row['name'])} has a variable length, which is not supported in a struct"
-                yield Fault.at(row, variable_length.count_key(row), message, "move it to the end of the message")
         for field in struct.layout.nodes:
             if is_overlay(field):
                 message = f"{quote(field.name)} is an overlay field, which is not supported in a struct"
                 yield Fault.at(field.source, "view", message, "write the overlay field in the message")
+
+
+@rule("ICD146", needs_complete=True)
+def variable_lengths_in_structs_are_determined(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        structs = {struct.name: struct for owner in ctx.scope(node) for struct in owner.structs}
+        lengths = {name: struct.length for name, struct in structs.items()}
+        sources = {name: struct.source for name, struct in structs.items()}
+        variable = {name for name, struct in structs.items() if variable_structs.is_variable_struct(struct.source)}
+        for struct in node.structs:
+            yield from variable_structs.faults_in_struct(struct.source, lengths, variable)
+            sequence = set(map(id, variable_structs.sequence_of_struct(struct.source)))
+            for row in mappings(struct.source.get("fields")):
+                if row.get("struct") in variable and id(row) not in sequence and isinstance(row.get("name"), str):
+                    text = (
+                        f"the struct {quote(row['struct'])} has a variable length, which is not supported in a struct"
+                    )
+                    yield Fault.at(row, "struct", text, f"write its fields into {quote(struct.name)}")
+        for message in node.messages:
+            for row in mappings(message.source.get("fields")):
+                if row.get("struct") in variable and isinstance(row.get("name"), str):
+                    yield from variable_structs.faults_of_inner_counts(message.source, row, sources)
 
 
 @rule("ICD049")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import floats
-from icdgen.icd.build import float_bits
 from icdgen.icd.display import OF_BITS
 from icdgen.icd.enumeration import Member
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Derived, LayoutNode, Scalar
+from icdgen.icd.meanings import float_bits
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.trees import mappings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Related
-from icdgen.icd import variable_length
+from icdgen.icd import variable_length, variable_structs
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, stride
 from icdgen.icd.model import Message
@@ -32,9 +32,15 @@ def counts_are_determined(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD121")
 def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
+    in_structs = {
+        id(item)
+        for struct, _ in ctx.structs
+        if variable_structs.is_variable_struct(struct.source)
+        for item in variable_structs.sequence_of_struct(struct.source)
+    }
     for line in ctx.lines:
         source = line.node.source
-        if "after" in source and not variable_length.is_variable(source):
+        if "after" in source and not variable_length.is_variable(source) and id(source) not in in_structs:
             text = f"{quote(line.node.name)} has a fixed size, so its place is `at` and it cannot have `after`"
             help = "remove `after`; only a variable-length field can follow another one"
             yield Fault.at(source, "after", text, help)

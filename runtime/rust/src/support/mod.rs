@@ -32,7 +32,8 @@ pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::{there, Scale};
 pub use self::tail::Frame;
 pub(crate) use self::tail::{
-    beginning, counted, elements, first, longest, number, present, spread, told, write_frame,
+    beginning, counted, elements, exact, first, longest, number, present, spread, spread_elements,
+    told, valid, write_frame,
 };
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};

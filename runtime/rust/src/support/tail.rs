@@ -22,6 +22,24 @@ impl<const N: usize> Frame<N> {
         copy(target, part);
         self.size += bytes;
     }
+
+    /// Appends elements of `step` bytes from `begin` on, without the bytes of arrays in them that are not in the frame.
+    ///
+    /// `inner` has these arrays: where each begins in an element, its bytes in the frame, and those in the longest element.
+    pub(crate) fn add_elements(
+        &mut self,
+        longest: &[u8; N],
+        begin: usize,
+        step: usize,
+        count: usize,
+        inner: &[(usize, usize, usize)],
+    ) {
+        for element in 0..count {
+            for (first, size) in runs(step, inner) {
+                self.add(longest, begin + element * step + first, size);
+            }
+        }
+    }
 }
 
 impl<const N: usize> AsRef<[u8]> for Frame<N> {
@@ -147,6 +165,65 @@ pub(crate) fn spread<const N: usize>(
         from += size;
     }
     Ok((least, rest / step))
+}
+
+/// Runs of bytes of an element that are in a frame: where each begins in the longest element, and its size.
+fn runs(step: usize, inner: &[(usize, usize, usize)]) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let begins = inner.iter().map(|(begin, _, most)| begin + most);
+    let ends = inner.iter().map(|(begin, size, _)| begin + size);
+    core::iter::once(0)
+        .chain(begins)
+        .zip(ends.chain(core::iter::once(step)))
+        .map(|(begin, end)| (begin, end.saturating_sub(begin)))
+}
+
+/// Numbers and sizes of the parts of a frame of `actual` bytes, if the frame can have them all.
+pub(crate) fn valid<const K: usize>(
+    parts: [Option<usize>; K],
+    fixed: usize,
+    longest: usize,
+    actual: usize,
+) -> Result<[usize; K], Error> {
+    let mut sizes = [0; K];
+    for (target, part) in sizes.iter_mut().zip(parts) {
+        *target = match part {
+            Some(size) => size,
+            // A length that it does not have: its count is none that there can be.
+            None => return Error::length(if actual == longest { fixed } else { longest }, actual),
+        };
+    }
+    Ok(sizes)
+}
+
+/// Puts elements of a frame where they begin in the longest one, which has `step` bytes for each from `begin` on.
+///
+/// They are in the frame behind `from` bytes. `inner` has the arrays in an element: see `Frame::add_elements`.
+pub(crate) fn spread_elements<const N: usize>(
+    longest: &mut [u8; N],
+    bytes: &[u8],
+    from: &mut usize,
+    begin: usize,
+    step: usize,
+    count: usize,
+    inner: &[(usize, usize, usize)],
+) {
+    for element in 0..count {
+        for (first, size) in runs(step, inner) {
+            let part = bytes.get(*from..*from + size).unwrap_or_default();
+            let place = begin + element * step + first;
+            copy(longest.get_mut(place..).unwrap_or_default(), part);
+            *from += size;
+        }
+    }
+}
+
+/// Whether a frame has the length that its counters give.
+pub(crate) fn exact(expected: usize, actual: usize) -> Result<(), Error> {
+    if actual == expected {
+        Ok(())
+    } else {
+        Error::length(expected, actual)
+    }
 }
 
 /// Whether a frame says of itself how many elements it has: `told`, which is `low` in a frame of `least` bytes, and one more for
