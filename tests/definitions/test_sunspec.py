@@ -86,13 +86,44 @@ def test_groups_that_are_there_several_times_are_structs(charger):
 def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(charger):
     (said,) = (one for one in charger.definitions.import_findings if one.severity == "error")
     assert said.message == (
-        "message `curves` is not imported: `Pt`, which has any number of repetitions, is inside another group"
+        "message `curves` is not imported: "
+        "`Pt`, which has any number of repetitions, is inside `Crv`, whose repetitions no point counts"
     )
     assert (charger.imported, charger.definitions.total) == (2, 3)
     assert said.help == (
         "if your device always has the same number, write it into a copy of the file: "
         "as `count` of `Pt` and as `value` of the point `NPt`"
     )
+
+
+def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model_says(tmp_path):
+    curves = copy.deepcopy(next(one for one in MODELS if one["group"]["name"] == "curves"))
+    points, (curve,) = curves["group"]["points"], curves["group"]["groups"]
+    points.append({"name": "NCrv", "type": "uint16", "size": 1})
+    curve["count"] = "NCrv"
+    trip = {"name": "Trip", "points": [{"name": "ActPt", "type": "uint16", "size": 1}], "groups": [curve["groups"][0]]}
+    curve["groups"].append(trip)
+    (tmp_path / "curves.json").write_text(json.dumps(curves))
+    read = run.read(tmp_path / "curves.json", sunspec.SunSpec())
+    assert not read.failed
+    (tmp_path / "curves.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    loaded = load([tmp_path / "curves.yaml"])
+    assert loaded.ok
+    (node,) = loaded.icd.nodes
+    (layout,) = node.messages
+
+    for number in (0, 1, 3):
+        rows = [(on, *range(on, on + number), 70 + on, *range(on + 9, on + 9 + number)) for on in (10, 20)]
+        registers = (65003, 12, number, 2, *rows[0], *rows[1])
+        frame = struct.pack(f">{len(registers)}H", *registers)
+        raw = codec.decode_frame(node, layout, frame)
+        assert [raw[f"Crv[{index}].Trip ActPt"] for index in (0, 1)] == [80, 90]
+        assert [raw[f"Crv[1].Pt[{index}].X"] for index in range(number)] == list(range(20, 20 + number))
+        assert [raw[f"Crv[1].Trip Pt[{index}].X"] for index in range(number)] == list(range(29, 29 + number))
+        assert f"Crv[0].Pt[{number}].X" not in raw
+        assert codec.encode(node, layout, codec.decode(node, layout, frame)) == frame
+        with pytest.raises(codec.LengthError):
+            codec.decode(node, layout, frame + bytes(2))
 
 
 def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp_path):

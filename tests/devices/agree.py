@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from icdgen import codec
-from icdgen.icd.build import special
 from icdgen.icd.formula import coefficients, parse
 from icdgen.icd.layout import Scalar
+from icdgen.icd.meanings import special
 from tests.conformance.driver import Answering
 from tests.devices.definition import Definition, NotSupported, Values
 
@@ -150,7 +150,8 @@ def _values_of(
         return
     for index in range(count or 0):
         for inner in one.parts(part):
-            yield from _values_of(one, inner, f"{name}[{index}].{inner['name']}", inner.get("count"), raw)
+            there = _there(inner, raw) if "up_to" in inner else inner.get("count")
+            yield from _values_of(one, inner, f"{name}[{index}].{inner['name']}", there, raw)
 
 
 def _value(raw: dict[str, object], name: str, count: int | None) -> object:
@@ -196,14 +197,17 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
     found = []
     for number in range(count):
         there = [(end, _elements(end, number, chance)) for end in one.ends]
-        length = one.length + sum(elements * one.element(end) for end, elements in there)
+        # Arrays in elements can have the same counter.
+        inner = {_counter(part)[0]: (part, _elements(part, number, chance)) for part in one.inner}
+        counts = {name: elements for name, (_, elements) in inner.items()}
+        length = one.length + sum(elements * one.element(end, counts) for end, elements in there)
         data = bytes(length) if number == 0 else b"\xff" * length if number == 1 else chance.randbytes(length)
         if len(there) == 1 and there[0][0].get("type") == "text":
             data = data[: one.length] + bytes(chance.choices(range(32, 127), k=length - one.length))
         for part in one.fields:
             if "const" in part:
                 data = _put(data, part, part["const"])
-            for end, elements in there:
+            for end, elements in (*there, *inner.values()):
                 if part["name"] == _counter(end)[0]:
                     data = _put(data, part, elements - _counter(end)[1])
         data = _chosen(one, data, chance) if number % 4 else data

@@ -56,11 +56,23 @@ class Definition:
         """The fields of the struct that a part is made of; none where it is a field."""
         return next((one["fields"] for one in self.structs if one["name"] == part.get("struct")), [])
 
-    def element(self, end: dict) -> int:
-        """Bytes of an element of the open end."""
-        return next(
-            (one["length"] for one in self.structs if one["name"] == end.get("struct")), end.get("bits", 8) // 8
-        )
+    @property
+    def inner(self) -> list[dict]:
+        """The arrays of variable length in elements of the ends."""
+        return [part for end in self.ends for part in self.parts(end) if "up_to" in part]
+
+    def element(self, end: dict, counts: dict[str, int] | None = None) -> int:
+        """Bytes of an element of the open end, whose arrays have as many elements as ``counts`` says by the counters."""
+        struct = next((one for one in self.structs if one["name"] == end.get("struct")), None)
+        if struct is None:
+            return end.get("bits", 8) // 8
+        size = struct["length"]
+        for part in struct["fields"]:
+            if "up_to" in part:
+                size += self.element(part) * (counts or {})[part["count"]]
+            elif "after" in part:
+                size += part["bits"] // 8
+        return size
 
 
 def open_end(name: str, at: int, bits: int, type_: str, counter: str | dict, most: int) -> dict:

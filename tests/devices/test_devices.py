@@ -39,18 +39,32 @@ def test_values_of_messages_that_are_held_are_those_of_the_library(name: str, tm
         assert agreement.unread <= UNREAD
 
 
+CURVES = {705, 706, 707, 708, 709, 710, 712, 64410, 64411}
+"""Models of SunSpec with a variable number of points in each of a variable number of curves."""
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_sunspec_curves_have_the_values_of_the_library_for_any_number_of_points(language: str, tmp_path: Path) -> None:
+    pytest.importorskip("sunspec2")
+    definitions = sunspec.imported([tree for tree in sunspec.trees() if tree["id"] in CURVES])
+    assert {one.id for one in definitions.messages if not one.cause} == CURVES
+    agreement = agreed(definitions, tmp_path, language)
+    assert agreement.messages == len(CURVES) and agreement.values > 10_000
+    assert agreement.differences == []
+    assert not agreement.unread
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_sunspec_curves_with_a_fixed_number_of_points_have_the_values_of_the_library(
     language: str, tmp_path: Path
 ) -> None:
     """The library reads the counts from the registers; the import has them from the edited copy of the model."""
     pytest.importorskip("sunspec2")
-    nested = {705, 706, 707, 708, 709, 710, 712, 64410, 64411}
-    models = [sunspec.with_fixed_count(tree, "NPt", 4) for tree in sunspec.trees() if tree["id"] in nested]
+    models = [sunspec.with_fixed_count(tree, "NPt", 4) for tree in sunspec.trees() if tree["id"] in CURVES]
     definitions = sunspec.imported(models)
-    assert {one.id for one in definitions.messages if not one.cause} == nested
+    assert {one.id for one in definitions.messages if not one.cause} == CURVES
     agreement = agreed(definitions, tmp_path, language)
-    assert agreement.messages == len(nested) and agreement.values > 12_000
+    assert agreement.messages == len(CURVES) and agreement.values > 12_000
     assert agreement.differences == []
     assert not agreement.unread
 

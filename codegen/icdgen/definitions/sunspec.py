@@ -20,6 +20,7 @@ _MOST_DEPTH = 8  # levels of nested groups
 _MOST_POINTS = 20_000  # of a file
 _MOST_REGISTERS = MOST_BYTES // 2
 _LONGEST = 2048  # bytes of a model with a group that repeats any number of times
+_MOST_INNER = 20  # repetitions of a group in another one; devices have fewer points in a curve
 _HEAD = 2 * _REGISTER  # bits of the id and length that begin each model
 # Units of SunSpec with a different spelling than the built-in unit.
 _SPELLED = {"Secs": "s", "mSecs": "ms", "Degrees": "deg", "Pct": "%", "HPa": "hPa", "mps": "m/s"}
@@ -126,10 +127,11 @@ class _Model:
         self.enums, self.to, self.left, self.taken = enums, to, left, taken
         self.structs: list[Item] = []
         self.scaled: list[str] = []
+        self.fields: list[Item] = []  # of the message
 
     def message(self) -> Item:
         """Return the message. Reports points with the scale factor in another register. Raises `NotSupported`."""
-        fields: list[Item] = []
+        fields = self.fields
         end = self.block(self.group, fields, 0, "", 0)
         if not fields:
             raise NotSupported("it has no points")
@@ -143,35 +145,48 @@ class _Model:
     def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
         """Append the points of a group and of its nested groups to ``fields``, and return the bit behind them.
 
-        A group with any number of repetitions does not count. Raises `NotSupported`.
+        A group with any number of repetitions does not count, nor does what follows it in a struct. Raises `NotSupported`.
         """
         if depth > _MOST_DEPTH:
             raise NotSupported(f"groups are nested more than {_MOST_DEPTH} deep")
+
+        def append(item: Item, bits: int) -> int:
+            """Append a field, and return the bit behind it."""
+            is_behind = _is_open(fields)
+            if is_behind and fields is self.fields:
+                raise NotSupported(f"`{item['name']}` follows a group with any number of repetitions")
+            if is_behind:
+                item["after"] = fields[-1]["name"]
+            fields.append(item)
+            return at if _is_open(fields) else at + bits
+
         for point in _list(group, "points"):
-            fields.append(self.point(point, before, at, is_head=not depth and at < _HEAD))
-            at += fields[-1]["bits"]
+            item = self.point(point, before, at, is_head=not depth and at < _HEAD)
+            at = append(item, item["bits"])
         for inner in _list(group, "groups"):
-            if fields and "up_to" in fields[-1]:
-                raise NotSupported(f"`{_text(inner, 'name')}` follows a group with any number of repetitions")
             if inner.get("count", 1) == 1 and type(inner.get("count", 1)) is int:
                 at = self.block(inner, fields, at, f"{before}{_text(inner, 'name')} ", depth + 1)
             else:
-                fields.append(self.repeated(inner, fields, at, before, depth))
-                last = fields[-1]
-                at += 0 if "up_to" in last else 8 * self.structs[-1]["length"] * last["count"]
+                item = self.repeated(inner, fields, at, before, depth)
+                at = append(item, 0 if "up_to" in item else 8 * self.structs[-1]["length"] * item["count"])
         return at
 
     def repeated(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> Item:
         """Declare a repeated group as a struct, and return the array of structs. Raises `NotSupported`."""
         count, name = group["count"], _text(group, "name")
-        is_open = type(count) is not int or count <= 0
-        if is_open and depth:
-            text = f"`{name}`, which has any number of repetitions, is inside another group"
+        is_open, is_inner = type(count) is not int or count <= 0, fields is not self.fields
+        if is_open and is_inner and count == 0:
+            text = f"`{name}`, which has any number of repetitions, is inside another group, and no point counts them"
             raise NotSupported(text, _fixed_number_help(name, count))
         parts: list[Item] = []
         length = self.block(group, parts, 0, "", depth + 1) // 8
         if not length:
             raise NotSupported(f"`{name}` has no points")
+        if _is_open(parts) and (is_inner or not is_open or count == 0):
+            inner = next(part for part in parts if "up_to" in part)
+            text = f"`{inner['name']}`, which has any number of repetitions, is inside `{name}`"
+            why = "which is inside another group" if is_inner else "whose repetitions no point counts"
+            raise NotSupported(f"{text}, {why}", _fixed_number_help(inner["name"], inner["count"]))
         called = f"{before}{name}"
         called = f"{self.name} {called}" if called in self.taken else called
         self.taken.add(called)
@@ -180,10 +195,20 @@ class _Model:
         item = {"at": at, "name": f"{before}{name}", "struct": struct["name"]}
         if not is_open:
             return {**item, "count": count}
-        if count != 0 and not any(part["name"] == count for part in fields):
+        if count != 0 and not any(part["name"] == count for part in self.fields):
             raise NotSupported(f"`{name}` is counted by `{line(str(count), 60)}`, which is not in front of it")
+        if is_inner:
+            return {**item, "count": count, "up_to": _MOST_INNER}
+        longest = length + sum(self.size(part) for part in parts if "up_to" in part or "after" in part)
         count = count or REST
-        return {**item, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
+        return {**item, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // longest, MOST_ELEMENTS))}
+
+    def size(self, item: Item) -> int:
+        """Return the most bytes of a field."""
+        if "struct" not in item:
+            return int(item["bits"]) // 8
+        length: int = next(struct["length"] for struct in self.structs if struct["name"] == item["struct"])
+        return length * int(item.get("up_to") or item["count"])
 
     def point(self, point: dict[str, Any], before: str, at: int, is_head: bool) -> Item:
         """Return the field of a point. ``is_head``: id or length of the model. Raises `NotSupported` if it is not supported."""
@@ -223,6 +248,11 @@ class _Model:
         is_power = type(power) is int and -20 <= power <= 20 and kind.type != "float"
         scaled = formula(printed(Decimal(10) ** power)) if is_power and power is not None else {}
         return {**unit(symbol), **scaled, **keys}
+
+
+def _is_open(fields: list[Item]) -> bool:
+    """Return whether one of the fields has any number of repetitions."""
+    return any("up_to" in field for field in fields)
 
 
 def _fixed_number_help(group: str, counter: object) -> str:
