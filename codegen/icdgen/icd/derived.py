@@ -120,8 +120,8 @@ class _Trees(Arithmetic[_Tree]):
 
     def __init__(self, names: frozenset[str]) -> None:
         # The longest name first, because names can contain spaces and operators, and
-        # one can be the start of another.
-        self.names = sorted(sorted(names), key=len, reverse=True)
+        # one can be the start of another. A faulty ICD can have an empty name.
+        self.names = sorted(sorted(filter(None, names)), key=len, reverse=True)
 
     def name_at(self, text: str, at: int) -> str:
         """Return the longest name of a field that begins at an index of the text; empty if none does."""
