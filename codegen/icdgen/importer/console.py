@@ -28,7 +28,7 @@ def summary(result: Result) -> list[str]:
     pages = f"{count(result.document.pages, 'page')}, " if result.document.pages else ""
     sure = result.sureness()
     return [
-        f"{pages}{count(len(result.survey.found), 'table')}" + (": " if parts else "") + ", ".join(parts),
+        f"{pages}{count(len(result.tables), 'table')}" + (": " if parts else "") + ", ".join(parts),
         "read: "
         + (
             ", ".join(

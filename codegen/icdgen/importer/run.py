@@ -47,7 +47,9 @@ class Result:
 
     def sureness(self) -> Counter[str]:
         """Count tables by certainty, without tables to which no rule applies."""
-        return Counter(self.sure_of(entry.table) for entry in self.survey.found if entry.what != UNKNOWN)
+        # Several rules can read one table, each with a result.
+        tables = {entry.table.number: entry.table for entry in self.survey.found if entry.what != UNKNOWN}
+        return Counter(self.sure_of(table) for table in tables.values())
 
     def sure_of(self, table: SourceTable) -> str:
         """Return the certainty of the reading of a table."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.diagnostics import Findings
-from icdgen.importer import profile, run
+from icdgen.importer import console, profile, run
 
 NODE = "profile: 1\nnode: {byte_order: little, bit_order: lsb0, id_bits: 16}\n"
 HEADING = "Motor state (0x21)\n\n"
@@ -157,6 +157,16 @@ def test_a_table_is_free_for_later_rules_after_one_that_says_so(tmp_path):
     rules += "    columns: {Byte: byte, Name: name, Type: type}\n"
     _, tree = read(tmp_path, HEADING + rows, rules)
     assert [m["name"] for m in tree["messages"]] == ["Motor state", "Twin"]
+
+
+def test_the_summary_counts_a_table_once_that_several_rules_read(tmp_path):
+    rows = "Byte\tName\tType\n0\tMode\tu8\n"
+    rules = RULE.replace("Type: type}\n", "Type: type}\n    also: true\n")
+    rules += "  - tables: {head: Byte}\n    message: {name: Twin, id: 0x99, kind: telecommand}\n"
+    rules += "    columns: {Byte: byte, Name: name, Type: type}\n"
+    result, _ = read(tmp_path, HEADING + rows, rules)
+    tables, sure, _ = console.summary(result)
+    assert (tables, sure) == ("1 table: 2 messages", "read: 1 certain")
 
 
 def test_a_message_may_have_no_parameters(tmp_path):
