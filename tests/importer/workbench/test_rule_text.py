@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen.diagnostics import Findings
 from icdgen.importer import profile
 from icdgen.importer.workbench import rule_text
 
@@ -37,6 +38,25 @@ def test_a_rule_is_replaced_and_comments_around_it_stay(index):
     assert rule_text.rules_of(text)[1 - index] == rule_text.rules_of(PROFILE)[1 - index]
     for comment in ("# Of the motor.", "# as the manual says", "  # telemetry", "  # the rest", "# two bytes"):
         assert comment in text
+
+
+@pytest.mark.parametrize(
+    "start", [PROFILE, "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}, {what: ignore, tables: {head: Q}}]"]
+)
+def test_a_rule_is_added_behind_another(start):
+    before = rule_text.rules_of(start)
+    text = rule_text.with_rule(start, None, NEW, behind=0)
+    assert rule_text.rules_of(text) == [before[0], NEW, before[1]]
+    assert text.count("#") == start.count("#")
+
+
+@pytest.mark.parametrize("blank", ["", "\n", "# both\n"])
+def test_two_rules_in_the_text_of_one_are_refused(blank):
+    text = blank + rule_text.text_of_rule(NEW)
+    assert rule_text.parse_rule(text) == NEW
+    with pytest.raises(Findings) as caught:
+        rule_text.parse_rule(text + rule_text.text_of_rule(NEW))
+    assert caught.value.findings[0].message == "one rule only: the text has 2 list items"
 
 
 def test_rules_are_removed_down_to_none():

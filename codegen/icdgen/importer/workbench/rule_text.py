@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import source
 from icdgen.icd.located import Seq, plain
 
@@ -51,10 +52,10 @@ def _scalar(value: Any) -> str:
     return "'" + text.replace("'", "''").replace("\n", " ") + "'"
 
 
-def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
-    """Return the text with a rule replaced (``index``), added behind the others (no index), or removed (no rule).
+def with_rule(text: str, index: int | None, rule: dict[str, Any] | None, behind: int | None = None) -> str:
+    """Return the text with a rule replaced (``index``), added (no index), or removed (no rule).
 
-    Raises `Findings` if the text is no YAML.
+    It is added behind the rule ``behind``, or behind the last one. Raises `Findings` if the text is no YAML.
     """
     block = text_of_rule(rule) if rule is not None else ""
     tree = source.parse(text.encode("utf-8"), "profile")
@@ -67,15 +68,17 @@ def with_rule(text: str, index: int | None, rule: dict[str, Any] | None) -> str:
     if not rules or tree.key_at("rules").line == rules.item_at(0).line:  # in one line, as `[]` or `[{...}]`
         first = tree.key_at("rules").line - 1
         texts = [text_of_rule(plain(entry)) for entry in rules]
-        texts[index if index is not None else len(texts) : (index + 1) if index is not None else len(texts)] = [block]
+        added = len(texts) if behind is None else behind + 1
+        texts[added if index is None else index : added if index is None else index + 1] = [block]
         lines[first : first + 1] = ["rules:\n" if any(texts) else "rules: []\n", *texts]
         return "".join(lines)
     # Lines are replaced within the text, because a YAML writer would drop comments and the order of keys.
     starts = [rules.item_at(i).line - 1 for i in range(len(rules))]
-    behind = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > starts[-1]]
-    ends = [*starts[1:], min(behind, default=len(lines))]
+    next_keys = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > starts[-1]]
+    ends = [*starts[1:], min(next_keys, default=len(lines))]
     if index is None:
-        end = _last_line(lines, starts[-1], ends[-1])
+        before = len(rules) - 1 if behind is None else behind
+        end = _last_line(lines, starts[before], ends[before])
         lines[end:end] = [block]
     else:
         lines[starts[index] : _last_line(lines, starts[index], ends[index])] = [block]
@@ -116,7 +119,14 @@ def rules_of(text: str) -> list[dict[str, Any]]:
 
 
 def parse_rule(text: str) -> dict[str, Any]:
-    """Parse a rule in YAML, with or without the dash of a list. Raises `Findings`."""
-    stripped = re.sub(r"\A(\s*)-(?= )", r"\1 ", text)
-    tree = source.parse(stripped.encode("utf-8"), "rule")
+    """Parse a rule in YAML, with or without the dash of a list. Raises `Findings`, also for several rules."""
+    dash = re.match(r"(?:\s*\n|\s*#.*\n)*( *)-(?= )", text)
+    items = list(re.finditer(rf"^{dash[1]}- ", text, re.M)) if dash else []
+    if len(items) > 1:
+        place = Place("rule", text.count("\n", 0, items[1].start()) + 1)
+        help = "leave one list item, and add each other rule with `Add another rule for this table`"
+        raise Findings([Finding("IMP001", f"one rule only: the text has {len(items)} list items", place, help)])
+    if dash:
+        text = f"{text[: dash.end() - 1]} {text[dash.end() :]}"
+    tree = source.parse(text.encode("utf-8"), "rule")
     return {key: plain(value) for key, value in tree.items()}
