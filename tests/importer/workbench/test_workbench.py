@@ -11,6 +11,7 @@ import sys
 import threading
 import urllib.error
 import urllib.request
+from contextlib import contextmanager
 
 import pytest
 import yaml
@@ -87,16 +88,74 @@ def test_a_rule_gives_fields_and_findings_of_all_tables_of_its_kind_at_once(addr
     ]
 
 
-def test_a_profile_that_is_wrong_is_shown_and_not_applied(address):
+def test_a_rule_with_errors_keeps_its_last_valid_form_and_other_rules_still_work(address):
     ask(address, "/api/rule", {"index": None, "rule": RULE})
     wrong = {**RULE, "columns": {**RULE["columns"], "Name": "nam"}}
     state = ask(address, "/api/rule", {"index": 0, "rule": wrong})["state"]
-    assert "did you mean the role `name`?" in state["errors"][0]["help"]
+    (error,) = state["errors"]
+    assert (error["rule"], error["message"]) == (0, "`nam` is neither a role nor a pattern with a role")
+    assert "did you mean the role `name`?" in error["help"]
     assert state["tables"][0]["fields"] == 2
     refused = ask(address, "/api/rule-text", {"index": 0, "text": "tables: {head: ["})["refused"]
     assert "not YAML" in refused[0]["message"]
-    state = ask(address, "/api/rule", {"index": 0, "rule": RULE})["state"]
+    pins = {"tables": {"head": "Pin | Function"}, "what": "ignore"}
+    state = ask(address, "/api/rule", {"index": None, "rule": pins})["state"]
+    assert [(one["rules"], one["fields"]) for one in state["tables"]] == [([0], 2), ([0], 2), ([1], 0)]
+    state = ask(address, "/api/rule", {"index": 1, "rule": None})["state"]
+    assert state["errors"] == [error] and [one["rules"] for one in state["tables"]] == [[0], [0], []]
+    for action in ("undo", "undo", "undo"):
+        state = ask(address, f"/api/{action}", {})["state"]
+    assert state["errors"] == [] and [one["fields"] for one in state["tables"]] == [2, 2, 0]
+
+
+def test_a_new_rule_with_errors_belongs_to_its_tables_and_gives_nothing(address, session, tmp_path):
+    rule = {
+        "tables": {"head": "Pin | Function"},
+        "what": "enumeration",
+        "columns": {"Pin": "value", "Function": "member"},
+    }
+    state = ask(address, "/api/rule", {"index": None, "rule": RULE})["state"]
+    state = ask(address, "/api/rule", {"index": None, "rule": rule})["state"]
+    assert [error["rule"] for error in state["errors"]] == [1]
+    assert [one["rules"] for one in state["tables"]] == [[0], [0], [1]]
+    assert ask(address, "/api/save", {})["done"]["files"] == [f"{tmp_path}/rules.yaml: written"]
+    assert not (tmp_path / "icd").exists()
+    state = ask(address, "/api/rule", {"index": 1, "rule": rule | {"message": {"enumeration": "Pins"}}})["state"]
     assert state["errors"] == []
+
+
+def test_saving_does_not_overwrite_what_another_program_wrote(address, session, tmp_path):
+    path = tmp_path / "rules.yaml"
+    ask(address, "/api/rule", {"index": None, "rule": RULE})
+    assert "conflict" not in ask(address, "/api/save", {})["done"]
+    edited = path.read_text(encoding="utf-8").replace("node: {}", "node: {byte_order: big}  # page 3")
+    path.write_text(edited, encoding="utf-8")
+    written = (tmp_path / "icd" / "motor.yaml").read_bytes()
+    ask(address, "/api/node", {"byte_order": "little"})
+    saved = ask(address, "/api/save", {})["done"]
+    assert saved == {"conflict": f"{path} was changed by another program; nothing is written"}
+    assert path.read_text(encoding="utf-8") == edited and (tmp_path / "icd" / "motor.yaml").read_bytes() == written
+    state = ask(address, "/api/reload", {})["state"]
+    assert state["node"] == {"byte_order": "big"} and state["is_saved"] and session.text == edited
+    assert ask(address, "/api/undo", {})["state"]["node"] == {"byte_order": "little"}
+    path.write_text("rules: [", encoding="utf-8")
+    (refused,) = ask(address, "/api/reload", {})["refused"]
+    assert "not YAML" in refused["message"] and session.node() == {"byte_order": "little"}
+    assert "conflict" not in ask(address, "/api/save", {"overwrite": True})["done"]
+    assert path.read_text(encoding="utf-8") == session.text
+    path.unlink()
+    assert "was removed" in ask(address, "/api/save", {})["done"]["conflict"] and not path.exists()
+
+
+def test_a_second_rule_of_a_table_stands_behind_the_first(address, session):
+    ask(address, "/api/rule", {"index": None, "rule": RULE})
+    ask(address, "/api/rule", {"index": None, "rule": {"tables": {"head": "Pin | Function"}, "what": "ignore"}})
+    second = {"tables": RULE["tables"], "what": "bits", "message": {"of": "Mode"}, "ignore": ["Byte"]}
+    answer = ask(address, "/api/rule", {"index": None, "rule": second, "behind": 0})
+    assert answer["done"] == 1
+    assert [one["rules"] for one in answer["state"]["tables"]] == [[0, 1], [0, 1], [2]]
+    assert yaml.safe_load(session.text)["rules"][:2] == [{**RULE, "also": True}, second]
+    assert yaml.safe_load(ask(address, "/api/undo", {}) and session.text)["rules"][0] == RULE
 
 
 def test_pages_of_other_sites_change_nothing(address, session):
@@ -117,24 +176,31 @@ def test_pages_of_other_sites_change_nothing(address, session):
     assert ask(address, "/picture/1").startswith(b"\x89PNG")
 
 
-@pytest.fixture
-def page(address):
+@contextmanager
+def browser():
+    """A page of Chromium; scripts with errors fail the test."""
     program = next((path for name in NAMES if (path := shutil.which(name))), None)
     if program is None:
         pytest.skip("no Chromium: scripts/test installs it")
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        made = browser.new_page(viewport={"width": 1600, "height": 900})
+        running = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        made = running.new_page(viewport={"width": 1600, "height": 900})
         problems: list[str] = []
         made.on("pageerror", lambda error: problems.append(str(error)))
         made.on("console", lambda message: problems.append(message.text) if message.type == "error" else None)
+        yield made
+        assert problems == []
+        running.close()
+
+
+@pytest.fixture
+def page(address):
+    with browser() as made:
         made.goto(address)
         made.get_by_role("heading", name="table 1").wait_for()
         yield made
-        assert problems == []
-        browser.close()
 
 
 def tab_to(page, label: str) -> None:
@@ -290,3 +356,132 @@ def test_the_command_serves_the_page_until_it_is_interrupted(tmp_path):
     command[-2] = "words.yaml"
     refused = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert refused.returncode == 1 and "the profile has no `rules:`" in refused.stderr
+
+
+def test_the_page_asks_before_it_overwrites_the_work_of_an_editor(page, tmp_path):
+    page.get_by_role("button", name="Ignore this kind").click()
+    page.get_by_role("button", name="Save profile and ICD").click()
+    page.get_by_role("status").filter(has_text="written").wait_for()
+    edited = (tmp_path / "rules.yaml").read_text(encoding="utf-8") + "# of the editor\n"
+    (tmp_path / "rules.yaml").write_text(edited, encoding="utf-8")
+    page.get_by_role("button", name="Remove the rule").click()
+    page.get_by_role("button", name="Ignore this kind").wait_for()
+    page.get_by_role("button", name="Save profile and ICD").click()
+    page.get_by_role("alert").filter(has_text="was changed by another program").wait_for()
+    page.get_by_role("button", name="Reload the file").click()
+    page.get_by_role("button", name="Remove the rule").wait_for()
+    assert not page.get_by_role("button", name="Overwrite the file").is_visible()
+    assert (tmp_path / "rules.yaml").read_text(encoding="utf-8") == edited
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Ignore this kind").wait_for()
+    page.keyboard.press("Control+s")  # the page knows the file, so that this is no conflict
+    page.get_by_role("status").filter(has_text="written").wait_for()
+    assert "of the editor" not in (tmp_path / "rules.yaml").read_text(encoding="utf-8")
+
+
+def test_the_findings_of_check_are_shown_after_saving(page, address, tmp_path):
+    twins = {**RULE, "message": {**RULE["message"], "id": "0x21", "heading": r"^[\d.]+ {message} \(0x"}}
+    ask(address, "/api/rule", {"index": None, "rule": twins})
+    page.reload()
+    page.get_by_role("heading", name="table 1").wait_for()
+    page.keyboard.press("Control+s")
+    page.get_by_role("heading", name="icdgen check of the saved ICD: 1 error").wait_for()
+    shown = page.locator("#checked li.error").inner_text()
+    assert "error ICD" in shown and re.search(r"motor\.yaml:[0-9]+\n.+", shown)
+
+
+def test_an_error_of_a_rule_leads_to_its_table(page):
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    page.get_by_label("Role of Name").fill("nam")
+    page.keyboard.press("Tab")
+    error = page.get_by_role("alert").filter(has_text="Rule 1: `nam` is neither a role nor a pattern with a role")
+    error.wait_for()
+    page.get_by_label("show table 3").first.click()
+    page.get_by_role("heading", name="table 3").wait_for()
+    page.get_by_role("button", name="Ignore this kind").click()
+    page.get_by_role("button", name="(ignored)").wait_for()
+    error.get_by_role("button", name="table 1").click()
+    page.get_by_role("heading", name="table 1").wait_for()
+    assert page.get_by_label("Role of Name").input_value() == "nam"
+
+
+def test_a_rule_offers_only_what_its_kind_uses(page):
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    length, of = page.get_by_label("Length"), page.get_by_label("Of the field")
+    page.get_by_label("These tables are").wait_for()
+    assert length.is_visible() and not of.is_visible()
+    page.get_by_label("These tables are").select_option("enumeration")
+    of.wait_for()
+    assert not length.is_visible()
+    assert page.locator("#roles option[value=member]").count() == 1
+    assert page.locator("#roles option[value=last_byte]").count() == 0
+
+
+def test_each_rule_of_a_table_is_edited(page, session):
+    from playwright.sync_api import expect
+
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    page.get_by_role("button", name="Add another rule for this table").click()
+    expect(page.get_by_role("group", name="Rule 2, for 2 tables")).to_be_visible()
+    page.get_by_label("Type of all fields").fill("int")
+    page.get_by_role("button", name="Rule 1: message").click()
+    expect(page.get_by_role("group", name="Rule 1, for 2 tables")).to_be_visible()
+    page.get_by_label("Type of all fields").fill("uint")
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("button", name="Rule 1: message")).to_have_attribute("aria-pressed", "true")
+    page.get_by_text("The rule as YAML").click()
+    expect(page.get_by_label("The rule as YAML")).to_have_value(re.compile("uint"))
+    first, second = yaml.safe_load(session.text)["rules"]
+    assert (first["each"], first["also"], second["each"]) == ({"type": "uint"}, True, {"type": "int"})
+    page.get_by_label("The rule as YAML").fill(session.text.split("rules:\n")[1])
+    page.get_by_role("button", name="Apply").click()
+    page.get_by_role("alert").filter(has_text="one rule only: the text has 2 list items").wait_for()
+
+
+ARRAYS = [
+    ["Byte", "Name", "Size", "Count", "Group", "Values"],
+    ["0", "Mode", "1", "", "", "0: off, 1: on"],
+    ["1", "Level", "12", "6", "", ""],
+    ["13", "Current", "2", "20", "Channel", ""],
+    ["15", "State", "2", "20", "Channel", ""],
+]
+
+
+def test_the_result_has_enumerations_counts_and_strides(tmp_path):
+    draw(tmp_path / "motor.pdf", [heading("4.1 Motor state (0x21)", 2), table(ARRAYS)])
+    session = Session(
+        *sources.read(tmp_path / "motor.pdf", profile.load(), jobs=1), tmp_path / "rules.yaml", tmp_path / "icd"
+    )
+    session.set_rule(None, {
+        "tables": {"head": "Byte | Name | Size | Count"}, "each": {"type": "uint"},
+        "message": {"heading": r"^[\d.]+ {message} \({id}\)$", "kind": "telemetry"},
+        "columns": {"Byte": "byte", "Name": "name", "Size": "bytes", "Count": "count", "Group": "group", "Values": "members"},
+    })  # fmt: skip
+    assert session.state()["errors"] == []
+    with server.serve(session) as running, browser() as made:
+        threading.Thread(target=running.serve_forever, daemon=True).start()
+        made.goto(f"http://{server.HOST}:{running.server_port}")
+        made.locator("table.fields").wait_for()
+        rows = [row.split("\t")[2:5] for row in made.locator("table.fields").inner_text().split("\n")[1:]]
+        assert rows == [
+            ["Mode", "enum Mode", ""], ["Level", "uint", "6 times, every 2 bytes"],
+            ["Current", "uint", "Channel: 20 times, every 4 bytes"], ["State", "uint", "Channel: 20 times, every 4 bytes"],
+        ]  # fmt: skip
+        made.get_by_text("Bytes 0 to 31 of 93 are drawn.").wait_for()
+        running.shutdown()
+
+
+def test_a_long_pattern_has_the_width_of_its_column_while_it_is_edited(page):
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    role = page.get_by_label("Role of Unit")
+    role.wait_for()
+    before = page.get_by_label("Role of Remarks").bounding_box()
+    role.focus()
+    assert role.bounding_box()["width"] > 500 > 3 * before["width"]
+    assert page.get_by_label("Role of Remarks").bounding_box() == before
+    assert (
+        page.evaluate(
+            "(() => { const work = document.getElementById('work'); return work.scrollWidth - work.clientWidth; })()"
+        )
+        == 0
+    )

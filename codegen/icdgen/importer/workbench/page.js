@@ -5,10 +5,13 @@ const byId = (id) => document.getElementById(id);
 const WHAT = ["message", "registers", "list", "index", "enumeration", "lookup", "bits", "loggable", "ignore"];
 const NOT_USED = "not used";
 const SEPARATOR = "||"; // between patterns: in a regular expression it would mean nothing
+const MOST_BYTES = 32; // that are drawn of a message
 const SOURCES = ["caption", "heading", "before", "row"];
 let state = null; // what /api/state says
 let table = null; // the table that is shown
 let number = 1;
+let chosen = null; // index of the rule that is edited, if it is not the last one of the table
+let checked = null; // findings of `icdgen check` for the files that were saved last
 
 function element(name, keys = {}, ...children) {
   const made = document.createElement(name);
@@ -37,11 +40,8 @@ async function sendNow(path, data) {
   const answer = await fetch(path, { method: "POST", headers: { "X-Icdgen": "1" }, body: JSON.stringify(typeof data === "function" ? data() : data) });
   if (!answer.ok) throw new Error(await answer.text());
   const got = await answer.json();
-  if (got.refused) {
-    state.errors = got.refused;
-    drawErrors();
-    return null;
-  }
+  drawRefused(got.refused || []);
+  if (got.refused) return null;
   state = got.state;
   await show(number);
   return got.done;
@@ -49,7 +49,7 @@ async function sendNow(path, data) {
 
 // --- the rule of the table that is shown
 
-const ruleIndex = () => (table.rules.length ? table.rules[table.rules.length - 1] : null);
+const ruleIndex = () => (table.rules.includes(chosen) ? chosen : table.rules.at(-1) ?? null);
 const rule = () => (ruleIndex() === null ? null : state.rules[ruleIndex()].keys);
 
 function merged(keys) {
@@ -64,12 +64,13 @@ function merged(keys) {
 
 // The edit is made when the changes before it were answered, so that none is lost.
 function change(edit) {
+  const index = ruleIndex(); // now: until then, another rule may be shown
   return send("/api/rule", () => {
-    const keys = structuredClone(rule());
+    const keys = structuredClone(state.rules[index].keys);
     edit(keys);
     for (const key of ["message", "columns", "each"]) if (keys[key] && !Object.keys(keys[key]).length) delete keys[key];
     for (const key of ["ignore", "join"]) if (keys[key] && !keys[key].length) delete keys[key];
-    return { index: ruleIndex(), rule: keys };
+    return { index, rule: keys };
   });
 }
 
@@ -109,8 +110,9 @@ const number_or_text = (text) => (/^[0-9]+$/.test(text) ? Number(text) : text);
 
 // --- drawing
 
-async function show(wanted) {
+async function show(wanted, rule = wanted === number ? chosen : null) {
   number = wanted;
+  chosen = rule;
   if (number > state.tables.length) number = state.tables.length;
   table = await ask(`/api/table/${number}`);
   const focus = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.key : null;
@@ -132,10 +134,11 @@ function drawHeader() {
 
 function drawTables() {
   byId("tables").replaceChildren(...state.tables.map((one) => {
-    const last = one.rules.length ? state.rules[one.rules[one.rules.length - 1]].keys : null;
-    const kind = last === null ? "unread" : one.errors ? "wrong" : last.what === "ignore" ? "ignored" : "good";
+    const last = one.rules.length ? state.rules[one.rules.at(-1)].keys : null;
+    const isInvalid = state.errors.some((error) => one.rules.includes(error.rule));
+    const kind = last === null ? "unread" : one.errors || isInvalid ? "wrong" : last.what === "ignore" ? "ignored" : "good";
     const sign = { unread: "?", wrong: "✗", ignored: "–", good: "✓" }[kind];
-    const said = { unread: "no rule", wrong: count(one.errors, "error"), ignored: "ignored", good: one.fields ? count(one.fields, "field") : last && last.what }[kind];
+    const said = { unread: "no rule", wrong: isInvalid ? "rule not valid" : count(one.errors, "error"), ignored: "ignored", good: one.fields ? count(one.fields, "field") : last && last.what }[kind];
     const names = one.messages.filter((text) => text !== "?");
     const name = names.length > 2 ? `${names[0]} ... ${names[names.length - 1]}` : names.join(", ") || one.name;
     const button = element("button", { type: "button", title: `${one.title}: ${said}` },
@@ -182,6 +185,19 @@ function drawAround() {
   byId("next").disabled = number >= state.tables.length;
   byId("make").hidden = byId("ignore").hidden = ruleIndex() !== null;
   byId("remove").hidden = ruleIndex() === null;
+  byId("another").hidden = ruleIndex() === null || merged(state.rules[table.rules.at(-1)].keys).what === "ignore";
+  byId("rules").hidden = table.rules.length < 2;
+  byId("rules").replaceChildren(...table.rules.map((index) => {
+    const button = element("button", { type: "button", onclick: () => show(number, index) }, `${nameOfRule(index)}: ${merged(state.rules[index].keys).what || "message"}`);
+    button.setAttribute("aria-pressed", String(index === ruleIndex()));
+    button.dataset.key = `rule-${index}`;
+    return button;
+  }));
+}
+
+function nameOfRule(index) {
+  const name = state.rules[index].keys.rule;
+  return `Rule ${index + 1}${name ? ` (${name})` : ""}`;
 }
 
 // What a person is typing in is not overwritten by the answer to the change before.
@@ -196,7 +212,7 @@ function drawRule() {
   const keys = merged(rule());
   const input = (name) => form.elements.namedItem(name); // `elements.length` is their number
   const of = state.tables.filter((one) => one.rules.includes(ruleIndex())).length;
-  byId("legend").textContent = `Rule for ${count(of, "table")}`;
+  byId("legend").textContent = `${nameOfRule(ruleIndex())}, for ${count(of, "table")}`;
   if (!input("what").options.length) input("what").append(...WHAT.map((what) => element("option", {}, what)));
   fill(input("what"), keys.what || "message");
   fill(input("tables"), Object.entries(keys.tables || {}).map(([key, value]) => `${key}: ${value}`).join("; "));
@@ -211,12 +227,26 @@ function drawRule() {
   fill(input("cells"), shown((keys.columns || {})["*"]));
   for (const key of ["name", "id", "kind", "length", "of", ...SOURCES]) fill(input(key), shown((keys.message || {})[key]));
   fill(byId("yaml"), state.rules[ruleIndex()].text);
+  offer(input, keys.what || "message");
+}
+
+// Controls of roles that this kind of rule does not use are hidden, unless they have a value that is to be removed.
+function offer(input, what) {
+  const roles = state.roles_of[what]; // none: the rule ignores its tables
+  const reads = ["type", "width", "transpose", "join", "skip", "map", "melt", "cells", "origin", ...SOURCES];
+  const isOffered = (name) => (reads.includes(name) ? Boolean(roles) : Boolean(roles) && roles.includes(name === "name" ? "message" : name));
+  for (const name of ["name", "id", "kind", "length", "of", ...reads]) {
+    const control = input(name);
+    control.closest("label").hidden = !(isOffered(name) || (control.type === "checkbox" ? control.checked : control.value));
+  }
+  byId("roles").replaceChildren(element("option", { value: NOT_USED }),
+    ...(roles || []).map((role) => element("option", { value: role, label: `${role}: ${state.roles[role]}` })));
 }
 
 let drawn = ""; // which grid is shown: its cells are drawn anew only if it is another one
 
 function drawGrid() {
-  const wanted = JSON.stringify([number, table.head, ruleIndex() !== null]);
+  const wanted = JSON.stringify([number, table.head, ruleIndex()]);
   if (wanted === drawn) {
     for (const input of byId("grid").querySelectorAll("input")) fill(input, roleOf(input.dataset.title));
     return;
@@ -227,7 +257,7 @@ function drawGrid() {
     let column = 0;
     const made = cells.map(([text, columns, span]) => {
       const cell = element(index === table.head ? "th" : "td", { colSpan: columns, rowSpan: span }, text);
-      if (isHead) cell.append(roleControl(text.replace(/\s+/g, " ").trim() || String(column + 1)));
+      if (isHead) cell.append(element("span", { className: "role" }, roleControl(text.replace(/\s+/g, " ").trim() || String(column + 1))));
       column += columns;
       return cell;
     });
@@ -247,15 +277,15 @@ function roleOf(title) {
 }
 
 function roleControl(title) {
-  const input = element("input", { "aria-label": `Role of ${title}`, list: "roles", size: 12, spellcheck: false, placeholder: "role or pattern",
+  const input = element("input", { "aria-label": `Role of ${title}`, list: "roles", size: 4, spellcheck: false, placeholder: "role or pattern",
     title: "a role, a pattern such as ^{byte}-{last_byte}$, several separated by ||, or: not used", value: roleOf(title) });
   input.dataset.title = title;
   input.onchange = () => {
     const given = patterns(input.value); // now: the answer to the change before may fill the control
+    const key = columnOf(title);
     change((own) => {
-      const key = columnOf(title);
       own.columns = { ...(own.columns || {}) };
-      own.ignore = (own.ignore || merged(rule()).ignore || []).filter((name) => name !== title);
+      own.ignore = (own.ignore || merged(own).ignore || []).filter((name) => name !== title);
       delete own.columns[key];
       if (given === NOT_USED) own.ignore.push(title);
       else if (given !== "") own.columns[key] = given;
@@ -265,12 +295,34 @@ function roleControl(title) {
 }
 
 function drawErrors() {
-  byId("errors").replaceChildren(...(state.errors.length ? [element("p", { className: "error" }, "The profile is not right, and not applied:"),
-    element("ul", {}, ...state.errors.map((one) => element("li", { className: "error" }, `${one.line ? `line ${one.line}: ` : ""}${one.message}: ${one.help}`)))] : []));
+  const said = "Rules that are not valid; their last valid form is applied to the tables:";
+  byId("errors").replaceChildren(...(state.errors.length ? [element("p", { className: "error" }, said), element("ul", {}, ...state.errors.map(drawError))] : []));
+}
+
+function drawError(error) {
+  const owner = state.tables.find((one) => one.rules.includes(error.rule));
+  const item = element("li", { className: "error" }, `${nameOfRule(error.rule)}: ${error.message}`, element("i", {}, error.help));
+  if (owner) item.append(element("button", { type: "button", onclick: () => show(owner.number, error.rule) }, `table ${owner.number}`));
+  return item;
+}
+
+function drawRefused(refused) {
+  byId("refused").replaceChildren(...(refused.length ? [element("p", { className: "error" }, "Not accepted, and nothing is changed:"),
+    element("ul", {}, ...refused.map((one) => element("li", { className: "error" }, `${one.line ? `line ${one.line}: ` : ""}${one.message}`, element("i", {}, one.help))))] : []));
+}
+
+// The findings of `icdgen check` are about the saved files, so that they stay until the next save.
+function drawChecked() {
+  if (checked === null) return;
+  const counts = ["error", "warning", "note"].map((severity) => [checked.filter((one) => one.severity === severity).length, severity]);
+  const figures = counts.filter(([times]) => times).map(([times, severity]) => count(times, severity)).join(", ");
+  byId("checked").replaceChildren(element("h3", {}, `icdgen check of the saved ICD: ${figures || "no findings"}`), element("ul", {}, ...checked.map((one) =>
+    element("li", { className: one.severity }, `${one.severity} ${one.code}: ${one.message}`, element("i", {}, `${one.file}:${one.line}`), element("i", {}, one.help)))));
 }
 
 function drawResult() {
   drawErrors();
+  drawChecked();
   byId("messages").replaceChildren(...table.messages.flatMap(drawMessage));
   const errors = state.findings.filter((one) => one.severity === "error").length;
   const warnings = state.findings.filter((one) => one.severity === "warning").length;
@@ -290,20 +342,32 @@ function drawMessage(message) {
   if (message.pairs.length) made.push(element("table", {}, ...message.pairs.map(([value, name]) => element("tr", {}, element("td", {}, String(value)), element("td", {}, name)))));
   if (!message.fields.length) return made;
   const row = (name, ...cells) => element("tr", {}, ...cells.map((cell) => element(name, {}, String(cell ?? ""))));
-  made.push(drawBits(message.fields), element("table", { className: "fields" }, row("th", "at", "bits", "name", "type", "unit", "formula"),
-    ...message.fields.map((one) => row("td", one.at, one.count ? `${one.count} x ${one.bits}` : one.bits, one.name, one.type, one.unit, one.formula))));
+  const typeOf = (one) => (one.enumeration ? `${one.type} ${one.enumeration}` : one.type);
+  made.push(...drawBits(message.fields), element("table", { className: "fields" }, row("th", "at", "bits", "name", "type", "repeated", "unit", "formula"),
+    ...message.fields.map((one) => row("td", one.at, one.bits, one.name, typeOf(one), repetition(one.repeated), one.unit, one.formula))));
   return made;
 }
 
+// `Channel: 8 times, every 11 bytes`
+function repetition(repeated) {
+  if (!repeated) return "";
+  const distance = repeated.stride % 8 ? count(repeated.stride, "bit") : count(repeated.stride / 8, "byte");
+  const times = /^[0-9]+$/.test(repeated.count) ? count(repeated.count, "time") : `count ${repeated.count || "not stated"}`;
+  return `${repeated.group ? `${repeated.group}: ` : ""}${times}${repeated.stride ? `, every ${distance}` : ""}`;
+}
+
 function drawBits(fields) {
-  const end = Math.min(Math.ceil(Math.max(...fields.map((one) => one.at + (one.size || 8))) / 8), 32);
+  const times = (one) => (one.repeated?.group && Number(one.repeated.count)) || 1; // the size of an array has all its elements
+  const total = Math.ceil(Math.max(...fields.map((one) => one.at + (one.size || 8) + (times(one) > 1 ? (times(one) - 1) * one.repeated.stride : 0))) / 8);
+  const end = Math.min(total, MOST_BYTES);
   const made = [];
   for (let byte = 0; byte < end; byte += 1) {
     made.push(element("span", { className: "byte" }, String(byte)));
     const isLsb = (state.node.bit_order || "lsb0") === "lsb0";
     for (let place = 0; place < 8;) {
       const bit = (at) => byte * 8 + (isLsb ? 7 - at : at);
-      const owner = (at) => fields.findIndex((one) => one.at <= bit(at) && bit(at) < one.at + one.size);
+      const covers = (one, at) => one.at <= at && (times(one) > 1 ? (at - one.at) % one.repeated.stride < one.size && (at - one.at) / one.repeated.stride < times(one) : at < one.at + one.size);
+      const owner = (at) => fields.findIndex((one) => covers(one, bit(at)));
       const first = owner(place);
       let width = 1;
       while (place + width < 8 && owner(place + width) === first) width += 1;
@@ -313,16 +377,27 @@ function drawBits(fields) {
       place += width;
     }
   }
-  return element("div", { className: "bits", role: "img", "aria-label": "layout of the bits" }, ...made);
+  const bits = element("div", { className: "bits", role: "img", "aria-label": "layout of the bits" }, ...made);
+  return end < total ? [bits, element("p", {}, `Bytes 0 to ${end - 1} of ${total} are drawn.`)] : [bits];
 }
 
 // --- actions
 
 byId("previous").onclick = () => show(number - 1);
 byId("next").onclick = () => show(number + 1);
-byId("make").onclick = () => send("/api/rule", { index: null, rule: { tables: { head: head() }, columns: Object.fromEntries(
-  table.titles.filter((title) => ["name", "type", "unit"].includes(title.toLowerCase())).map((title) => [title, title.toLowerCase()])),
-  ignore: table.titles.filter((title) => title && !["name", "type", "unit"].includes(title.toLowerCase())) } }).then(() => byId("rule").elements.namedItem("what").focus());
+// A rule to complete: columns whose headings are roles have them, the others are not used.
+function start(tables, behind) {
+  const titles = table.titles.filter(Boolean);
+  const isRole = (title) => ["name", "type", "unit"].includes(title.toLowerCase());
+  const keys = { tables, columns: Object.fromEntries(titles.filter(isRole).map((title) => [title, title.toLowerCase()])), ignore: titles.filter((title) => !isRole(title)) };
+  return send("/api/rule", { index: null, rule: keys, behind }).then(async (index) => {
+    await show(number, index);
+    byId("rule").elements.namedItem("what").focus();
+  });
+}
+
+byId("make").onclick = () => start({ head: head() }, null);
+byId("another").onclick = () => start(merged(state.rules[table.rules.at(-1)].keys).tables, table.rules.at(-1));
 byId("ignore").onclick = () => send("/api/rule", { index: null, rule: { tables: { head: head() }, what: "ignore" } });
 byId("remove").onclick = () => send("/api/rule", { index: ruleIndex(), rule: null });
 byId("apply").onclick = () => send("/api/rule-text", { index: ruleIndex(), text: byId("yaml").value });
@@ -338,13 +413,31 @@ byId("read").onclick = async () => {
     byId("read").disabled = false;
   }
 };
-byId("save").onclick = async () => {
-  const done = await send("/api/save", null);
+async function save(overwrite) {
+  const done = await send("/api/save", { overwrite });
   if (!done) return;
-  const checked = `icdgen check: ${done.check.length ? count(done.check.length, "finding") : "no findings"}`;
+  byId("conflict").hidden = !done.conflict;
+  byId("conflict-text").textContent = done.conflict || "";
+  if (done.conflict) { byId("saved").textContent = ""; return; }
+  checked = done.files.length > 1 ? done.check : null;
+  byId("checked").replaceChildren();
+  drawChecked();
+  const figure = `icdgen check: ${done.check.length ? count(done.check.length, "finding") : "no findings"}`;
   const rest = done.is_complete ? "" : "; the errors below are left";
-  byId("saved").textContent = `${done.files.join("; ")}; ${done.files.length > 1 ? checked : "no ICD yet"}${rest}`;
-};
+  byId("saved").textContent = `${done.files.join("; ")}; ${done.files.length > 1 ? figure : "no ICD yet"}${rest}`;
+}
+
+async function reload() {
+  document.activeElement?.blur?.();
+  await send("/api/reload", null);
+  if (byId("refused").childElementCount) return;
+  byId("conflict").hidden = true;
+  byId("saved").textContent = "The profile was read from its file; Undo restores the one of this page";
+}
+
+byId("save").onclick = () => save(false);
+byId("overwrite").onclick = () => save(true);
+byId("reload").onclick = byId("take-file").onclick = reload;
 byId("node").onchange = () => {
   const inputs = byId("node").elements;
   const node = { ...state.node };
@@ -382,8 +475,6 @@ document.onkeydown = (event) => {
 
 (async () => {
   state = await ask("/api/state");
-  byId("roles").replaceChildren(element("option", { value: NOT_USED }),
-    ...Object.entries(state.roles).map(([role, meaning]) => element("option", { value: role, label: `${role}: ${meaning}` })));
   if (state.tables.length) await show(1);
   else byId("title").textContent = "No table was found in the document.";
 })();

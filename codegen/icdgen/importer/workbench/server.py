@@ -60,13 +60,14 @@ def handler(session: Session) -> type[BaseHTTPRequestHandler]:
 
         def do_POST(self) -> None:
             actions: dict[str, Callable[[Any], Any]] = {
-                "/api/rule": lambda data: session.set_rule(data["index"], data["rule"]),
+                "/api/rule": lambda data: session.set_rule(data["index"], data["rule"], data.get("behind")),
                 "/api/rule-text": lambda data: session.set_rule(data["index"], rule_text.parse_rule(data["text"])),
                 "/api/node": lambda data: session.set_node(data),
                 "/api/undo": lambda data: session.undo(),
                 "/api/redo": lambda data: session.redo(),
                 "/api/read": lambda data: session.read_document(),
-                "/api/save": lambda data: session.save(),
+                "/api/save": lambda data: session.save(overwrite=bool(data and data.get("overwrite"))),
+                "/api/reload": lambda data: session.reload(),
             }
             action = actions.get(urlsplit(self.path).path)
             length = self.headers.get("Content-Length") or ""

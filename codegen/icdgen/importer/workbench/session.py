@@ -9,20 +9,24 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
-from icdgen.diagnostics import Findings
-from icdgen.errors import UserError
+from icdgen.errors import UserError, unreadable
 from icdgen.icd import source
 from icdgen.import_results import report, targets
 from icdgen.import_results.findings import ImportFinding
 from icdgen.importer import profile, run
 from icdgen.importer.document import Document, SourceTable
-from icdgen.importer.rules.language import ROLES
+from icdgen.importer.model import ReadMessage
+from icdgen.importer.rules.fields import Draft
+from icdgen.importer.rules.language import ROLES, ROLES_OF, normalised
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.selection import heading_rows, texts_of
 from icdgen.importer.source_tables import kinds, name_of
 from icdgen.importer.workbench import rule_text
+from icdgen.importer.workbench.valid_rules import read_profile
 
 Reader = Callable[[profile.Profile], tuple[Document, list[SourceTable]]]
+Version = tuple[str, list[dict[str, Any] | None]]
+"""Text of a profile, and the last valid form of each of its rules."""
 RESOLUTION = 100  # dots per inch of a page's picture
 
 
@@ -34,25 +38,29 @@ class Session:
     ) -> None:
         self.document, self.tables, self.path, self.out, self.reader = document, tables, path, out, reader
         self.lock = RLock()
-        self.text = path.read_text(encoding="utf-8") if path.exists() else rule_text.NEW
-        self.saved = self.text if path.exists() else ""
-        self.past: list[str] = []  # earlier texts of the profile, the latest last
-        self.future: list[str] = []  # texts that were undone
-        self.errors: list[dict[str, Any]] = []  # of the profile, which then is not applied
+        self.disk = self.read_disk()  # contents of the profile's file when it was read or written last
+        self.text = self.saved = _decoded(self.disk, path)
+        if self.disk is None:
+            self.text = rule_text.NEW
+        self.past: list[Version] = []  # earlier versions of the profile, the latest last
+        self.future: list[Version] = []  # versions that were undone
         self.pictures: dict[int, bytes] = {}
-        self.result: run.Result | None = None
-        self.trees: dict[str, dict[str, Any]] = {}
-        self.apply()
+        self.apply(self.text, [None] * len(rule_text.rules_of(self.text)))
 
-    def apply(self) -> None:
-        """Apply the rules to all tables. Findings of an invalid profile are shown with the last result."""
+    def apply(self, text: str, last_valid: list[dict[str, Any] | None]) -> None:
+        """Apply the rules of a text to all tables. Raises `Findings`, and changes nothing, for errors outside the rules."""
+        self.valid = read_profile(text, self.path.name, last_valid)
+        self.text = text
+        self.result, self.trees = run.apply_rules(self.document, self.tables, self.valid.words)
+
+    def read_disk(self) -> bytes | None:
+        """Return the contents of the profile's file; None if there is no file. Raises `UserError`."""
         try:
-            words = profile.of_tree(source.parse(self.text.encode("utf-8"), self.path.name))
-        except Findings as error:
-            self.errors = [{"message": f.message, "help": f.help, "line": f.place.line} for f in error.findings]
-            return
-        self.errors = []
-        self.result, self.trees = run.apply_rules(self.document, self.tables, words)
+            return self.path.read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise unreadable(self.path, error) from None
 
     # --- answers ---------------------------------------------------------------------------------------------------
 
@@ -60,7 +68,7 @@ class Session:
         """Everything but the contents of single tables."""
         with self.lock:
             rules = rule_text.rules_of(self.text)
-            import_findings = self.result.import_findings if self.result else []
+            import_findings = self.result.import_findings
             applied = self.rules_by_table()
             groups = kinds(self.tables)
             return {
@@ -69,11 +77,12 @@ class Session:
                 "is_saved": self.saved == self.text,
                 "node": self.node(),
                 "roles": ROLES,
+                "roles_of": {what: sorted(roles) for what, roles in ROLES_OF.items()},
                 "rules": [{"keys": rule, "text": rule_text.text_of_rule(rule)} for rule in rules],
                 "kinds": [{"titles": group[0].titles, "tables": [table.number for table in group]} for group in groups],
                 "tables": [self.summary(table, applied, import_findings) for table in self.tables],
                 "findings": [_finding(import_finding) for import_finding in import_findings],
-                "errors": self.errors,
+                "errors": [{"rule": index, "message": f.message, "help": f.help} for index, f in self.valid.errors],
                 "can_undo": bool(self.past),
                 "can_redo": bool(self.future),
                 "has_pictures": self.document.file.casefold().endswith(".pdf") and Path(self.document.file).exists(),
@@ -86,18 +95,12 @@ class Session:
 
     def rules_by_table(self) -> dict[int, list[int]]:
         """Number of a table -> the indices of the rules that apply to it."""
-        if self.result is None:
-            return {}
-        lines = [rule.place.line for rule in self.words_rules()]
+        # Several rules can stand in one line, so that places do not distinguish them.
+        index_of = {id(rule): index for rule, index in zip(self.valid.words.rules, self.valid.indices, strict=True)}
         return {
-            choice.table.number: [lines.index(rule.place.line) for rule in choice.rules if rule.place.line in lines]
+            choice.table.number: [index_of[id(rule)] for rule in choice.rules]
             for choice in self.result.interpretation.choices
         }
-
-    def words_rules(self) -> list[Any]:
-        """Return the rules as applied, in the order of the profile."""
-        assert self.result is not None
-        return self.result.interpretation.rules
 
     def summary(
         self, table: SourceTable, applied: dict[int, list[int]], import_findings: list[ImportFinding]
@@ -119,9 +122,16 @@ class Session:
 
     def parts(self, table: SourceTable) -> list[Part]:
         """Parts that rules read from a table."""
-        if self.result is None:
-            return []
         return [part for part in self.result.interpretation.parts if part.table.number == table.number]
+
+    def enumerations(self, part: Part) -> dict[str, str]:
+        """Name of a field of a message -> name of its enumeration in the ICD."""
+        messages = [
+            message
+            for _, message in self.result.survey.of(ReadMessage)
+            if message.name == part.name and message.table.number == part.table.number
+        ]
+        return {field.name: field.enum for message in messages for field in message.all_fields if field.enum}
 
     def table(self, number: int) -> dict[str, Any]:
         """A table with its cells, the texts around it and what rules read from it. Raises `KeyError`."""
@@ -129,8 +139,8 @@ class Session:
             if not 1 <= number <= len(self.tables):
                 raise KeyError(number)
             table = self.tables[number - 1]
-            import_findings = self.result.import_findings if self.result else []
-            choices = self.result.interpretation.choices if self.result else []
+            import_findings = self.result.import_findings
+            choices = self.result.interpretation.choices
             reasons = [(rule.name, reason) for c in choices if c.table.number == number for rule, reason in c.reasons]
             return {
                 "number": number, "title": table.title, "page": table.page, "caption": table.caption, "headings": table.headings,
@@ -138,7 +148,7 @@ class Session:
                 "boxes": [list(box) for box in table.boxes],
                 "rows": [[[cell.text, cell.columns, cell.rows] for cell in row.cells] for row in table.rows],
                 "rules": self.rules_by_table().get(number, []), "reasons": reasons,
-                "messages": [_message(part) for part in self.parts(table)],
+                "messages": [_message(part, self.enumerations(part)) for part in self.parts(table)],
                 "findings": [_finding(t) for t in import_findings if t.is_about_table(number - 1)],
             }  # fmt: skip
 
@@ -147,12 +157,11 @@ class Session:
 
         Without a rule, return the first row with several filled cells.
         """
-        if self.result is not None:
-            for choice in self.result.interpretation.choices:
-                if choice.table.number == table.number and choice.rules:
-                    head = heading_rows(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
-                    if head is not None and not choice.rules[-1].transpose:
-                        return head.start if head else -1
+        for choice in self.result.interpretation.choices:
+            if choice.table.number == table.number and choice.rules:
+                head = heading_rows(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
+                if head is not None and not choice.rules[-1].transpose:
+                    return head.start if head else -1
         return next((i for i, row in enumerate(table.rows) if sum(bool(c.text.strip()) for c in row.cells) > 1), 0)
 
     def picture(self, number: int) -> bytes:
@@ -164,23 +173,41 @@ class Session:
 
     # --- changes ---------------------------------------------------------------------------------------------------
 
-    def set_rule(self, index: int | None, rule: dict[str, Any] | None) -> None:
-        """Replace, add or remove a rule. Raises `Findings` if the profile is no YAML."""
+    def set_rule(self, index: int | None, rule: dict[str, Any] | None, behind: int | None = None) -> int | None:
+        """Replace, add or remove a rule, and return its index.
+
+        A rule that is added behind the rule ``behind`` reads the tables of that rule, too. Raises `Findings` if the
+        profile is no YAML.
+        """
         with self.lock:
-            self.change_text(rule_text.with_rule(self.text, index, rule))
+            text, last_valid = self.text, list(self.valid.last_valid)
+            if index is not None:
+                text = rule_text.with_rule(text, index, rule)
+                if rule is None:
+                    del last_valid[index]
+            else:
+                if behind is not None:
+                    text = rule_text.with_rule(text, behind, rule_text.rules_of(text)[behind] | {"also": True})
+                    if (before := last_valid[behind]) is not None:
+                        last_valid[behind] = before | {"also": True}
+                index = len(last_valid) if behind is None else behind + 1
+                text = rule_text.with_rule(text, None, rule, behind)
+                last_valid.insert(index, None)
+            self.change_text(text, last_valid)
+            return index if rule is not None else None
 
     def set_node(self, node: dict[str, Any]) -> None:
-        """Replace the `node:` section."""
+        """Replace the `node:` section. Raises `Findings`, and changes nothing, if it has errors."""
         with self.lock:
-            self.change_text(rule_text.with_node(self.text, node))
+            self.change_text(rule_text.with_node(self.text, node), self.valid.last_valid)
 
-    def change_text(self, text: str) -> None:
-        """Replace the text of the profile; `undo` brings the text before it back."""
-        if text != self.text:
-            self.past.append(self.text)
+    def change_text(self, text: str, last_valid: list[dict[str, Any] | None]) -> None:
+        """Replace the text of the profile; `undo` restores the text before it. Raises `Findings`."""
+        before = self.text, self.valid.last_valid
+        self.apply(text, last_valid)
+        if text != before[0]:
+            self.past.append(before)
             self.future.clear()
-            self.text = text
-        self.apply()
 
     def undo(self) -> None:
         """Take back the last change of the profile; without one, nothing happens."""
@@ -190,13 +217,12 @@ class Session:
         """Make the change again that was taken back last; without one, nothing happens."""
         self._restore(self.future, self.past)
 
-    def _restore(self, source: list[str], target: list[str]) -> None:
+    def _restore(self, source: list[Version], target: list[Version]) -> None:
         """Replace the text by the last one of ``source``, and append it to ``target``."""
         with self.lock:
             if source:
-                target.append(self.text)
-                self.text = source.pop()
-                self.apply()
+                target.append((self.text, self.valid.last_valid))
+                self.apply(*source.pop())
 
     def read_document(self) -> None:
         """Read the document again with the words of the profile, by which further tables may be found.
@@ -205,30 +231,58 @@ class Session:
         """
         with self.lock:
             if self.reader is not None:
-                words = profile.of_tree(source.parse(self.text.encode("utf-8"), self.path.name))
-                self.document, self.tables = self.reader(words)
-                self.apply()
+                self.document, self.tables = self.reader(self.valid.words)
+                self.apply(self.text, self.valid.last_valid)
 
-    def save(self) -> dict[str, Any]:
-        """Write the profile and the ICDs; return the files and the findings of `icdgen check`. Raises `UserError`."""
+    def reload(self) -> None:
+        """Replace the profile by its file; `undo` restores the profile before it.
+
+        Raises `Findings` or `UserError`, and changes nothing, if the file is not a valid profile.
+        """
+        with self.lock:
+            contents = self.read_disk()
+            if contents is None:
+                raise UserError(f"there is no file {self.path}", "save the profile, which writes the file")
+            text = _decoded(contents, self.path)
+            profile.of_tree(source.parse(contents, str(self.path)))
+            self.change_text(text, [None] * len(rule_text.rules_of(text)))
+            self.disk, self.saved = contents, text
+
+    def save(self, overwrite: bool = False) -> dict[str, Any]:
+        """Write the profile and the ICDs; return the files and the findings of `icdgen check`. Raises `UserError`.
+
+        If another program changed the profile's file, write nothing and return the ``conflict``, unless ``overwrite``.
+        """
         from icdgen.generation.write import replace
 
         with self.lock:
+            written = self.text.encode("utf-8")
+            if not overwrite and (contents := self.read_disk()) not in (self.disk, written):
+                change = "removed" if contents is None else "changed"
+                return {"conflict": f"{self.path} was {change} by another program; nothing is written"}
             try:
-                replace(Path(os.path.realpath(self.path)), self.text.encode("utf-8"))
+                replace(Path(os.path.realpath(self.path)), written)
             except OSError as error:
                 text = f"cannot write {self.path}: {error.strerror}"
                 raise UserError(text, "start the workbench with another --profile") from None
-            self.saved = self.text
+            self.disk, self.saved = written, self.text
             # A profile with errors is saved, so that no work is lost. Its last valid result must not become an ICD.
-            aimed = targets.prepare(self.trees, self.out, over=True) if self.trees and not self.errors else []
+            aimed = targets.prepare(self.trees, self.out, over=True) if self.trees and not self.valid.errors else []
             targets.write(aimed)
             checked = targets.check(aimed)
             return {
                 "files": [f"{self.path}: written", *report.files(aimed)],
                 "check": report.checked_as_json(checked),
-                "is_complete": bool(aimed) and self.result is not None and not self.result.failed,
+                "is_complete": bool(aimed) and not self.result.failed,
             }
+
+
+def _decoded(contents: bytes | None, path: Path) -> str:
+    """Return the text of a file, with line feeds only. Raises `UserError`."""
+    try:
+        return (contents or b"").decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError:
+        raise UserError(f"{path} is not UTF-8", "save it as UTF-8") from None
 
 
 def _finding(import_finding: ImportFinding) -> dict[str, Any]:
@@ -242,15 +296,29 @@ def _finding(import_finding: ImportFinding) -> dict[str, Any]:
     }
 
 
-def _message(part: Part) -> dict[str, Any]:
+def _message(part: Part, enumerations: dict[str, str]) -> dict[str, Any]:
     fields = [
-        {"at": draft.at, "bits": draft.bits, "count": draft.count, "name": draft.name, "type": draft.kind,
-         "unit": draft.described.unit, "formula": draft.described.formula, "size": draft.size,
-         "members": [[value, name] for value, name in draft.members],
-         "facts": {key: value for key, value in draft.facts.items() if key != "points"}}
+        {"at": draft.at, "bits": draft.bits, "name": draft.name, "type": draft.kind, "size": draft.size,
+         "unit": draft.described.unit, "formula": draft.described.formula,
+         "enumeration": enumerations.get(draft.name, ""), "repeated": _repetition(draft, part.drafts)}
         for draft in part.drafts
     ]  # fmt: skip
     return {"what": part.rule.what, "given": part.given, "fields": fields, "pairs": [list(pair) for pair in part.pairs]}
+
+
+def _repetition(draft: Draft, drafts: list[Draft]) -> dict[str, Any] | None:
+    """Return the group, the count and the stride in bits of a repeated field; None for a single field."""
+    roles = draft.roles
+    group = roles.get("group")
+    if not group:
+        count = draft.facts.get("count") or draft.count
+        return {"group": "", "count": count, "stride": draft.bits} if count else None
+    members = [other for other in drafts if normalised(other.roles.get("group")) == normalised(group)]
+    start, end = min(other.at for other in members), max(other.end for other in members)
+    counted = roles.get("counter") or ("rest" if roles.get("rest") else roles.get("count"))
+    count = int(counted) if counted.isdigit() else counted
+    # An element of a group is a struct, which has whole bytes.
+    return {"group": group, "count": count, "stride": (end - start + 7) // 8 * 8}
 
 
 def _render(path: Path, number: int) -> bytes:
