@@ -192,7 +192,7 @@ class _Rows:
             set=f"{stem}_set_{one.physical_name}" if one.is_scaled and one.is_settable else "",
             get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
             set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
-            has=names.has(one) if field.conditions else "",
+            has=names.has(one.message, one.name) if field.conditions else "",
             view=f"{stem}_{one.name}" if field.is_read_only else "",
             c_type=type_of(one) if field.is_read_only else "",
             special=[name for key, name in macros if key == "special"],
