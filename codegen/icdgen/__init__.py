@@ -1,3 +1,3 @@
 """icdgen: code, vectors and documentation from validated interface control documents (ICDs)."""
 
-__version__ = "0.3.0"
+__version__ = "0.4.0"
