@@ -31,7 +31,13 @@ from icdgen.render import Renderer
 BENCH = Path(__file__).parent
 CALLS = 100
 # Telemetry id -> instructions allowed for decode (length check included) and encode.
-LIMITS = {132: (155 // 2 + 5, 128 // 2), 190: (228 // 2 + 5, 195 // 2), 206: (187, 222), 207: (14, 17), 146: (10, 10)}
+LIMITS = {
+    132: (155 // 2 + 5, 128 // 2),
+    190: (228 // 2 + 5, 195 // 2),
+    206: (187, 222),
+    207: (14, 17),
+    146: (10, 10),
+}
 BYTES_PER_FIELD = 12
 
 PROGRAM = """\
@@ -53,7 +59,8 @@ void hand_encode_{id}(const {type} *m, uint8_t *b);
 icd_status_t decode_{id}({type} *m, const uint8_t *b, size_t n);
 icd_status_t encode_{id}(const {type} *m, uint8_t *b, size_t n);
 """
-# In a file of their own: a compiler that sees the calls would know the length and drop the check.
+# In a file of their own: a compiler that sees the calls would know the length and drop
+# the check.
 FUNCTIONS = """
 icd_status_t decode_{id}({type} *m, const uint8_t *b, size_t n) {{ return {stem}_decode(m, b, n); }}
 icd_status_t encode_{id}(const {type} *m, uint8_t *b, size_t n) {{ return {stem}_encode(m, b, n); }}
@@ -79,7 +86,10 @@ CALL = """\
 def messages() -> dict[int, MessageDescription]:
     """Return the measured messages by telemetry id."""
     icd = load([BENCH.parent / "icd"], check=False).icd
-    of_id = {message.model.telemetry_id: message for message in describe(icd).node("cubeacp").messages}
+    of_id = {
+        message.model.telemetry_id: message
+        for message in describe(icd).node("cubeacp").messages
+    }
     return {id: of_id[id] for id in LIMITS}
 
 
@@ -92,12 +102,18 @@ def generate(folder: Path) -> None:
 
 def functions_of(messages_by_id: dict[int, MessageDescription]) -> str:
     """Return a source file with a non-inline function for each generated function."""
-    values = ({"id": id, "stem": stem(m), "type": f"{stem(m)}_t"} for id, m in messages_by_id.items())
+    values = (
+        {"id": id, "stem": stem(m), "type": f"{stem(m)}_t"}
+        for id, m in messages_by_id.items()
+    )
     return '#include "cubeacp.h"\n' + "".join(FUNCTIONS.format(**v) for v in values)
 
 
 def instructions(
-    folder: Path, messages_by_id: dict[int, MessageDescription], compiler: str, option: str
+    folder: Path,
+    messages_by_id: dict[int, MessageDescription],
+    compiler: str,
+    option: str,
 ) -> dict[str, float]:
     """Return the instructions per call of each function."""
     values = [
@@ -107,14 +123,33 @@ def instructions(
     declarations = "".join(DECLARATIONS.format(**v) for v in values)
     calls = "".join(CALL.format(**v) for v in values)
     program, counts = folder / "bench", folder / "counts"
-    (folder / "bench.c").write_text(PROGRAM.format(declarations=declarations, calls=CALLS, calls_of_all=calls))
+    (folder / "bench.c").write_text(
+        PROGRAM.format(declarations=declarations, calls=CALLS, calls_of_all=calls)
+    )
     (folder / "generated.c").write_text(functions_of(messages_by_id))
     objects = []
     for source in (folder / "bench.c", folder / "generated.c", BENCH / "c_by_hand.c"):
         objects.append(folder / f"{source.stem}.o")
-        subprocess.run([compiler, "-std=c99", option, f"-I{folder}", "-c", source, "-o", objects[-1]], check=True)
+        subprocess.run(
+            [
+                compiler,
+                "-std=c99",
+                option,
+                f"-I{folder}",
+                "-c",
+                source,
+                "-o",
+                objects[-1],
+            ],
+            check=True,
+        )
     subprocess.run([compiler, *objects, "-o", program], check=True)
-    valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}", program]
+    valgrind = [
+        "valgrind",
+        "--tool=callgrind",
+        f"--callgrind-out-file={counts}",
+        program,
+    ]
     subprocess.run(valgrind, check=True, capture_output=True)
     annotate = ["callgrind_annotate", "--inclusive=yes", "--threshold=100", counts]
     text = subprocess.run(annotate, check=True, capture_output=True, text=True).stdout
@@ -122,7 +157,9 @@ def instructions(
     return {name: int(count.replace(",", "")) / CALLS for count, name in lines}
 
 
-def code_size(folder: Path, messages_by_id: dict[int, MessageDescription]) -> dict[int, tuple[int, int]] | None:
+def code_size(
+    folder: Path, messages_by_id: dict[int, MessageDescription]
+) -> dict[int, tuple[int, int]] | None:
     """Return the bytes of code for decode and encode on a Cortex-M4 with -Os, and the
     number of fields, by id.
     """
@@ -130,10 +167,25 @@ def code_size(folder: Path, messages_by_id: dict[int, MessageDescription]) -> di
         return None
     source, target = folder / "size.c", folder / "size.o"
     source.write_text(functions_of(messages_by_id))
-    options = ["-mcpu=cortex-m4", "-mthumb", "-Os", "-std=c99", f"-I{folder}", "-c", source, "-o", target]
+    options = [
+        "-mcpu=cortex-m4",
+        "-mthumb",
+        "-Os",
+        "-std=c99",
+        f"-I{folder}",
+        "-c",
+        source,
+        "-o",
+        target,
+    ]
     subprocess.run(["arm-none-eabi-gcc", *options], check=True)
-    table = subprocess.run(["arm-none-eabi-nm", "-S", target], check=True, capture_output=True, text=True).stdout
-    sizes = {name: int(size, 16) for size, name in re.findall(r"^\w+ (\w+) \w (\S+)$", table, re.M)}
+    table = subprocess.run(
+        ["arm-none-eabi-nm", "-S", target], check=True, capture_output=True, text=True
+    ).stdout
+    sizes = {
+        name: int(size, 16)
+        for size, name in re.findall(r"^\w+ (\w+) \w (\S+)$", table, re.M)
+    }
     return {
         id: (sizes[f"decode_{id}"] + sizes[f"encode_{id}"], len(message.fields))
         for id, message in messages_by_id.items()
@@ -141,7 +193,9 @@ def code_size(folder: Path, messages_by_id: dict[int, MessageDescription]) -> di
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--cc", default="gcc")
     parser.add_argument("--opt", default="-O2")
     parser.add_argument("--check", action="store_true")
@@ -153,7 +207,9 @@ def main() -> int:
         counts = instructions(folder, messages_by_id, options.cc, options.opt)
         sizes = code_size(folder, messages_by_id)
     missed = []
-    print("| frame | decode | by hand | ratio | encode | by hand | ratio | Cortex-M4 -Os, bytes a field |")
+    print(
+        "| frame | decode | by hand | ratio | encode | by hand | ratio | Cortex-M4 -Os, bytes a field |"
+    )
     print("|---|---|---|---|---|---|---|---|")
     for id, message in messages_by_id.items():
         cells = [f"{id} {message.model.name}"]
@@ -166,9 +222,13 @@ def main() -> int:
         print(f"| {' | '.join(cells)} |")
     if sizes:
         total, fields = (sum(column) for column in zip(*sizes.values(), strict=True))
-        print(f"\nCortex-M4: {total} bytes for {fields} fields, {total / fields:.1f} a field.")
+        print(
+            f"\nCortex-M4: {total} bytes for {fields} fields, {total / fields:.1f} a field."
+        )
         if total > BYTES_PER_FIELD * fields:
-            missed.append(f"Cortex-M4: {total / fields:.1f} bytes a field, {BYTES_PER_FIELD} allowed")
+            missed.append(
+                f"Cortex-M4: {total / fields:.1f} bytes a field, {BYTES_PER_FIELD} allowed"
+            )
     print("\n".join(missed), file=sys.stderr)
     return 1 if options.check and missed else 0
 

@@ -69,7 +69,11 @@ OUTPUT = {
         "icd_client_transfer(&acp.client, &bytes, &count, &read)",
         "(uintptr_t)bytes + count + read",
     ),
-    "can": ("icd_can_packet_t packet;", "icd_client_next_packet(&acp.client, &packet)", "packet.id + packet.data[0]"),
+    "can": (
+        "icd_can_packet_t packet;",
+        "icd_client_next_packet(&acp.client, &packet)",
+        "packet.id + packet.data[0]",
+    ),
 }
 INPUT = {
     "uart": "icd_client_received(&acp.client, 1, (const uint8_t *)port, *port, on_event, NULL)",
@@ -113,10 +117,28 @@ WAYS = {"header only": [], "ICDGEN_SHARED": ["-DICDGEN_SHARED"]}
 
 def text_bytes(cc: str, folder: Path, source: str, *options: str) -> int:
     """Return the bytes of code and constants of the object file of a source."""
-    flags = ["-std=c99", "-Os", *(["-mcpu=cortex-m4", "-mthumb"] if "arm" in cc else []), *options]
-    subprocess.run([cc, *flags, f"-I{folder}", "-c", str(folder / source), "-o", str(folder / "unit.o")], check=True)
+    flags = [
+        "-std=c99",
+        "-Os",
+        *(["-mcpu=cortex-m4", "-mthumb"] if "arm" in cc else []),
+        *options,
+    ]
+    subprocess.run(
+        [
+            cc,
+            *flags,
+            f"-I{folder}",
+            "-c",
+            str(folder / source),
+            "-o",
+            str(folder / "unit.o"),
+        ],
+        check=True,
+    )
     size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
-    output = subprocess.run([size, str(folder / "unit.o")], check=True, capture_output=True, text=True).stdout
+    output = subprocess.run(
+        [size, str(folder / "unit.o")], check=True, capture_output=True, text=True
+    ).stdout
     return int(output.splitlines()[1].split()[0])
 
 
@@ -126,36 +148,75 @@ def linked_bytes(cc: str, folder: Path, bus: str, *options: str) -> int:
     """
     declared, output, used = OUTPUT[bus]
     address = "1, " if bus == "can" else ""
-    text = PROGRAM.format(bus=bus, declared=declared, output=output, used=used, input=INPUT[bus], address=address)
+    text = PROGRAM.format(
+        bus=bus,
+        declared=declared,
+        output=output,
+        used=used,
+        input=INPUT[bus],
+        address=address,
+    )
     (folder / "program.c").write_text(text, encoding="utf-8")
-    flags = ["-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-DICDGEN_SHARED", f"-I{folder}", *options]
-    target = ["-mcpu=cortex-m4", "-mthumb", "-nostartfiles"] if "arm" in cc else ["-nostartfiles", "-static"]
-    sources = [str(folder / name) for name in ("program.c", "icdgen_wire.c", "cubeacp/link.c")]
+    flags = [
+        "-std=c99",
+        "-Os",
+        "-ffunction-sections",
+        "-fdata-sections",
+        "-DICDGEN_SHARED",
+        f"-I{folder}",
+        *options,
+    ]
+    target = (
+        ["-mcpu=cortex-m4", "-mthumb", "-nostartfiles"]
+        if "arm" in cc
+        else ["-nostartfiles", "-static"]
+    )
+    sources = [
+        str(folder / name) for name in ("program.c", "icdgen_wire.c", "cubeacp/link.c")
+    ]
     out = str(folder / "program.elf")
-    subprocess.run([cc, *flags, *target, "-Wl,--gc-sections,-e,program", *sources, "-o", out], check=True)
+    subprocess.run(
+        [cc, *flags, *target, "-Wl,--gc-sections,-e,program", *sources, "-o", out],
+        check=True,
+    )
     size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
-    size_output = subprocess.run([size, out], check=True, capture_output=True, text=True).stdout
+    size_output = subprocess.run(
+        [size, out], check=True, capture_output=True, text=True
+    ).stdout
     return int(size_output.splitlines()[1].split()[0])
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--cc", default="arm-none-eabi-gcc")
     cc = parser.parse_args().cc
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for path, text in CBackend().files(load([BENCH.parent / "icd"], check=False).icd, Renderer("c")):
+        for path, text in CBackend().files(
+            load([BENCH.parent / "icd"], check=False).icd, Renderer("c")
+        ):
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_text(text, encoding="utf-8")
         (folder / "unit.c").write_text(UNIT, encoding="utf-8")
         for way, options in WAYS.items():
-            print(f"a unit with a client, {way}: {text_bytes(cc, folder, 'unit.c', *options)} bytes")
+            print(
+                f"a unit with a client, {way}: {text_bytes(cc, folder, 'unit.c', *options)} bytes"
+            )
         for source in ("icdgen_wire.c", "cubeacp/link.c"):
             if (folder / source).exists():
                 print(f"{source}, once: {text_bytes(cc, folder, source)} bytes")
         for bus in OUTPUT:
-            for options in ((), ("-DICDGEN_NO_TABLES",), CHOSEN, ("-DICDGEN_NO_TABLES", *CHOSEN)):
-                print(f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes")
+            for options in (
+                (),
+                ("-DICDGEN_NO_TABLES",),
+                CHOSEN,
+                ("-DICDGEN_NO_TABLES", *CHOSEN),
+            ):
+                print(
+                    f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes"
+                )
 
 
 if __name__ == "__main__":

@@ -20,7 +20,8 @@ import tempfile
 from pathlib import Path
 
 _OF_ID = re.compile(
-    r'^(\s*(?:BO_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|CM_ (?:BO_|SG_)|BA_ "\w+" (?:BO_|SG_)) )(\d+)', re.MULTILINE
+    r'^(\s*(?:BO_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|CM_ (?:BO_|SG_)|BA_ "\w+" (?:BO_|SG_)) )(\d+)',
+    re.MULTILINE,
 )
 _NAME = re.compile(r"^(\s*BO_ \d+ \w+?)(?=\s*:)", re.MULTILINE)
 _EXTENDED = 1 << 31
@@ -33,7 +34,9 @@ def enlarged(text: str, times: int) -> str:
         high = _EXTENDED | number << 24
         repeated = _OF_ID.sub(lambda match, high=high: f"{match[1]}{high | int(match[2]) & 0xFFFFFF}", text)  # type: ignore[misc]
         lines = _NAME.sub(rf"\g<1>_{number}", repeated).split("\n")
-        parts.append("\n".join(line for line in lines if re.match(r"\s*(BO_|SG_|VAL_) ", line)))
+        parts.append(
+            "\n".join(line for line in lines if re.match(r"\s*(BO_|SG_|VAL_) ", line))
+        )
     return "\n\n".join(parts)
 
 
@@ -44,7 +47,9 @@ def measured(*words: object) -> str:
     """
     environment = {**os.environ, "ICDGEN_CACHE": "off"}
     command = [sys.executable, "-m", "icdgen", *map(str, words)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment
+    )
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode not in (0, 1):
@@ -53,7 +58,9 @@ def measured(*words: object) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("files", type=Path, nargs="+")
     parser.add_argument("--times", type=int, nargs="+", default=[1])
     options = parser.parse_args()
@@ -63,7 +70,10 @@ def main() -> None:
                 file = path
                 if times > 1:
                     file = Path(folder, path.name)
-                    file.write_text(enlarged(path.read_text(encoding="latin-1"), times), encoding="latin-1")
+                    file.write_text(
+                        enlarged(path.read_text(encoding="latin-1"), times),
+                        encoding="latin-1",
+                    )
                 read = measured("import", file, "--out", f"{folder}/icd")
                 texts = (
                     "\n" + path_of_icd.read_text().partition("\nmessages:\n")[2]
@@ -71,8 +81,12 @@ def main() -> None:
                 )
                 messages = sum(text.count("\n  - name: ") for text in texts)
                 print(f"{path.name} x{times}: import {read}", end="", flush=True)
-                print(f"; check {measured('check', f'{folder}/icd')}", end="", flush=True)
-                generated = measured("--lang", "c", "--out", f"{folder}/c", f"{folder}/icd")
+                print(
+                    f"; check {measured('check', f'{folder}/icd')}", end="", flush=True
+                )
+                generated = measured(
+                    "--lang", "c", "--out", f"{folder}/c", f"{folder}/icd"
+                )
                 print(f"; C {generated}; {messages} messages held", flush=True)
 
 

@@ -66,10 +66,18 @@ def main() -> None:
         say("load both", max(runs // 4, 3), lambda: inputs.sides([older, "icd"], []))
         for name, (first, second) in pairs.items():
             number = len(report.make(first, second).changes)
-            say(f"compare {name} ({number} changes)", runs, partial(report.make, first, second))
+            say(
+                f"compare {name} ({number} changes)",
+                runs,
+                partial(report.make, first, second),
+            )
         comparison = report.make(old, new)
         for form in reports.FORMATS:
-            say(f"report of an older release as {form}", runs, partial(reports.get(form), comparison))
+            say(
+                f"report of an older release as {form}",
+                runs,
+                partial(reports.get(form), comparison),
+            )
 
 
 if __name__ == "__main__":

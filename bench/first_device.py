@@ -28,7 +28,9 @@ def main() -> None:
     print("| step | median, s | least, s | of the processor, s |\n|---|---|---|---|")
     for name in runs[0]:
         waited, busy = zip(*(run[name] for run in runs), strict=True)
-        print(f"| {name} | {statistics.median(waited):.2f} | {min(waited):.2f} | {statistics.median(busy):.2f} |")
+        print(
+            f"| {name} | {statistics.median(waited):.2f} | {min(waited):.2f} | {statistics.median(busy):.2f} |"
+        )
 
 
 Times = tuple[float, float]
@@ -38,7 +40,9 @@ def run_all_steps() -> dict[str, Times]:
     """Run all steps with an empty cache, and return their times."""
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "ICDGEN_CACHE": os.path.join(folder, ".cache")}
-        run = partial(subprocess.run, cwd=folder, env=env, check=True, stdout=subprocess.DEVNULL)
+        run = partial(
+            subprocess.run, cwd=folder, env=env, check=True, stdout=subprocess.DEVNULL
+        )
         times = {
             "icdgen init battery": timed(lambda: run([*ICDGEN, "init", "battery"])),
             "icdgen check": timed(lambda: run([*ICDGEN, "check"])),
@@ -46,7 +50,11 @@ def run_all_steps() -> dict[str, Times]:
         }
         begin, before = time.perf_counter(), processor()
         simulator = subprocess.Popen(
-            [*ICDGEN, "sim", "--tcp", "0"], cwd=folder, env=env, stdout=subprocess.PIPE, text=True
+            [*ICDGEN, "sim", "--tcp", "0"],
+            cwd=folder,
+            env=env,
+            stdout=subprocess.PIPE,
+            text=True,
         )
         try:
             assert simulator.stdout is not None
@@ -60,7 +68,12 @@ def run_all_steps() -> dict[str, Times]:
         monitor = times.pop(MONITOR)
         times["icdgen sim listens"] = listens, processor() - before - monitor[1]
         times[MONITOR] = monitor
-        return times | {"all": (sum(wall for wall, _ in times.values()), sum(busy for _, busy in times.values()))}
+        return times | {
+            "all": (
+                sum(wall for wall, _ in times.values()),
+                sum(busy for _, busy in times.values()),
+            )
+        }
 
 
 def timed(call: Callable[[], object]) -> Times:

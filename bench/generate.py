@@ -38,14 +38,19 @@ def seconds(line: list[str], environment: dict[str, str]) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--runs", type=int, default=21)
     parser.add_argument("--lang", action="append")
     options = parser.parse_args()
     languages = options.lang or ["c"]
     with tempfile.TemporaryDirectory() as folder:
         numbers, empty = count(1), Path(folder, "empty")
-        environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(folder, "pycache"))}
+        environment = {
+            **os.environ,
+            "PYTHONPYCACHEPREFIX": str(Path(folder, "pycache")),
+        }
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         forgetting = {**environment, "ICDGEN_CACHE": str(empty)}
         remembering = {**environment, "ICDGEN_CACHE": str(Path(folder, "cache"))}
@@ -59,8 +64,16 @@ def main() -> None:
         bare = [sys.executable, "-c", "pass"]
         rows: list[tuple[str, Callable[[], list[str]], dict[str, str]]] = [
             ("python -c pass", lambda: bare, environment),
-            ("nothing remembered, all files written", lambda: into(next(numbers)), forgetting),
-            ("ICDs validated before, all files written", lambda: into(next(numbers)), remembering),
+            (
+                "nothing remembered, all files written",
+                lambda: into(next(numbers)),
+                forgetting,
+            ),
+            (
+                "ICDs validated before, all files written",
+                lambda: into(next(numbers)),
+                remembering,
+            ),
             ("nothing to do", lambda: into(0), remembering),
         ]
         times: dict[str, list[float]] = {title: [] for title, _, _ in rows}
@@ -74,8 +87,12 @@ def main() -> None:
             f"| {'+'.join(languages)}, {options.runs} runs | median, s | least, s | times bare Python |\n|---|---|---|---|"
         )
         for title, all_spent in times.items():
-            least, times_bare = min(all_spent), min(all_spent) / min(times["python -c pass"])
-            print(f"| {title} | {statistics.median(all_spent):.3f} | {least:.3f} | {times_bare:.1f} |")
+            least, times_bare = min(all_spent), min(all_spent) / min(
+                times["python -c pass"]
+            )
+            print(
+                f"| {title} | {statistics.median(all_spent):.3f} | {least:.3f} | {times_bare:.1f} |"
+            )
 
 
 if __name__ == "__main__":

@@ -39,7 +39,11 @@ def arguments(command: str, icd: Path, out: Path) -> list[str]:
 
 def measure(line: list[str]) -> tuple[float, float]:
     """Return the processor time of a command in seconds, and its maximum memory in MB."""
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name != "PYTHONDONTWRITEBYTECODE"
+    }
     with subprocess.Popen(line, stdout=subprocess.DEVNULL, env=environment) as process:
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -51,28 +55,43 @@ def row(title: str, icd: Path, folder: Path) -> None:
     """Print a row of the table: all commands for an ICD."""
     cells = []
     for command in COMMANDS:
-        seconds, megabytes = measure(arguments(command, icd, folder / f"{command}{time.monotonic_ns()}"))
+        seconds, megabytes = measure(
+            arguments(command, icd, folder / f"{command}{time.monotonic_ns()}")
+        )
         cells.append(f"{seconds:.2f} s, {megabytes:.0f} MB")
     print(f"| {title} | {' | '.join(cells)} |", flush=True)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--fields", type=int, nargs="*", default=[1000, 10000, 100000])
     parser.add_argument("--up-to", type=int, nargs="*", default=[64, 256, 1024])
     options = parser.parse_args()
     os.environ["ICDGEN_CACHE"] = "off"
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top)
-        measure(arguments("site", UBLOX, folder / "first"))  # Python caches its compiled modules
+        measure(
+            arguments("site", UBLOX, folder / "first")
+        )  # Python caches its compiled modules
         print(f"| | {' | '.join(COMMANDS)} |\n|{'---|' * (len(COMMANDS) + 1)}")
         for fields in options.fields:
-            row(f"{fields:,} fields", write(folder / f"fields{fields}", fields, newer=False), folder)
+            row(
+                f"{fields:,} fields",
+                write(folder / f"fields{fields}", fields, newer=False),
+                folder,
+            )
         text = UBLOX.read_text(encoding="utf-8")
         for most in options.up_to:
             icd = folder / f"up_to_{most}.yaml"
             wide = text.replace("bits: 8, name: numSvs", "bits: 16, name: numSvs")
-            icd.write_text(wide.replace("count: numSvs, up_to: 64", f"count: numSvs, up_to: {most}"), encoding="utf-8")
+            icd.write_text(
+                wide.replace(
+                    "count: numSvs, up_to: 64", f"count: numSvs, up_to: {most}"
+                ),
+                encoding="utf-8",
+            )
             row(f"up_to {most:,}", icd, folder)
 
 

@@ -29,11 +29,15 @@ STAGES = {
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("manual", type=Path)
     parser.add_argument("--profile")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--where", action="store_true", help="where the time goes, in one process")
+    parser.add_argument(
+        "--where", action="store_true", help="where the time goes, in one process"
+    )
     options = parser.parse_args()
     if options.where:
         measure_stages(options.manual, options.profile)
@@ -47,17 +51,34 @@ def measure_command(manual: Path, profile: str | None, jobs: int) -> None:
     """
     with tempfile.TemporaryDirectory() as folder:
         words = ["--profile", profile] if profile else []
-        command = [sys.executable, "-m", "icdgen", "import", str(manual), *words, "--out", folder, "--jobs", str(jobs)]
+        command = [
+            sys.executable,
+            "-m",
+            "icdgen",
+            "import",
+            str(manual),
+            *words,
+            "--out",
+            folder,
+            "--jobs",
+            str(jobs),
+        ]
         start = time.perf_counter()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         together = 0
         while process.poll() is None:
-            together = max(together, sum(_resident(pid) for pid in _family(process.pid)))
+            together = max(
+                together, sum(_resident(pid) for pid in _family(process.pid))
+            )
             time.sleep(0.1)
         wall = time.perf_counter() - start
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"{jobs} processes: {wall:.1f} s wall, {usage.ru_utime + usage.ru_stime:.1f} s processor")
-    print(f"largest process {usage.ru_maxrss / 1024:.0f} MB, all together {together / 2**20:.0f} MB")
+    print(
+        f"{jobs} processes: {wall:.1f} s wall, {usage.ru_utime + usage.ru_stime:.1f} s processor"
+    )
+    print(
+        f"largest process {usage.ru_maxrss / 1024:.0f} MB, all together {together / 2**20:.0f} MB"
+    )
 
 
 def _family(pid: int) -> list[int]:
@@ -66,12 +87,17 @@ def _family(pid: int) -> list[int]:
         children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     except OSError:
         return [pid]
-    return [pid, *(descendant for child in children for descendant in _family(int(child)))]
+    return [
+        pid,
+        *(descendant for child in children for descendant in _family(int(child))),
+    ]
 
 
 def _resident(pid: int) -> int:
     try:
-        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf(
+            "SC_PAGE_SIZE"
+        )
     except (OSError, IndexError):
         return 0
 
@@ -90,7 +116,10 @@ def measure_stages(manual: Path, profile: str | None) -> None:
         emit.text(tree)
     profiler.disable()
     statistics = pstats.Stats(profiler)
-    time_by_function = {(os.path.basename(file), name): row[3] for (file, _, name), row in statistics.stats.items()}
+    time_by_function = {
+        (os.path.basename(file), name): row[3]
+        for (file, _, name), row in statistics.stats.items()
+    }
     for stage, key in STAGES.items():
         print(f"{time_by_function.get(key, 0.0) / statistics.total_tt:6.1%}  {stage}")
 

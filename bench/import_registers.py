@@ -22,7 +22,9 @@ PARTS = ("pdfminer", "tables")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("pdf", type=Path, nargs="?")
     parser.add_argument("--pages", type=int, default=110)
     parser.add_argument("--jobs", type=int, default=2)
@@ -36,8 +38,20 @@ def main() -> None:
         seconds = {}
         # Separate processes, so that no part finds modules loaded by another
         for part in PARTS:
-            command = [sys.executable, __file__, str(pdf), "--part", part, "--jobs", str(options.jobs)]
-            seconds[part] = float(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+            command = [
+                sys.executable,
+                __file__,
+                str(pdf),
+                "--part",
+                part,
+                "--jobs",
+                str(options.jobs),
+            ]
+            seconds[part] = float(
+                subprocess.run(
+                    command, capture_output=True, text=True, check=True
+                ).stdout
+            )
             print(f"{part}: {seconds[part]:.1f} s of processor time")
     print(f"ratio: {seconds['tables'] / seconds['pdfminer']:.2f}")
 
@@ -53,7 +67,10 @@ def measure(pdf: Path, part: str, jobs: int) -> None:
         from icdgen.importer import profile, sources
 
         sources.read(pdf, profile.load(), jobs=jobs)
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    used = [
+        resource.getrusage(who)
+        for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    ]
     print(sum(usage.ru_utime + usage.ru_stime for usage in used))
 
 
@@ -64,18 +81,37 @@ def draw(path: Path, pages: int) -> Path:
     from reportlab.platypus import PageBreak, Paragraph, SimpleDocTemplate, Table
 
     style = getSampleStyleSheet()
-    grid = [("GRID", (0, 0), (-1, -1), 0.5, colors.black), ("FONTSIZE", (0, 0), (-1, -1), 7)]
-    text = "The register is written over the serial interface; the value is taken over with the next sample. " * 6
+    grid = [
+        ("GRID", (0, 0), (-1, -1), 0.5, colors.black),
+        ("FONTSIZE", (0, 0), (-1, -1), 7),
+    ]
+    text = (
+        "The register is written over the serial interface; the value is taken over with the next sample. "
+        * 6
+    )
     story: list[object] = []
     for page in range(pages):
-        registers = [["Addr", "Name", "Access", *(str(bit) for bit in range(7, -1, -1))]]
+        registers = [
+            ["Addr", "Name", "Access", *(str(bit) for bit in range(7, -1, -1))]
+        ]
         registers += [
-            [f"0x{16 * page + row & 0xFFF:03X}", f"REG_{page}_{row}", "RW", *(f"b{bit}" for bit in range(8))]
+            [
+                f"0x{16 * page + row & 0xFFF:03X}",
+                f"REG_{page}_{row}",
+                "RW",
+                *(f"b{bit}" for bit in range(8)),
+            ]
             for row in range(12)
         ]
         bits = [["Bit", "Name", "Reset", "Access", "Description"]]
-        bits += [[f"{bit}", f"FLAG_{bit}", "0", "RW", "Enables the output of the block"] for bit in range(7, -1, -1)]
-        story += [Paragraph(f"{page + 1} Block {page}", style["Heading2"]), Paragraph(text, style["BodyText"])]
+        bits += [
+            [f"{bit}", f"FLAG_{bit}", "0", "RW", "Enables the output of the block"]
+            for bit in range(7, -1, -1)
+        ]
+        story += [
+            Paragraph(f"{page + 1} Block {page}", style["Heading2"]),
+            Paragraph(text, style["BodyText"]),
+        ]
         story += [
             Table(registers, style=grid),
             Paragraph(text, style["BodyText"]),

@@ -46,10 +46,15 @@ def write(folder: Path, fields: int, newer: bool, every: str | None = None) -> P
     messages = fields // PER_MESSAGE
     for node in range((messages + PER_NODE - 1) // PER_NODE):
         here = range(node * PER_NODE, min(messages, (node + 1) * PER_NODE))
-        text = _HEAD % f"node{node}" + "".join(_message(number, node, newer) for number in here)
+        text = _HEAD % f"node{node}" + "".join(
+            _message(number, node, newer) for number in here
+        )
         if newer:
             text = text.replace(
-                *{"factor": ("raw*0.01", "raw*0.03"), "name": ("Sensor Data", "Reading")}.get(every, ("", ""))
+                *{
+                    "factor": ("raw*0.01", "raw*0.03"),
+                    "name": ("Sensor Data", "Reading"),
+                }.get(every, ("", ""))
             )
         (folder / f"node{node}.yaml").write_text(text, encoding="utf-8")
     return folder
@@ -62,7 +67,11 @@ def _message(number: int, node: int, newer: bool) -> str:
     lines += [f"    length: {2 * PER_MESSAGE}", "    fields:"]
     for index in range(PER_MESSAGE):
         changed = newer and number % 3 == 0 and index == number % PER_MESSAGE
-        field = f"Renamed Value {index}" if changed and number % 2 else f"Channel {index} of {number}"
+        field = (
+            f"Renamed Value {index}"
+            if changed and number % 2
+            else f"Channel {index} of {number}"
+        )
         factor = "0.02" if changed and not number % 2 else "0.01"
         lines.append(
             f"      - {{at: {16 * index}, bits: 16, name: {field}, type: int, unit: C, formula: raw*{factor}}}"
@@ -81,10 +90,17 @@ def command_seconds(*words: object) -> float:
 
     Python caches its compiled modules, as it does for a user.
     """
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name != "PYTHONDONTWRITEBYTECODE"
+    }
     start = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(
-        [sys.executable, "-m", "icdgen", *map(str, words)], stdout=subprocess.DEVNULL, env=environment, check=True
+        [sys.executable, "-m", "icdgen", *map(str, words)],
+        stdout=subprocess.DEVNULL,
+        env=environment,
+        check=True,
     )
     end = resource.getrusage(resource.RUSAGE_CHILDREN)
     return end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime
@@ -95,9 +111,13 @@ def _compare(sides: list[Side], results: list[report.Report]) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--fields", type=int, nargs="+", default=[3000, 10000, 30000])
-    parser.add_argument("--every", choices=["factor", "name"], help="change this everywhere")
+    parser.add_argument(
+        "--every", choices=["factor", "name"], help="change this everywhere"
+    )
     parser.add_argument("--runs", type=int, default=1)
     parser.add_argument("--command", action="store_true")
     parser.add_argument("--diff", action="store_true")
@@ -110,22 +130,40 @@ def main() -> None:
         for fields in options.fields:
             gc.collect()
             folders = [
-                write(Path(top, f"{name}{fields}"), fields, name == "new", options.every) for name in ("old", "new")
+                write(
+                    Path(top, f"{name}{fields}"), fields, name == "new", options.every
+                )
+                for name in ("old", "new")
             ]
             if options.command or everything:
-                spent = min(command_seconds("diff", *folders) for _ in range(options.runs))
+                spent = min(
+                    command_seconds("diff", *folders) for _ in range(options.runs)
+                )
                 print(f"icdgen diff, {fields} fields: {spent:.2f} s", flush=True)
             if not (options.diff or options.vectors or everything):
                 continue
-            sides = [Side(folder.name, load([folder], check=False).icd) for folder in folders]
+            sides = [
+                Side(folder.name, load([folder], check=False).icd) for folder in folders
+            ]
             if options.diff or everything:
                 results: list[report.Report] = []
-                spent = min(seconds(partial(_compare, sides, results)) for _ in range(options.runs))
-                print(f"diff, {fields} fields: {spent:.2f} s, {len(results[0].changes)} changes", flush=True)
+                spent = min(
+                    seconds(partial(_compare, sides, results))
+                    for _ in range(options.runs)
+                )
+                print(
+                    f"diff, {fields} fields: {spent:.2f} s, {len(results[0].changes)} changes",
+                    flush=True,
+                )
             if options.vectors or everything:
                 icd = sides[0].icd
-                spent = seconds(lambda icd=icd: [text(make(icd, node)) for node in icd.nodes])
-                print(f"vectors, {fields} fields: {spent:.2f} s, {spent / fields * 1e3:.2f} ms a field", flush=True)
+                spent = seconds(
+                    lambda icd=icd: [text(make(icd, node)) for node in icd.nodes]
+                )
+                print(
+                    f"vectors, {fields} fields: {spent:.2f} s, {spent / fields * 1e3:.2f} ms a field",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

@@ -101,9 +101,13 @@ fn main() {{
 def frame_of(count: int) -> bytes:
     """Return a frame with valid systems, equal in every run."""
     source = random.Random(count)
-    systems = [bytes([source.randrange(8)]) + source.randbytes(7) + source.randbytes(3) + b"\3" for _ in range(count)]
+    systems = [
+        bytes([source.randrange(8)]) + source.randbytes(7) + source.randbytes(3) + b"\3"
+        for _ in range(count)
+    ]
     flags = [
-        satellite[:9] + bytes([satellite[9] & 0x7F]) + satellite[10:] for satellite in systems
+        satellite[:9] + bytes([satellite[9] & 0x7F]) + satellite[10:]
+        for satellite in systems
     ]  # a bit is reserved
     return struct.pack("<IBBxx", 123456789, 1, count) + b"".join(flags)
 
@@ -125,10 +129,18 @@ def c(folder: Path, frame: bytes) -> dict[str, float]:
     objects = []
     for file in (folder / "main.c", folder / "ours.c", BENCH / "nav_sat_by_hand.c"):
         objects.append(folder / f"{file.stem}.o")
-        subprocess.run(["gcc", "-std=c99", "-O2", f"-I{source}", "-c", file, "-o", objects[-1]], check=True)
+        subprocess.run(
+            ["gcc", "-std=c99", "-O2", f"-I{source}", "-c", file, "-o", objects[-1]],
+            check=True,
+        )
     subprocess.run(["gcc", *objects, "-o", folder / "bench"], check=True)
     out = folder / "counts"
-    valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", folder / "bench"]
+    valgrind = [
+        "valgrind",
+        "--tool=callgrind",
+        f"--callgrind-out-file={out}",
+        folder / "bench",
+    ]
     subprocess.run(valgrind, check=True, capture_output=True)
     annotate = ["callgrind_annotate", "--inclusive=yes", "--threshold=100", out]
     text = subprocess.run(annotate, check=True, capture_output=True, text=True).stdout
@@ -142,11 +154,21 @@ def rust(folder: Path, frame: bytes) -> dict[str, float]:
     home = folder / "program"
     (home / "src").mkdir(parents=True)
     by_hand = (BENCH / "nav_sat_by_hand.rs").resolve()
-    text = RUST_MAIN.format(by_hand=by_hand, frame="_u8, ".join(map(str, frame)), calls=CALLS)
+    text = RUST_MAIN.format(
+        by_hand=by_hand, frame="_u8, ".join(map(str, frame)), calls=CALLS
+    )
     (home / "src" / "main.rs").write_text(text, encoding="utf-8")
     (home / "Cargo.toml").write_text(MANIFEST.format(opt=3), encoding="utf-8")
     target = Path(os.environ.get("CARGO_TARGET_DIR", folder / "target"))
-    command = ["cargo", "build", "--quiet", "--offline", "--release", "--target-dir", str(target)]
+    command = [
+        "cargo",
+        "build",
+        "--quiet",
+        "--offline",
+        "--release",
+        "--target-dir",
+        str(target),
+    ]
     subprocess.run(command, cwd=home, check=True)
     return counts(target / "release" / "bench", folder)
 
@@ -162,7 +184,9 @@ class Satellite:
     )  # fmt: skip
 
     def __init__(self, fields: tuple[int, ...]) -> None:
-        self.gnss_id, self.sv_id, self.cno, self.elev, self.azim, self.pr_res, flags = fields
+        self.gnss_id, self.sv_id, self.cno, self.elev, self.azim, self.pr_res, flags = (
+            fields
+        )
         self.quality_ind = flags & 7
         self.sv_used = bool(flags >> 3 & 1)
         self.health = flags >> 4 & 3
@@ -190,7 +214,11 @@ def by_hand(frame: bytes) -> tuple[int, int, list[Satellite]]:
     time, version, count = struct.unpack_from("<IBB", frame)
     if len(frame) != 8 + 12 * count:
         raise ValueError("length")
-    return time, version, [Satellite(fields) for fields in struct.iter_unpack("<BBBbhhI", frame[8:])]
+    return (
+        time,
+        version,
+        [Satellite(fields) for fields in struct.iter_unpack("<BBBbhhI", frame[8:])],
+    )
 
 
 def python(folder: Path, frame: bytes, rounds: int) -> dict[str, list[float]]:
@@ -206,25 +234,45 @@ def python(folder: Path, frame: bytes, rounds: int) -> dict[str, list[float]]:
         calls["pyubx2"] = lambda frame: UBXMessage(b"\x01", b"\x35", GET, payload=frame)
     read = cls.from_bytes(frame)
     expected = [
-        (satellite.sv_id, satellite.azim, satellite.quality_ind, satellite.has_corr_used)
+        (
+            satellite.sv_id,
+            satellite.azim,
+            satellite.quality_ind,
+            satellite.has_corr_used,
+        )
         for satellite in read.satellites
     ]
     assert expected == [
-        (satellite.sv_id, satellite.azim, satellite.quality_ind, satellite.has_corr_used)
+        (
+            satellite.sv_id,
+            satellite.azim,
+            satellite.quality_ind,
+            satellite.has_corr_used,
+        )
         for satellite in by_hand(frame)[2]
     ]
     if "Kaitai" in calls:
         assert expected == [
-            (satellite.sv_id, satellite.azim, satellite.quality_ind, satellite.has_corr_used)
+            (
+                satellite.sv_id,
+                satellite.azim,
+                satellite.quality_ind,
+                satellite.has_corr_used,
+            )
             for satellite in calls["Kaitai"](frame).satellites
         ]
-    timers = {name: Timer("call(frame)", globals={"call": call, "frame": frame}) for name, call in calls.items()}
+    timers = {
+        name: Timer("call(frame)", globals={"call": call, "frame": frame})
+        for name, call in calls.items()
+    }
     timers["ours, encode"] = Timer("call()", globals={"call": read.to_bytes})
     return in_turn(timers, rounds)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rounds", type=int, default=40)
     options = parser.parse_args()
     frame = frame_of(SATELLITES)
@@ -234,13 +282,18 @@ def main() -> None:
         in_rust = rust(folder, frame)
         times = python(folder, frame, options.rounds)
     print("| instructions | generated | by hand | ratio |\n|---|---|---|---|")
-    rows = {f"C, {what}": (counted[f"ours_{what}"], counted[f"hand_{what}"]) for what in ("decode", "encode")}
+    rows = {
+        f"C, {what}": (counted[f"ours_{what}"], counted[f"hand_{what}"])
+        for what in ("decode", "encode")
+    }
     rows["Rust, decode"] = in_rust["generated_1"], in_rust["by_hand_1"]
     for name, (ours, theirs) in rows.items():
         print(f"| {name} | {ours:.0f} | {theirs:.0f} | {ours / theirs:.2f} |")
     print("\n| Python | us | times generated decoding |\n|---|---|---|")
     for name, seconds in times.items():
-        print(f"| {name} | {sorted(seconds)[len(seconds) // 2] * 1e6:.1f} | {ratio(seconds, times['ours']):.2f} |")
+        print(
+            f"| {name} | {sorted(seconds)[len(seconds) // 2] * 1e6:.1f} | {ratio(seconds, times['ours']):.2f} |"
+        )
 
 
 if __name__ == "__main__":

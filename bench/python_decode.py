@@ -76,15 +76,25 @@ def stores(cls: Any, frame: bytes) -> Callable[[bytes], Any]:
     values.
     """
     message = cls.from_bytes(frame)
-    names: dict[str, Any] = {"cls": cls, "new": object.__new__, "values": tuple(message.as_dict().values())}
+    names: dict[str, Any] = {
+        "cls": cls,
+        "new": object.__new__,
+        "values": tuple(message.as_dict().values()),
+    }
     targets = "".join(f"self.{name}, " for name in message.as_dict())
-    exec(f"def stores(frame):\n    self = new(cls)\n    {targets}= values\n    return self\n", names)
+    exec(
+        f"def stores(frame):\n    self = new(cls)\n    {targets}= values\n    return self\n",
+        names,
+    )
     return names["stores"]
 
 
 def in_turn(timers: dict[str, Timer], rounds: int) -> dict[str, list[float]]:
     """Return the seconds per call of each timer, by round."""
-    numbers = {name: max(1, int(0.0005 / min(timer.repeat(3, 1)))) for name, timer in timers.items()}
+    numbers = {
+        name: max(1, int(0.0005 / min(timer.repeat(3, 1))))
+        for name, timer in timers.items()
+    }
     times: dict[str, list[float]] = {name: [] for name in timers}
     for _ in range(rounds):
         for name, timer in timers.items():
@@ -112,24 +122,41 @@ def single(acp: Any, rounds: int) -> list[str]:
     for place, (id, limit) in enumerate(DECODE.items()):
         cls = acp.TELEMETRY[id]
         frame = sample(cls)
-        calls = {"bare": bare(cls), "stores": stores(cls, frame), "decode": cls.from_bytes}
+        calls = {
+            "bare": bare(cls),
+            "stores": stores(cls, frame),
+            "decode": cls.from_bytes,
+        }
         calls |= {name: maker(cls) for name, maker in makers.items()}
-        timers = {name: Timer("call(frame)", globals={"call": call, "frame": frame}) for name, call in calls.items()}
-        timers["encode"] = Timer("call()", globals={"call": cls.from_bytes(frame).to_bytes})
+        timers = {
+            name: Timer("call(frame)", globals={"call": call, "frame": frame})
+            for name, call in calls.items()
+        }
+        timers["encode"] = Timer(
+            "call()", globals={"call": cls.from_bytes(frame).to_bytes}
+        )
         times = in_turn(timers, rounds)
-        measured, least = (ratio(times[name], times["bare"]) for name in ("decode", "stores"))
+        measured, least = (
+            ratio(times[name], times["bare"]) for name in ("decode", "stores")
+        )
         slower = {name: ratio(times[name], times["decode"]) for name in makers}
         nano = {name: statistics.median(values) * 1e9 for name, values in times.items()}
-        shown = " | ".join(f"{slower[name]:.0f} times" if name in slower else "" for name in OTHERS)
+        shown = " | ".join(
+            f"{slower[name]:.0f} times" if name in slower else "" for name in OTHERS
+        )
         print(
             f"| {id} | {len(cls.FIELDS)} | {nano['bare']:.0f} | {least:.2f} | {nano['decode']:.0f} | {measured:.2f} | {limit} "
             f"| {nano['encode']:.0f} | {shown} |"
         )
         if measured > limit:
-            missed.append(f"decode {id}: {measured:.2f} times struct.unpack, limit {limit}")
+            missed.append(
+                f"decode {id}: {measured:.2f} times struct.unpack, limit {limit}"
+            )
         for name, least in OTHERS.items():
             if place < 3 and slower.get(name, least) < least:
-                missed.append(f"decode {id}: {slower[name]:.0f} times as fast as {name}, limit {least}")
+                missed.append(
+                    f"decode {id}: {slower[name]:.0f} times as fast as {name}, limit {least}"
+                )
     return missed
 
 
@@ -147,7 +174,9 @@ def many(acp: Any, rounds: int) -> list[str]:
     for id, limit in MANY.items():
         cls = acp.TELEMETRY[id]
         frames = random.Random(id).randbytes(cls.LENGTH * FRAMES)
-        flags = numpy.zeros((sum(info.type == "bool" for info in cls.FIELDS), FRAMES // 8), numpy.uint64)
+        flags = numpy.zeros(
+            (sum(info.type == "bool" for info in cls.FIELDS), FRAMES // 8), numpy.uint64
+        )
 
         def passes(words=flags):
             numpy.right_shift(words, 1, out=words)
@@ -157,10 +186,20 @@ def many(acp: Any, rounds: int) -> list[str]:
             "passes": passes,
             "memcpy": numpy.frombuffer(frames, numpy.uint8).copy,
             "raw": lambda cls=cls, frames=frames: cls.decode_many(frames),
-            "physical": lambda cls=cls, frames=frames: cls.decode_many(frames, physical=True),
+            "physical": lambda cls=cls, frames=frames: cls.decode_many(
+                frames, physical=True
+            ),
         }
-        times = in_turn({name: Timer("call()", globals={"call": call}) for name, call in calls.items()}, rounds)
-        micro = {name: statistics.median(values) * 1e6 for name, values in times.items()}
+        times = in_turn(
+            {
+                name: Timer("call()", globals={"call": call})
+                for name, call in calls.items()
+            },
+            rounds,
+        )
+        micro = {
+            name: statistics.median(values) * 1e6 for name, values in times.items()
+        }
         measured = ratio(times["raw"], times["memcpy"])
         print(
             f"| {id} | {len(frames):,} "
@@ -169,7 +208,9 @@ def many(acp: Any, rounds: int) -> list[str]:
             f"| {micro['physical']:.0f} | {ratio(times['physical'], times['memcpy']):.1f} |"
         )
         if measured > limit:
-            missed.append(f"decode_many {id}: {measured:.1f} times a memcpy, limit {limit}")
+            missed.append(
+                f"decode_many {id}: {measured:.1f} times a memcpy, limit {limit}"
+            )
     return missed
 
 
@@ -193,23 +234,38 @@ def imports(folder: str, rounds: int) -> list[str]:
     for name, values in times.items():
         print(f"| {name} | {statistics.median(values) - none:.1f} |")
     import_time = statistics.median(times["the package"]) - none
-    return [f"importing the package: {import_time:.1f} ms, limit {IMPORT}"] if import_time > IMPORT else []
+    return (
+        [f"importing the package: {import_time:.1f} ms, limit {IMPORT}"]
+        if import_time > IMPORT
+        else []
+    )
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rounds", type=int, default=60)
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for path, text in PythonBackend(PACKAGE).files(load([ROOT / "icd"]).icd, Renderer("python")):
+        for path, text in PythonBackend(PACKAGE).files(
+            load([ROOT / "icd"]).icd, Renderer("python")
+        ):
             (Path(folder) / path).parent.mkdir(parents=True, exist_ok=True)
             (Path(folder) / path).write_text(text, encoding="utf-8")
         sys.path.insert(0, folder)
         acp = import_module(f"{PACKAGE}.cubeacp")
         print(f"Python {sys.version.split()[0]}, medians of {options.rounds} rounds\n")
-        missed = [*single(acp, options.rounds), *many(acp, options.rounds), *imports(folder, options.rounds)]
-    print("\n" + ("\n".join(f"missed: {limit}" for limit in missed) or "all limits are kept"))
+        missed = [
+            *single(acp, options.rounds),
+            *many(acp, options.rounds),
+            *imports(folder, options.rounds),
+        ]
+    print(
+        "\n"
+        + ("\n".join(f"missed: {limit}" for limit in missed) or "all limits are kept")
+    )
     return 1 if missed and options.check else 0
 
 

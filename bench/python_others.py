@@ -14,8 +14,18 @@ def by_construct(cls: Any) -> Callable[[bytes], Any]:
     """
     import construct
 
-    integers = {8: construct.Int8ul, 16: construct.Int16ul, 32: construct.Int32ul, 64: construct.Int64ul}
-    signed = {8: construct.Int8sl, 16: construct.Int16sl, 32: construct.Int32sl, 64: construct.Int64sl}
+    integers = {
+        8: construct.Int8ul,
+        16: construct.Int16ul,
+        32: construct.Int32ul,
+        64: construct.Int64ul,
+    }
+    signed = {
+        8: construct.Int8sl,
+        16: construct.Int16sl,
+        32: construct.Int32sl,
+        64: construct.Int64sl,
+    }
     floats = {32: construct.Float32l, 64: construct.Float64l}
 
     def kind(info: Any) -> Any:
@@ -28,15 +38,26 @@ def by_construct(cls: Any) -> Callable[[bytes], Any]:
 
     def close() -> None:
         if bits:
-            parts.append(construct.BitsSwapped(construct.BitStruct(*bits, construct.Padding(-reached % 8))))
+            parts.append(
+                construct.BitsSwapped(
+                    construct.BitStruct(*bits, construct.Padding(-reached % 8))
+                )
+            )
             bits.clear()
 
     for info in cls.FIELDS:
         if info.bits % 8 and info.at % 8 + info.bits <= 8:
             if bits and info.at != reached:
                 bits.append(construct.Padding(info.at - reached))
-            inner = construct.Flag if info.type == "bool" else construct.BitsInteger(info.bits)
-            bits.append(info.attribute / (construct.Enum(inner, info.enum) if info.enum else inner))
+            inner = (
+                construct.Flag
+                if info.type == "bool"
+                else construct.BitsInteger(info.bits)
+            )
+            bits.append(
+                info.attribute
+                / (construct.Enum(inner, info.enum) if info.enum else inner)
+            )
         else:
             close()
             parts.append(info.attribute / kind(info))
@@ -68,7 +89,9 @@ def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
     lines, structs, reached = [], "", 0
     for info in cls.FIELDS:
         if info.at > reached and (info.at % 8 or reached % 8):
-            lines.append(f"        self._io.read_bits_int_le({min(info.at, -(-reached // 8) * 8) - reached})\n")
+            lines.append(
+                f"        self._io.read_bits_int_le({min(info.at, -(-reached // 8) * 8) - reached})\n"
+            )
             reached = min(info.at, -(-reached // 8) * 8)
         if info.at > reached and info.at % 8 == reached % 8 == 0:
             lines.append(f"        self._io.read_bytes({(info.at - reached) // 8})\n")
@@ -76,7 +99,11 @@ def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
         if info.struct:
             structs += _kaitai_class(info.struct.__name__, info.struct, enums)
             struct_call = f"{info.struct.__name__}(self._io, self, self._root)"
-            count = f"range(self.{cls.TAIL.counter})" if info.is_open else f"range({info.elements})"
+            count = (
+                f"range(self.{cls.TAIL.counter})"
+                if info.is_open
+                else f"range({info.elements})"
+            )
             read = f"[{struct_call} for _ in {count}]" if info.elements else struct_call
         elif info.type == "bytes":
             read = f"self._io.read_bytes({info.bits // 8})"
@@ -88,7 +115,9 @@ def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
         if info.type == "bool":
             read += " != 0"
         if info.enum:
-            enums[info.enum.__name__] = IntEnum(info.enum.__name__, {member.name: member.value for member in info.enum})
+            enums[info.enum.__name__] = IntEnum(
+                info.enum.__name__, {member.name: member.value for member in info.enum}
+            )
             read = f"KaitaiStream.resolve_enum(Frame.{info.enum.__name__}, {read})"
         lines.append(f"        self.{info.attribute} = {read}\n")
     if reached % 8:

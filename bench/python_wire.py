@@ -36,7 +36,9 @@ def rate(run: Callable[[], object], size: int, rounds: int) -> float:
     return size / statistics.median(times) / 1e6
 
 
-def in_pieces(make: Callable[[], object], data: bytes, size: int) -> Callable[[], object]:
+def in_pieces(
+    make: Callable[[], object], data: bytes, size: int
+) -> Callable[[], object]:
     """Return a function that feeds a new decoder in pieces of ``size`` bytes."""
     pieces = [data[at : at + size] for at in range(0, len(data), size)]
 
@@ -55,7 +57,9 @@ def streams(acp, wire, rounds: int) -> None:
     mixed, ids = [], list(frames)
     for _ in range(STREAM // 50):
         id = source.choice(ids)
-        mixed.append(wire.uart_encode(link, bytes((id,)) + source.randbytes(frames[id])))
+        mixed.append(
+            wire.uart_encode(link, bytes((id,)) + source.randbytes(frames[id]))
+        )
     packet = wire.uart_encode(link, bytes((119, 0, 0)) + bytes(20))
     cases = [
         ("frames of all lengths", b"".join(mixed), len(mixed)),
@@ -69,12 +73,19 @@ def streams(acp, wire, rounds: int) -> None:
     )
     for name, data, count in cases:
         speed = {
-            size: rate(in_pieces(lambda: wire.UartDecoder(link), data, size), len(data), rounds) for size in (4096, 64)
+            size: rate(
+                in_pieces(lambda: wire.UartDecoder(link), data, size), len(data), rounds
+            )
+            for size in (4096, 64)
         }
         short = data[: STREAM // 20]
-        speed[1] = rate(in_pieces(lambda: wire.UartDecoder(link), short, 1), len(short), rounds)
+        speed[1] = rate(
+            in_pieces(lambda: wire.UartDecoder(link), short, 1), len(short), rounds
+        )
         each = f"{count * speed[4096] * 1e6 / len(data):,.0f}" if count else ""
-        print(f"| {name} | {speed[4096]:.1f} | {speed[64]:.1f} | {speed[1]:.2f} | {each} |")
+        print(
+            f"| {name} | {speed[4096]:.1f} | {speed[64]:.1f} | {speed[1]:.2f} | {each} |"
+        )
 
 
 def checksums_logs_and_can(acp, wire, rounds: int) -> None:
@@ -82,7 +93,9 @@ def checksums_logs_and_can(acp, wire, rounds: int) -> None:
     source, link = random.Random(2), acp.LINK
     block = source.randbytes(link.files.block_bytes)
     writer = wire.LogWriter(link, bytes([255, 255, 255]) + bytes(7))
-    lengths = [bit.length for bit in link.mask.selected(bytes([255, 255, 255]) + bytes(7))]
+    lengths = [
+        bit.length for bit in link.mask.selected(bytes([255, 255, 255]) + bytes(7))
+    ]
     entry = writer.entry(1, 2, [source.randbytes(size) for size in lengths])
     log = writer.header() + entry * (1_000_000 // len(entry))
     id = max(link.frames, key=lambda id: link.frames[id])
@@ -96,10 +109,18 @@ def checksums_logs_and_can(acp, wire, rounds: int) -> None:
 
     print("\n| other | MB/s |\n|---|---|")
     read = in_pieces(lambda: wire.LogReader(link), log, 65536)
-    print(f"| CRC-16 of a block | {rate(lambda: wire.crc16(link, block), len(block), rounds * 3):.1f} |")
-    print(f"| CRC-8 of 20 kB | {rate(lambda: wire.crc8(link, block), len(block), rounds * 3):.1f} |")
-    print(f"| log of {len(lengths)} frames an entry, 64 kB a piece | {rate(read, len(log), rounds):.1f} |")
-    print(f"| CAN packets of {link.frames[id]} bytes | {rate(join, 8 * len(packets), rounds):.2f} |")
+    print(
+        f"| CRC-16 of a block | {rate(lambda: wire.crc16(link, block), len(block), rounds * 3):.1f} |"
+    )
+    print(
+        f"| CRC-8 of 20 kB | {rate(lambda: wire.crc8(link, block), len(block), rounds * 3):.1f} |"
+    )
+    print(
+        f"| log of {len(lengths)} frames an entry, 64 kB a piece | {rate(read, len(log), rounds):.1f} |"
+    )
+    print(
+        f"| CAN packets of {link.frames[id]} bytes | {rate(join, 8 * len(packets), rounds):.2f} |"
+    )
 
 
 def imports(folder: str, rounds: int) -> None:
@@ -112,7 +133,11 @@ def imports(folder: str, rounds: int) -> None:
     for _ in range(max(7, rounds)):
         for name in times:
             start = time.perf_counter()
-            subprocess.run([sys.executable, "-c", programs.get(name, "pass")], cwd=folder, check=True)
+            subprocess.run(
+                [sys.executable, "-c", programs.get(name, "pass")],
+                cwd=folder,
+                check=True,
+            )
             times[name].append((time.perf_counter() - start) * 1e3)
     none = statistics.median(times.pop("pass"))
     print("\n| import | ms |\n|---|---|")
@@ -121,15 +146,21 @@ def imports(folder: str, rounds: int) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for path, text in PythonBackend(PACKAGE).files(load([ROOT / "icd"]).icd, Renderer("python")):
+        for path, text in PythonBackend(PACKAGE).files(
+            load([ROOT / "icd"]).icd, Renderer("python")
+        ):
             (Path(folder) / path).parent.mkdir(parents=True, exist_ok=True)
             (Path(folder) / path).write_text(text, encoding="utf-8")
         sys.path.insert(0, folder)
-        acp, wire = import_module(f"{PACKAGE}.cubeacp"), import_module(f"{PACKAGE}.wire")
+        acp, wire = import_module(f"{PACKAGE}.cubeacp"), import_module(
+            f"{PACKAGE}.wire"
+        )
         print(f"Python {sys.version.split()[0]}, medians of {options.rounds} rounds\n")
         streams(acp, wire, options.rounds)
         checksums_logs_and_can(acp, wire, options.rounds)

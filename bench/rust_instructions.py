@@ -94,17 +94,29 @@ def build(folder: Path, opt: str, target: Path) -> Path:
         file = folder / "rust" / path
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
-    functions = "".join(FUNCTIONS.format(id=id, type=type) for id, (type, _) in FRAMES.items())
+    functions = "".join(
+        FUNCTIONS.format(id=id, type=type) for id, (type, _) in FRAMES.items()
+    )
     calls = "".join(CALL.format(id=id, type=type) for id, (type, _) in FRAMES.items())
     by_hand = (BENCH / "rust_by_hand.rs").resolve()
     # Next to the crate: inside of it, cargo would need the crate's optional
     # dependencies
     home = folder / "program"
     (home / "src").mkdir(parents=True, exist_ok=True)
-    program = PROGRAM.format(functions=functions, calls=CALLS, calls_of_all=calls, by_hand=by_hand)
+    program = PROGRAM.format(
+        functions=functions, calls=CALLS, calls_of_all=calls, by_hand=by_hand
+    )
     (home / "src" / "main.rs").write_text(program, encoding="utf-8")
     (home / "Cargo.toml").write_text(MANIFEST.format(opt=opt), encoding="utf-8")
-    command = ["cargo", "build", "--quiet", "--offline", "--release", "--target-dir", str(target)]
+    command = [
+        "cargo",
+        "build",
+        "--quiet",
+        "--offline",
+        "--release",
+        "--target-dir",
+        str(target),
+    ]
     subprocess.run(command, cwd=home, check=True)
     return target / "release" / "bench"
 
@@ -112,7 +124,13 @@ def build(folder: Path, opt: str, target: Path) -> Path:
 def counts(program: Path, folder: Path) -> dict[str, float]:
     """Return the instructions per call of each decoder, called functions included."""
     file = folder / "callgrind.out"
-    command = ["valgrind", "--tool=callgrind", "--quiet", f"--callgrind-out-file={file}", str(program)]
+    command = [
+        "valgrind",
+        "--tool=callgrind",
+        "--quiet",
+        f"--callgrind-out-file={file}",
+        str(program),
+    ]
     subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
     cost_by_function: dict[str, int] = {}
     names: dict[str, str] = {}
@@ -124,7 +142,9 @@ def counts(program: Path, folder: Path) -> dict[str, float]:
             current = name if line.startswith("fn=") else current
         elif re.match(r"[-+*0-9]", line):
             # Own instructions, or after `calls=` those of the called function
-            cost_by_function[current] = cost_by_function.get(current, 0) + int(line.split()[1])
+            cost_by_function[current] = cost_by_function.get(current, 0) + int(
+                line.split()[1]
+            )
     return {
         match.group(1): cost / CALLS
         for name, cost in cost_by_function.items()
@@ -134,7 +154,9 @@ def counts(program: Path, folder: Path) -> dict[str, float]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--opt", default="3", help="opt-level: 3 (default), 2, '\"s\"' ...")
+    parser.add_argument(
+        "--opt", default="3", help="opt-level: 3 (default), 2, '\"s\"' ..."
+    )
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:

@@ -63,8 +63,20 @@ PROGRAMS = {"dispatcher": DISPATCHER, "client": CLIENT}
 
 def compiled(folder: Path, opt: str, name: str, *more: str) -> None:
     """Compile ``name.rs`` of the folder, or the file among the options."""
-    command = ["rustc", "--edition", "2021", "--target", TARGET, "-C", "panic=abort", "-C", f"opt-level={opt}"]
-    subprocess.run([*command, "--crate-name", name, "--out-dir", str(folder), *more], check=True)
+    command = [
+        "rustc",
+        "--edition",
+        "2021",
+        "--target",
+        TARGET,
+        "-C",
+        "panic=abort",
+        "-C",
+        f"opt-level={opt}",
+    ]
+    subprocess.run(
+        [*command, "--crate-name", name, "--out-dir", str(folder), *more], check=True
+    )
 
 
 def text_bytes(folder: Path, name: str) -> int:
@@ -73,27 +85,52 @@ def text_bytes(folder: Path, name: str) -> int:
     names = subprocess.run(
         ["arm-none-eabi-ar", "t", archive], check=True, capture_output=True, text=True
     ).stdout.split()
-    own = next(member for member in names if member.removeprefix("lib").startswith(f"{name}."))
+    own = next(
+        member for member in names if member.removeprefix("lib").startswith(f"{name}.")
+    )
     subprocess.run(["arm-none-eabi-ar", "x", archive, own], cwd=folder, check=True)
-    size = subprocess.run(["arm-none-eabi-size", folder / own], check=True, capture_output=True, text=True).stdout
+    size = subprocess.run(
+        ["arm-none-eabi-size", folder / own], check=True, capture_output=True, text=True
+    ).stdout
     return int(size.splitlines()[1].split()[0])
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--opt", default="s")
     opt = parser.parse_args().opt
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for path, text in RustBackend().files(load([BENCH.parent / "icd"], check=False).icd, Renderer("rust")):
+        for path, text in RustBackend().files(
+            load([BENCH.parent / "icd"], check=False).icd, Renderer("rust")
+        ):
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_text(text, encoding="utf-8")
-        compiled(folder, opt, "icd", "--crate-type", "lib", str(folder / "src" / "lib.rs"))
+        compiled(
+            folder, opt, "icd", "--crate-type", "lib", str(folder / "src" / "lib.rs")
+        )
         for program, source in PROGRAMS.items():
             file = folder / f"{program}.rs"
             file.write_text(HEAD + source, encoding="utf-8")
-            options = ("--crate-type", "staticlib", "-C", "lto=fat", "-C", "codegen-units=1")
-            compiled(folder, opt, program, *options, "--extern", f"icd={folder / 'libicd.rlib'}", str(file))
+            options = (
+                "--crate-type",
+                "staticlib",
+                "-C",
+                "lto=fat",
+                "-C",
+                "codegen-units=1",
+            )
+            compiled(
+                folder,
+                opt,
+                program,
+                *options,
+                "--extern",
+                f"icd={folder / 'libicd.rlib'}",
+                str(file),
+            )
             print(f"{program}: {text_bytes(folder, program)} bytes")
 
 

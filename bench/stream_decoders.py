@@ -116,7 +116,9 @@ def stream(dialect: Any, messages: int, noise: float, chance: random.Random) -> 
     for number in range(messages):
         message = chance.choice(kinds_of)
         data = chance.randbytes(message.unpacker.size).rstrip(b"\0") or b"\0"
-        head = bytes([len(data), 0, 0, number & 0xFF, 1, 1]) + message.id.to_bytes(3, "little")
+        head = bytes([len(data), 0, 0, number & 0xFF, 1, 1]) + message.id.to_bytes(
+            3, "little"
+        )
         crc = dialect.x25crc(head + data)
         crc.accumulate(bytes([message.crc_extra]))
         output += b"\xfd" + head + data + struct.pack("<H", crc.crc)
@@ -131,27 +133,50 @@ def build(folder: Path) -> Path:
     xml = Path(str(dialect.__file__)).with_suffix(".xml")
     (tree,) = run.read(xml, kinds.get("mavlink")).trees.values()
     (folder / "common.yaml").write_text(emit.text(tree), encoding="utf-8")
-    for path, text in CBackend().files(load([folder / "common.yaml"]).icd, Renderer("c")):
+    for path, text in CBackend().files(
+        load([folder / "common.yaml"]).icd, Renderer("c")
+    ):
         (folder / "c" / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / "c" / path).write_text(text, encoding="utf-8")
-    mavgen = ["--lang=C", "--wire-protocol=2.0", "--no-validate", f"--output={folder / 'mavlink'}", str(xml)]
-    subprocess.run([sys.executable, "-m", "pymavlink.tools.mavgen", *mavgen], check=True, capture_output=True)
+    mavgen = [
+        "--lang=C",
+        "--wire-protocol=2.0",
+        "--no-validate",
+        f"--output={folder / 'mavlink'}",
+        str(xml),
+    ]
+    subprocess.run(
+        [sys.executable, "-m", "pymavlink.tools.mavgen", *mavgen],
+        check=True,
+        capture_output=True,
+    )
     objects = []
     for name, text in (("calls", CALLS), ("theirs", THEIRS), ("main", MAIN)):
         (folder / f"{name}.c").write_text(text)
         include = folder / ("mavlink" if name == "theirs" else "c")
         objects.append(folder / f"{name}.o")
         standard = "gnu11" if name == "theirs" else "c99"
-        options = [f"-std={standard}", "-O2", f"-I{include}", "-DICDGEN_WIRE_HEADER_ONLY"]
-        subprocess.run(["gcc", *options, "-c", folder / f"{name}.c", "-o", objects[-1]], check=True)
+        options = [
+            f"-std={standard}",
+            "-O2",
+            f"-I{include}",
+            "-DICDGEN_WIRE_HEADER_ONLY",
+        ]
+        subprocess.run(
+            ["gcc", *options, "-c", folder / f"{name}.c", "-o", objects[-1]], check=True
+        )
     subprocess.run(["gcc", *objects, "-o", folder / "bench"], check=True)
     return folder / "bench"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--messages", type=int, default=2000)
-    parser.add_argument("--noise", type=float, default=0.1, help="of how many frames noise follows")
+    parser.add_argument(
+        "--noise", type=float, default=0.1, help="of how many frames noise follows"
+    )
     parser.add_argument("--rounds", type=int, default=200)
     options = parser.parse_args()
     dialect = import_module("pymavlink.dialects.v20.common")
@@ -162,22 +187,42 @@ def main() -> None:
         words = subprocess.run(
             [program, str(options.rounds)], input=data, capture_output=True, check=True
         ).stdout.split()
-        counts_of_messages, least = [int(word) for word in words[1:4]], [float(word) for word in words[4:]]
+        counts_of_messages, least = [int(word) for word in words[1:4]], [
+            float(word) for word in words[4:]
+        ]
         out = folder / "counts"
-        valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", str(program)]
+        valgrind = [
+            "valgrind",
+            "--tool=callgrind",
+            f"--callgrind-out-file={out}",
+            str(program),
+        ]
         subprocess.run(valgrind, input=data, check=True, capture_output=True)
-        annotate = ["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(out)]
-        text = subprocess.run(annotate, check=True, capture_output=True, text=True).stdout
+        annotate = [
+            "callgrind_annotate",
+            "--inclusive=yes",
+            "--threshold=100",
+            str(out),
+        ]
+        text = subprocess.run(
+            annotate, check=True, capture_output=True, text=True
+        ).stdout
     counts = {
         word: int(number.replace(",", ""))
         for number, word in re.findall(r"^\s*([\d,]+) .*?:(ours|theirs)\b", text, re.M)
     }
-    print(f"{len(data):,} bytes, {options.messages:,} messages; found {counts_of_messages}")
+    print(
+        f"{len(data):,} bytes, {options.messages:,} messages; found {counts_of_messages}"
+    )
     print(
         f"instructions a byte: ours {counts['ours'] / 2 / len(data):.1f}, MAVLink's {counts['theirs'] / len(data):.1f}"
     )
-    for title, spent in zip(("ours, byte by byte", "ours, pieces of 4,096", "MAVLink's"), least, strict=True):
-        print(f"{title}: {len(data) / spent / 1e6:.0f} MB/s, {least[2] / spent:.2f} times MAVLink's")
+    for title, spent in zip(
+        ("ours, byte by byte", "ours, pieces of 4,096", "MAVLink's"), least, strict=True
+    ):
+        print(
+            f"{title}: {len(data) / spent / 1e6:.0f} MB/s, {least[2] / spent:.2f} times MAVLink's"
+        )
 
 
 if __name__ == "__main__":

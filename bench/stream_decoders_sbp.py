@@ -79,7 +79,12 @@ def stream(messages: int, noise: float, chance: random.Random) -> bytes:
     output = bytearray()
     for _ in range(messages):
         data = chance.randbytes(chance.randrange(256))
-        body = chance.choice(IDS).to_bytes(2, "little") + b"\x42\0" + bytes([len(data)]) + data
+        body = (
+            chance.choice(IDS).to_bytes(2, "little")
+            + b"\x42\0"
+            + bytes([len(data)])
+            + data
+        )
         output += b"\x55" + body + _crc(body).to_bytes(2, "little")
         if chance.random() < noise:
             output += bytes(byte for byte in chance.randbytes(40) if byte != 0x55)
@@ -97,12 +102,23 @@ def _crc(data: bytes) -> int:
 
 def build(folder: Path) -> Path:
     """Build the program with both decoders, and return its path."""
-    tree = yaml.safe_load((ROOT / "examples" / "links" / "sbp.yaml").read_text(encoding="utf-8"))
+    tree = yaml.safe_load(
+        (ROOT / "examples" / "links" / "sbp.yaml").read_text(encoding="utf-8")
+    )
     field = {"at": 0, "name": "Data", "type": "bytes", "size": "rest", "up_to": 255}
     tree["messages"] = [
-        {"name": f"Message {id}", "id": id, "kind": "telemetry", "length": 0, "fields": [dict(field)]} for id in IDS
+        {
+            "name": f"Message {id}",
+            "id": id,
+            "kind": "telemetry",
+            "length": 0,
+            "fields": [dict(field)],
+        }
+        for id in IDS
     ]
-    (folder / "sbp.yaml").write_text(yaml.safe_dump(tree, sort_keys=False), encoding="utf-8")
+    (folder / "sbp.yaml").write_text(
+        yaml.safe_dump(tree, sort_keys=False), encoding="utf-8"
+    )
     loaded = load([folder / "sbp.yaml"])
     assert loaded.ok, loaded.findings
     for path, text in RustBackend().files(loaded.icd, Renderer("rust")):
@@ -116,17 +132,25 @@ def build(folder: Path) -> Path:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--messages", type=int, default=2000)
-    parser.add_argument("--noise", type=float, default=0.1, help="after how many frames noise follows")
+    parser.add_argument(
+        "--noise", type=float, default=0.1, help="after how many frames noise follows"
+    )
     parser.add_argument("--rounds", type=int, default=50)
     options = parser.parse_args()
     data = stream(options.messages, options.noise, random.Random(1))
     with tempfile.TemporaryDirectory() as name:
         program = build(Path(name))
-        words = subprocess.run([program, str(options.rounds)], input=data, capture_output=True, check=True).stdout
+        words = subprocess.run(
+            [program, str(options.rounds)], input=data, capture_output=True, check=True
+        ).stdout
     ours, theirs, *least = (int(word) for word in words.split())
-    print(f"{len(data):,} bytes, {options.messages:,} messages; found {ours} and {theirs}")
+    print(
+        f"{len(data):,} bytes, {options.messages:,} messages; found {ours} and {theirs}"
+    )
     for title, spent in zip(("ours", "the crate sbp"), least, strict=True):
         speed = 10 * len(data) / spent
         print(f"{title}: {speed:.0f} MB/s, {least[1] / spent:.2f} times theirs")

@@ -9,6 +9,12 @@ try:
     angles = EstimatedAttitudeAngles.from_bytes(bytes.fromhex(sys.argv[1]))
 except IcdError as error:
     sys.exit(str(error))
-print(f"roll  {angles.estimated_roll_angle:7d}  {angles.estimated_roll_angle_deg:8.2f} deg")
-print(f"pitch {angles.estimated_pitch_angle:7d}  {angles.estimated_pitch_angle_deg:8.2f} deg")
-print(f"yaw   {angles.estimated_yaw_angle:7d}  {angles.estimated_yaw_angle_deg:8.2f} deg")
+print(
+    f"roll  {angles.estimated_roll_angle:7d}  {angles.estimated_roll_angle_deg:8.2f} deg"
+)
+print(
+    f"pitch {angles.estimated_pitch_angle:7d}  {angles.estimated_pitch_angle_deg:8.2f} deg"
+)
+print(
+    f"yaw   {angles.estimated_yaw_angle:7d}  {angles.estimated_yaw_angle_deg:8.2f} deg"
+)

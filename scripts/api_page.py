@@ -13,7 +13,10 @@ from typing import Any, NamedTuple
 import yaml
 
 ROOT = Path(__file__).parent.parent
-PAGE, FOLDER = ROOT / "docs" / "reference" / "api.md", ROOT / "docs" / "reference" / "api"
+PAGE, FOLDER = (
+    ROOT / "docs" / "reference" / "api.md",
+    ROOT / "docs" / "reference" / "api",
+)
 LANGUAGES = {"c": "C", "python": "Python", "rust": "Rust"}
 PROGRAMS = {"c": "imu.c", "python": "imu.py", "rust": "imu.rs"}
 _MARK = re.compile(r"\s*(?:/\*|//|#) \[(?P<key>\w*)\](?: \*/)?\s*")
@@ -55,7 +58,12 @@ def rows() -> list[Row | str]:
     """Return the rows and the headings between them."""
     items: list[Any] = yaml.safe_load((FOLDER / "rows.yaml").read_text("utf-8"))
     return [
-        item if isinstance(item, str) else Row(item["key"], item["does"], item.get("without", {})) for item in items
+        (
+            item
+            if isinstance(item, str)
+            else Row(item["key"], item["does"], item.get("without", {}))
+        )
+        for item in items
     ]
 
 
@@ -81,7 +89,10 @@ def snippets(language: str) -> dict[str, str]:
             open_keys.pop()
     if open_keys:
         raise ValueError(f"[{open_keys[-1]}] of {PROGRAMS[language]} does not end")
-    return {key: " ".join(line.strip() for line in lines) for key, lines in lines_by_key.items()}
+    return {
+        key: " ".join(line.strip() for line in lines)
+        for key, lines in lines_by_key.items()
+    }
 
 
 def page() -> str:
@@ -104,13 +115,17 @@ def page() -> str:
         lines.append(f"| {row.does} | {' | '.join(cells)} |")
     for language, snippets_of_language in code.items():
         if unknown_keys := snippets_of_language.keys() - keys:
-            raise ValueError(f"{PROGRAMS[language]} has {sorted(unknown_keys)}, of which rows.yaml knows nothing")
+            raise ValueError(
+                f"{PROGRAMS[language]} has {sorted(unknown_keys)}, of which rows.yaml knows nothing"
+            )
     return "\n".join(lines) + "\n" + END
 
 
 def _cell(row: Row, language: str, code: dict[str, str]) -> str:
     if (row.key in code) == (language in row.without):
-        raise ValueError(f"{PROGRAMS[language]} and rows.yaml disagree about [{row.key}]")
+        raise ValueError(
+            f"{PROGRAMS[language]} and rows.yaml disagree about [{row.key}]"
+        )
     return row.without.get(language) or f"`{code[row.key]}`".replace("|", "\\|")
 
 

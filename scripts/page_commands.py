@@ -34,9 +34,15 @@ def steps(page: str) -> Iterator[Step]:
     """
     for language, block in _BLOCK.findall(page):
         # A line of an `sh` block that ends in a backslash goes on in the next one.
-        parts = re.split(r"(?<!\\)\n", block) if language == "sh" else re.split(r"^\$ ", block, flags=re.MULTILINE)
+        parts = (
+            re.split(r"(?<!\\)\n", block)
+            if language == "sh"
+            else re.split(r"^\$ ", block, flags=re.MULTILINE)
+        )
         for part in filter(str.strip, parts):
-            command, _, shown = (part, "", "") if language == "sh" else part.partition("\n")
+            command, _, shown = (
+                (part, "", "") if language == "sh" else part.partition("\n")
+            )
             command = re.sub(r"(?:^|\s+)# .*", "", command).strip()
             if command:
                 yield Step(command, shown.strip())

@@ -15,15 +15,28 @@ MAKERS = {
     "codegen/icdgen/icd/schema.json": schema.written,
     "runtime/python/icdgen_runtime/wire/link.py": python.written,
     "runtime/python/icdgen_runtime/wire/envelope.py": python.written,
-    **{f"runtime/c/wire/{name}.h": c.written for name in ("forms", "procedure_forms", "link")},
-    **{f"runtime/rust/src/wire/link/{name}.rs": rust.written for name in ("mod", "can", "logs", "transfer")},
+    **{
+        f"runtime/c/wire/{name}.h": c.written
+        for name in ("forms", "procedure_forms", "link")
+    },
+    **{
+        f"runtime/rust/src/wire/link/{name}.rs": rust.written
+        for name in ("mod", "can", "logs", "transfer")
+    },
 }
 
 
 def out_of_date() -> dict[Path, str]:
     """Return the outdated files with their new text."""
-    current_texts = {ROOT / path: make((ROOT / path).read_text(encoding="utf-8")) for path, make in MAKERS.items()}
-    return {path: text for path, text in current_texts.items() if text != path.read_text(encoding="utf-8")}
+    current_texts = {
+        ROOT / path: make((ROOT / path).read_text(encoding="utf-8"))
+        for path, make in MAKERS.items()
+    }
+    return {
+        path: text
+        for path, text in current_texts.items()
+        if text != path.read_text(encoding="utf-8")
+    }
 
 
 def main() -> None:

@@ -1,4 +1,6 @@
-"""Shared by all tests: a small ICD of our own, and a cache folder that no test shares with its user."""
+"""Shared by all tests: a small ICD of our own, and a cache folder that no test shares
+with its user.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +13,16 @@ from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parent.parent
 
-# What cargo builds here is run once: neither its debugger nor its next build would be quicker for these.
+# What cargo builds here is run once: neither its debugger nor its next build would be
+# quicker for these.
 os.environ |= {"CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
 
-# A busy machine makes no test fail, and what was green stays green; `--hypothesis-profile=explore` tries new inputs each time.
-_PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.data_too_large]}
+# A busy machine makes no test fail, and what was green stays green;
+# `--hypothesis-profile=explore` tries new inputs each time.
+_PATIENT = {
+    "deadline": None,
+    "suppress_health_check": [HealthCheck.too_slow, HealthCheck.data_too_large],
+}
 settings.register_profile("same", derandomize=True, **_PATIENT)
 settings.register_profile("explore", max_examples=1000, **_PATIENT)
 settings.load_profile("same")
@@ -47,7 +54,9 @@ messages:
 
 @cache
 def _terminals() -> bool:
-    """Whether this machine can make a pseudo-terminal: a chroot without /dev/pts cannot."""
+    """Whether this machine can make a pseudo-terminal: a chroot without /dev/pts
+    cannot.
+    """
     try:
         for end in os.openpty():
             os.close(end)

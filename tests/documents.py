@@ -38,6 +38,8 @@ def icds_by_heading(page: str) -> dict[str, list[str]]:
     examples: dict[str, list[str]] = {}
     for match in _EXAMPLE.finditer(page):
         # A comment in an earlier example is no heading.
-        before = re.sub(r"^```.*?^```", "", page[: match.start()], flags=re.DOTALL | re.MULTILINE)
+        before = re.sub(
+            r"^```.*?^```", "", page[: match.start()], flags=re.DOTALL | re.MULTILINE
+        )
         examples.setdefault(_HEADING.findall(before)[-1], []).append(match[1])
     return examples

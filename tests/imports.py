@@ -1,4 +1,6 @@
-"""Who imports whom within a package, imports within functions and for type checkers included."""
+"""Who imports whom within a package, imports within functions and for type checkers
+included.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,10 @@ Graph = Mapping[str, frozenset[str]]  # module -> modules that it imports
 def graph(folder: Path) -> Graph:
     """The modules of a package. Raises `SyntaxError` for what is no Python."""
     files = {_module(path, folder): path for path in sorted(folder.rglob("*.py"))}
-    return {name: frozenset(_imports(name, path, files)) - {name} for name, path in files.items()}
+    return {
+        name: frozenset(_imports(name, path, files)) - {name}
+        for name, path in files.items()
+    }
 
 
 def _module(path: Path, folder: Path) -> str:
@@ -41,7 +46,10 @@ def _imports(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
 def circles(graph: Graph) -> list[list[str]]:
     """Groups of modules that import each other, directly or by way of others."""
     reached = {name: _reached(name, graph) for name in graph}
-    groups = {frozenset(other for other in reached[name] if name in reached[other]) for name in graph}
+    groups = {
+        frozenset(other for other in reached[name] if name in reached[other])
+        for name in graph
+    }
     return sorted(sorted(group) for group in groups if group)
 
 
@@ -57,14 +65,23 @@ def _reached(name: str, graph: Graph) -> set[str]:
 
 
 def folded(graph: Graph, places: Iterable[str]) -> Graph:
-    """The graph of the places, each a module or a package with all that is in it; the longest that fits counts.
+    """The graph of the places, each a module or a package with all that is in it.
+
+    The longest that fits counts.
 
     The outermost package stands for itself alone.
     """
     ranked = sorted(places, key=len, reverse=True)
 
     def place(name: str) -> str:
-        return next((one for one in ranked if name == one or ("." in one and name.startswith(f"{one}."))), name)
+        return next(
+            (
+                one
+                for one in ranked
+                if name == one or ("." in one and name.startswith(f"{one}."))
+            ),
+            name,
+        )
 
     found: dict[str, set[str]] = {}
     for name, imports in graph.items():
@@ -73,7 +90,10 @@ def folded(graph: Graph, places: Iterable[str]) -> Graph:
 
 
 def upward(graph: Graph, layers: Iterable[Iterable[str]]) -> list[str]:
-    """Imports that do not lead down, and places that are in no layer. ``layers`` go from the bottom to the top."""
+    """Imports that do not lead down, and places that are in no layer.
+
+    ``layers`` go from the bottom to the top.
+    """
     level = {place: number for number, layer in enumerate(layers) for place in layer}
     rows = folded(graph, level)
     wrong = [f"{name} is in no layer" for name in rows if name not in level]
@@ -85,14 +105,20 @@ def upward(graph: Graph, layers: Iterable[Iterable[str]]) -> list[str]:
 
 
 def reserved(graph: Graph, users: Mapping[str, Iterable[str]]) -> list[str]:
-    """Imports of a package by another package than its ``users``, each of which stands for all that is in it."""
+    """Imports of a package by another package than its ``users``, each of which stands
+    for all that is in it.
+    """
     wrong = []
     for package, allowed in users.items():
         inside = (package, *allowed)
         for name, imports in graph.items():
             if any(_is_in(name, place) for place in inside):
                 continue
-            wrong += [f"{name} imports {other}" for other in sorted(imports) if _is_in(other, package)]
+            wrong += [
+                f"{name} imports {other}"
+                for other in sorted(imports)
+                if _is_in(other, package)
+            ]
     return sorted(wrong)
 
 

@@ -1,4 +1,6 @@
-"""Links of the documents lead to pages and headings that exist, and the index lists every page."""
+"""Links of the documents lead to pages and headings that exist, and the index lists
+every page.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +15,20 @@ from scripts import reference_pages
 from tests import documents
 from tests.conftest import ROOT
 
-PAGES = [*documents.pages(), *sorted(ROOT.glob("*.md")), *sorted(ROOT.glob("tests/*/README.md"))]
+PAGES = [
+    *documents.pages(),
+    *sorted(ROOT.glob("*.md")),
+    *sorted(ROOT.glob("tests/*/README.md")),
+]
 
 
 def prose(page: Path) -> str:
-    return re.sub(r"^\s*```.*?^\s*```", "", page.read_text("utf-8"), flags=re.DOTALL | re.MULTILINE)
+    return re.sub(
+        r"^\s*```.*?^\s*```",
+        "",
+        page.read_text("utf-8"),
+        flags=re.DOTALL | re.MULTILINE,
+    )
 
 
 def links(page: Path) -> Iterator[str]:
@@ -25,10 +36,15 @@ def links(page: Path) -> Iterator[str]:
 
 
 def anchors(page: Path) -> set[str]:
-    return {anchor_of(re.sub(r"[`*]", "", title)) for title in re.findall(r"^#+ (.*)$", prose(page), re.MULTILINE)}
+    return {
+        anchor_of(re.sub(r"[`*]", "", title))
+        for title in re.findall(r"^#+ (.*)$", prose(page), re.MULTILINE)
+    }
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+@pytest.mark.parametrize(
+    "page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix()
+)
 def test_every_link_leads_to_a_page_and_heading_that_exists(page):
     dead = []
     for link in links(page):
@@ -53,20 +69,34 @@ def test_a_source_line_has_at_most_100_characters_outside_tables_and_code():
 
 
 def test_generated_reference_pages_are_current():
-    old = [path.name for path, text in reference_pages.pages().items() if path.read_text("utf-8") != text]
+    old = [
+        path.name
+        for path, text in reference_pages.pages().items()
+        if path.read_text("utf-8") != text
+    ]
     assert old == [], "run `python -m scripts.reference_pages`"
 
 
 def test_the_index_lists_every_page():
     index = documents.DOCS / "README.md"
-    listed = {(index.parent / link.partition("#")[0]).resolve() for link in links(index)}
-    assert [page.name for page in documents.pages() if page.resolve() not in listed | {index}] == []
+    listed = {
+        (index.parent / link.partition("#")[0]).resolve() for link in links(index)
+    }
+    assert [
+        page.name
+        for page in documents.pages()
+        if page.resolve() not in listed | {index}
+    ] == []
 
 
 def test_the_way_of_a_field_names_functions_that_exist():
     page = (ROOT / "docs" / "explanation" / "architecture.md").read_text("utf-8")
     section = page.split("## One field from YAML to C")[1].split("\n## ")[0]
-    rows = [row.split("|")[2] for row in section.splitlines() if row.startswith("|") and "`" in row]
+    rows = [
+        row.split("|")[2]
+        for row in section.splitlines()
+        if row.startswith("|") and "`" in row
+    ]
     assert len(rows) > 15
     for row in rows:
         source = ""
@@ -79,4 +109,6 @@ def test_the_way_of_a_field_names_functions_that_exist():
                 )
                 source = file.read_text("utf-8")
             else:
-                assert re.search(rf"(def |class |\s|\*){word}\(|class {word}\b|def {word}\b", source), (row, word)
+                assert re.search(
+                    rf"(def |class |\s|\*){word}\(|class {word}\b|def {word}\b", source
+                ), (row, word)

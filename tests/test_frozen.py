@@ -1,4 +1,6 @@
-"""Classes of the model are values: equal, hashed and shown as those of `dataclasses` are."""
+"""Classes of the model are values: equal, hashed and shown as those of `dataclasses`
+are.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ def _fields(dataclass):
     class One:
         name: str
         at: int = 0
-        source: list = dataclasses.field(default_factory=list, compare=False, repr=False)
+        source: list = dataclasses.field(
+            default_factory=list, compare=False, repr=False
+        )
         protocol: dict = dataclasses.field(default_factory=dict, hash=False)
 
     return One
@@ -25,7 +29,11 @@ def _fields(dataclass):
 @pytest.mark.parametrize("dataclass", [dataclasses.dataclass, frozen])
 def test_values_compare_hash_and_show_themselves_alike(dataclass):
     one = _fields(dataclass)
-    assert one("a", 1, [1]) == one("a", 1, [2]) and one("a", 1) != one("a", 2) and one("a") != "a"
+    assert (
+        one("a", 1, [1]) == one("a", 1, [2])
+        and one("a", 1) != one("a", 2)
+        and one("a") != "a"
+    )
     assert one("a") != one("a", protocol={1: 2})
     assert len({one("a", 1, [1]), one("a", 1, [2]), one("b")}) == 2
     assert hash(one("a", protocol={1: 2})) == hash(one("a"))
@@ -46,12 +54,22 @@ def test_objects_begin_alike(dataclass):
         first: int
 
     one, other = One(name="a"), One(at=2, name="b", source=[1])
-    assert (one.name, one.at, one.source, other.source) == ("a", 0, [], [1]) and one.source is not One(name="a").source
+    assert (one.name, one.at, one.source, other.source) == (
+        "a",
+        0,
+        [],
+        [1],
+    ) and one.source is not One(name="a").source
     more = More(7, name="c")
-    assert (more.first, more.name, more.at) == (7, "c", 0) and dataclasses.replace(more, at=3) == More(
-        7, name="c", at=3
-    )
-    for wrong in (lambda: One("a"), lambda: One(), lambda: One(name="a", no=1), lambda: More(name="a")):
+    assert (more.first, more.name, more.at) == (7, "c", 0) and dataclasses.replace(
+        more, at=3
+    ) == More(7, name="c", at=3)
+    for wrong in (
+        lambda: One("a"),
+        lambda: One(),
+        lambda: One(name="a", no=1),
+        lambda: More(name="a"),
+    ):
         with pytest.raises(TypeError):
             wrong()
 
@@ -66,6 +84,6 @@ def test_without_eq_an_object_is_equal_to_itself_alone():
 
 def test_a_field_of_another_class_is_never_equal():
     assert Member(1, "a") != Limits() and Member(1, "a") == Member(1, "a")
-    assert dataclasses.replace(Scalar(name="a", at=0, bits=8, type="uint"), at=8) == Scalar(
-        name="a", at=8, bits=8, type="uint"
-    )
+    assert dataclasses.replace(
+        Scalar(name="a", at=0, bits=8, type="uint"), at=8
+    ) == Scalar(name="a", at=8, bits=8, type="uint")

@@ -1,4 +1,7 @@
-"""Imports of the generator and of the Python runtime lead down. The order stands here, from the bottom to the top."""
+"""Imports of the generator and of the Python runtime lead down.
+
+The order stands here, from the bottom to the top.
+"""
 
 from __future__ import annotations
 
@@ -45,11 +48,24 @@ RUNTIME_LAYERS = [
     "_lazy",
     "wire",
 ]
-RUNTIME_ROWS = [["icdgen_runtime"], *([f"icdgen_runtime.{name}" for name in row.split()] for row in RUNTIME_LAYERS)]
-USERS = {  # a language's backend -> the only packages that import it: they need its names of messages and fields
-    "icdgen.backends.c": ["icdgen.backends.c_selftest", "icdgen.backends.html", "icdgen.diff"],
+RUNTIME_ROWS = [
+    ["icdgen_runtime"],
+    *([f"icdgen_runtime.{name}" for name in row.split()] for row in RUNTIME_LAYERS),
+]
+# A language's backend -> the only packages that import it: they need its names of
+# messages and fields.
+USERS = {
+    "icdgen.backends.c": [
+        "icdgen.backends.c_selftest",
+        "icdgen.backends.html",
+        "icdgen.diff",
+    ],
     "icdgen.backends.python": ["icdgen.diff"],
-    "icdgen.backends.rust": ["icdgen.backends.html", "icdgen.backends.packages", "icdgen.diff"],
+    "icdgen.backends.rust": [
+        "icdgen.backends.html",
+        "icdgen.backends.packages",
+        "icdgen.diff",
+    ],
 }
 
 
@@ -58,7 +74,11 @@ def test_no_modules_of_ours_import_each_other(folder):
     assert imports.circles(imports.graph(folder)) == []
 
 
-@pytest.mark.parametrize("folder, rows", [(PACKAGE, ROWS), (RUNTIME, RUNTIME_ROWS)], ids=["icdgen", "icdgen_runtime"])
+@pytest.mark.parametrize(
+    "folder, rows",
+    [(PACKAGE, ROWS), (RUNTIME, RUNTIME_ROWS)],
+    ids=["icdgen", "icdgen_runtime"],
+)
 def test_imports_lead_down(folder, rows):
     assert imports.upward(imports.graph(folder), rows) == []
 
@@ -69,7 +89,9 @@ def test_the_backend_of_a_language_is_imported_by_its_users_only():
 
 def test_the_order_names_only_what_there_is():
     modules = {*imports.graph(PACKAGE), *imports.graph(RUNTIME)}
-    assert [name for row in (*ROWS, *RUNTIME_ROWS) for name in row if name not in modules] == []
+    assert [
+        name for row in (*ROWS, *RUNTIME_ROWS) for name in row if name not in modules
+    ] == []
 
 
 @pytest.fixture
@@ -109,12 +131,18 @@ def test_what_leads_down_is_accepted(package):
 )
 def test_a_planted_import_upwards_is_found_wherever_it_hides(package, text):
     (package / "low.py").write_text(text)
-    assert imports.upward(imports.graph(package), MADE) == ["made.low imports made.high, which does not stand below it"]
+    assert imports.upward(imports.graph(package), MADE) == [
+        "made.low imports made.high, which does not stand below it"
+    ]
 
 
 def test_a_planted_circle_is_found(package):
-    (package / "high" / "one.py").write_text("def late():\n    from made.high.two import anything\n")
-    assert imports.circles(imports.graph(package)) == [["made.high.one", "made.high.two"]]
+    (package / "high" / "one.py").write_text(
+        "def late():\n    from made.high.two import anything\n"
+    )
+    assert imports.circles(imports.graph(package)) == [
+        ["made.high.one", "made.high.two"]
+    ]
 
 
 def test_a_module_that_is_in_no_layer_is_found(package):
@@ -125,7 +153,9 @@ def test_a_module_that_is_in_no_layer_is_found(package):
 def test_a_planted_import_of_a_reserved_package_is_found(package):
     (package / "top.py").write_text("def late():\n    from made.high import two\n")
     modules = imports.graph(package)
-    assert imports.reserved(modules, {"made.high": []}) == ["made.top imports made.high.two"]
+    assert imports.reserved(modules, {"made.high": []}) == [
+        "made.top imports made.high.two"
+    ]
     assert imports.reserved(modules, {"made.high": ["made.top"]}) == []
 
 
@@ -144,40 +174,65 @@ def test_a_planted_import_of_a_reserved_package_is_found(package):
         ),
     ],
 )
-def test_an_import_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path, module, text, error):
-    assert imports.upward(imports.graph(_copy(PACKAGE, tmp_path, module, text)), ROWS) == [error]
+def test_an_import_that_is_planted_in_a_copy_of_the_package_is_found(
+    tmp_path, module, text, error
+):
+    assert imports.upward(
+        imports.graph(_copy(PACKAGE, tmp_path, module, text)), ROWS
+    ) == [error]
 
 
-def test_a_backend_that_is_imported_by_the_site_in_a_copy_of_the_package_is_found(tmp_path):
+def test_a_backend_that_is_imported_by_the_site_in_a_copy_of_the_package_is_found(
+    tmp_path,
+):
     modules = imports.graph(
-        _copy(PACKAGE, tmp_path, "backends/html/wire.py", "from icdgen.backends.python import nodes")
+        _copy(
+            PACKAGE,
+            tmp_path,
+            "backends/html/wire.py",
+            "from icdgen.backends.python import nodes",
+        )
     )
     error = "icdgen.backends.html.wire imports icdgen.backends.python.nodes"
     assert imports.reserved(modules, USERS) == [error]
 
 
 def test_a_circle_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path):
-    modules = imports.graph(_copy(PACKAGE, tmp_path, "icd/model.py", "from icdgen import codec"))
+    modules = imports.graph(
+        _copy(PACKAGE, tmp_path, "icd/model.py", "from icdgen import codec")
+    )
     (group,) = imports.circles(modules)
     assert {"icdgen.codec", "icdgen.icd.model"} <= set(group)
 
 
 def test_a_worker_of_the_runtime_that_imports_the_messages_in_a_copy_is_found(tmp_path):
-    modules = imports.graph(_copy(RUNTIME, tmp_path, "_tails.py", "from ._base import Message"))
+    modules = imports.graph(
+        _copy(RUNTIME, tmp_path, "_tails.py", "from ._base import Message")
+    )
     error = "icdgen_runtime._tails imports icdgen_runtime._base, which does not stand below it"
     assert imports.upward(modules, RUNTIME_ROWS) == [error]
     (group,) = imports.circles(modules)
-    assert {"icdgen_runtime._base", "icdgen_runtime._compiled", "icdgen_runtime._tails"} <= set(group)
+    assert {
+        "icdgen_runtime._base",
+        "icdgen_runtime._compiled",
+        "icdgen_runtime._tails",
+    } <= set(group)
 
 
 def test_a_circle_that_is_planted_in_a_copy_of_the_wire_layer_is_found(tmp_path):
-    modules = imports.graph(_copy(RUNTIME, tmp_path, "wire/link.py", "from .client import Client"))
-    assert any("icdgen_runtime.wire.link" in group for group in imports.circles(modules))
+    modules = imports.graph(
+        _copy(RUNTIME, tmp_path, "wire/link.py", "from .client import Client")
+    )
+    assert any(
+        "icdgen_runtime.wire.link" in group for group in imports.circles(modules)
+    )
 
 
 def _copy(package: Path, folder: Path, module: str, text: str) -> Path:
     """A copy of a package, one module of which has another import in a function."""
-    copy = shutil.copytree(package, folder / package.name, ignore=shutil.ignore_patterns("__pycache__"))
+    copy = shutil.copytree(
+        package, folder / package.name, ignore=shutil.ignore_patterns("__pycache__")
+    )
     with (copy / module).open("a", encoding="utf-8") as file:
         file.write(f"\n\ndef _late() -> None:\n    {text}\n")
     return copy

@@ -11,7 +11,10 @@ from icdgen.naming import camel, latin, snake, words
     ("name", "identifier"),
     [
         ("Öffnungswinkel", "offnungswinkel"),
-        ("O\u0308ffnungswinkel", "offnungswinkel"),  # decomposed, as some editors write it
+        (
+            "O\u0308ffnungswinkel",
+            "offnungswinkel",
+        ),  # decomposed, as some editors write it
         ("Größe", "grosse"),
         ("GRÖSSE der Hülle", "grosse_der_hulle"),
         ("Straße 2 Süd", "strasse_2_sud"),

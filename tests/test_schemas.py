@@ -14,8 +14,18 @@ from icdgen.shipped import PACKAGE
 SCHEMAS = sorted(PACKAGE.rglob("*schema.json"), key=lambda path: path.name)
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in SCHEMAS]
 
-# What a schema can contain, by what stands under the keyword. An unknown keyword is legal in a JSON Schema, and without effect.
-SCHEMA_UNDER = {"additionalProperties", "items", "if", "then", "else", "not", "propertyNames", "contains"}
+# What a schema can contain, by what stands under the keyword. An unknown keyword is
+# legal in a JSON Schema, and without effect.
+SCHEMA_UNDER = {
+    "additionalProperties",
+    "items",
+    "if",
+    "then",
+    "else",
+    "not",
+    "propertyNames",
+    "contains",
+}
 SCHEMAS_UNDER = {"anyOf", "oneOf", "allOf", "prefixItems"}
 SCHEMAS_BY_NAME = {"properties", "$defs", "patternProperties", "dependentSchemas"}
 PLAIN = {
@@ -45,7 +55,10 @@ def parts(schema: object, path: str = "#") -> Iterator[tuple[str, dict]]:
 def test_every_key_of_a_schema_has_an_effect(path: Path):
     known = PLAIN | SCHEMA_UNDER | SCHEMAS_UNDER | SCHEMAS_BY_NAME
     unknown = [
-        f"{place}/{key}" for place, one in parts(json.loads(path.read_text("utf-8"))) for key in one if key not in known
+        f"{place}/{key}"
+        for place, one in parts(json.loads(path.read_text("utf-8")))
+        for key in one
+        if key not in known
     ]
     assert unknown == []
 
@@ -60,8 +73,14 @@ def test_a_schema_is_valid_itself(path: Path):
 def test_every_definition_of_a_schema_is_used(path: Path):
     schema = json.loads(path.read_text("utf-8"))
     used = {one["$ref"] for _, one in parts(schema) if "$ref" in one}
-    documents = {"icd", "errata", "source_table"} if path.parent.name == "icd" else set()  # read under their names
-    assert [name for name in schema.get("$defs", {}) if f"#/$defs/{name}" not in used and name not in documents] == []
+    documents = (
+        {"icd", "errata", "source_table"} if path.parent.name == "icd" else set()
+    )  # read under their names
+    assert [
+        name
+        for name in schema.get("$defs", {})
+        if f"#/$defs/{name}" not in used and name not in documents
+    ] == []
 
 
 @pytest.mark.parametrize("path", SCHEMAS, ids=NAMES)
@@ -79,5 +98,12 @@ def test_a_schema_requires_only_properties_that_it_has(path: Path):
 def test_every_section_that_has_parameters_of_a_crc_can_state_its_check_value():
     """Rule ICD091 computes `check` wherever it stands, so the schema has it there."""
     schema = json.loads((PACKAGE / "icd" / "schema.json").read_text("utf-8"))
-    sections = {place: one["properties"] for place, one in parts(schema) if "polynomial" in one.get("properties", {})}
-    assert len(sections) == 3 and [place for place, keys in sections.items() if "check" not in keys] == []
+    sections = {
+        place: one["properties"]
+        for place, one in parts(schema)
+        if "polynomial" in one.get("properties", {})
+    }
+    assert (
+        len(sections) == 3
+        and [place for place, keys in sections.items() if "check" not in keys] == []
+    )

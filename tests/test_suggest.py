@@ -9,11 +9,18 @@ from icdgen.suggest import close_to, close_words
 
 def test_the_nearest_is_suggested_in_any_case():
     assert close_to("ROL", ["Pitch", "Roll", "Yaw"]) == "Roll"
-    assert close_words("roll angle", ["Roll Angles", "Roll Angle", "Yaw"]) == ["Roll Angle", "Roll Angles"]
+    assert close_words("roll angle", ["Roll Angles", "Roll Angle", "Yaw"]) == [
+        "Roll Angle",
+        "Roll Angles",
+    ]
 
 
 def test_nothing_is_suggested_where_nothing_comes_near():
-    assert close_to("xyz", ["Pitch", "Roll"]) == "" and close_words("", ["Roll"]) == [] and close_to("a", []) == ""
+    assert (
+        close_to("xyz", ["Pitch", "Roll"]) == ""
+        and close_words("", ["Roll"]) == []
+        and close_to("a", []) == ""
+    )
 
 
 def test_of_a_long_text_only_the_beginning_is_compared():
@@ -53,4 +60,8 @@ def test_a_name_without_one_of_its_words_is_recognised():
 
 
 def test_the_nearest_comes_first_and_each_once():
-    assert close_words("roll", ["Rolls", "Roll Angle", "roll", "Rolls"]) == ["roll", "Rolls", "Roll Angle"]
+    assert close_words("roll", ["Rolls", "Roll Angle", "roll", "Rolls"]) == [
+        "roll",
+        "Rolls",
+        "Roll Angle",
+    ]

@@ -49,12 +49,19 @@ def generate(icd, language: str) -> dict[str, str]:
 
 
 def differences(left: Names, right: Names) -> list[tuple[str, str]]:
-    return sorted((scope, text) for scope in left for text in left[scope] - right.get(scope, set()))
+    return sorted(
+        (scope, text)
+        for scope in left
+        for text in left[scope] - right.get(scope, set())
+    )
 
 
 def names_in_c(icd) -> Names:
     names = defaultdict(set)
-    long_names = {short: text for text, short in short_names(backends.get("c").identifiers(icd)).items()}
+    long_names = {
+        short: text
+        for text, short in short_names(backends.get("c").identifiers(icd)).items()
+    }
     for path, text in generate(icd, "c").items():
         names["C header files"].add(path)
         if path.startswith("icdgen"):
@@ -62,11 +69,15 @@ def names_in_c(icd) -> Names:
         code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
         code = re.sub(r"\w+", lambda word: long_names.get(word[0], word[0]), code)
         at_file_scope = re.findall(r"^#define (\w+)", code, re.M)
-        at_file_scope += re.findall(r"^(?:static inline|ICDGEN_API) [\w \n*]*?(\w+)\(", code, re.M)
+        at_file_scope += re.findall(
+            r"^(?:static inline|ICDGEN_API) [\w \n*]*?(\w+)\(", code, re.M
+        )
         at_file_scope += re.findall(r"^(?:typedef \w+|\}) (\w+);", code, re.M)
         at_file_scope += re.findall(r"^    (\w+) = -?\w+,?$", code, re.M)
         names["C names at file scope"].update(at_file_scope)
-        for body, type in re.findall(r"^typedef struct \{(.*?)^\} (\w+);", code, re.M | re.S):
+        for body, type in re.findall(
+            r"^typedef struct \{(.*?)^\} (\w+);", code, re.M | re.S
+        ):
             is_client = type.endswith(("_client_t", "_sender_t"))
             members = re.findall(r"(\w+)(?:\[\w+\])*;", body)
             if not is_client:
@@ -75,8 +86,9 @@ def names_in_c(icd) -> Names:
 
 
 RESERVED_IN_C = re.compile(
-    # The name of a macro that only some nodes have, or a type or function for a direction without messages or without
-    # messages of variable length, stays reserved: the user's next version of the ICD may need it.
+    # The name of a macro that only some nodes have, or a type or function for a
+    # direction without messages or without messages of variable length, stays reserved:
+    # the user's next version of the ICD may need it.
     r"\w+_(NODE_TYPE|INTERFACE_VERSION|\w*BYTES|SEQUENCES|LONGEST)"
     r"|\w+_(telemetry|telecommand)_(t|name|length|size|decode|encode)"
     r"|\w+_client_(uart|i2c|can)|\w+_(sender_t|sender_init|(ask|put|send|request)_\w+)"
@@ -86,7 +98,11 @@ RESERVED_IN_C = re.compile(
 
 def test_c_declares_the_names_of_the_table(icd):
     in_table, in_code = table(icd, "c"), names_in_c(icd)
-    of_directions = {scope for scope in in_table if re.fullmatch(r"members of \w+_(telemetry|telecommand)_t", scope)}
+    of_directions = {
+        scope
+        for scope in in_table
+        if re.fullmatch(r"members of \w+_(telemetry|telecommand)_t", scope)
+    }
     for scope in of_directions:  # besides the union of the messages
         in_code[scope] -= {"id", "which", "as"}
     for texts in in_code.values():
@@ -107,7 +123,9 @@ def names_in_python(icd) -> Names:
         for declared in ast.parse(text).body:
             if isinstance(declared, ast.ClassDef):
                 names[f"module {package}"].add(declared.name)
-                names[f"members of {package}.{declared.name}"].update(_members_of_class(declared))
+                names[f"members of {package}.{declared.name}"].update(
+                    _members_of_class(declared)
+                )
     return names
 
 
@@ -123,7 +141,15 @@ def _members_of_class(declared: ast.ClassDef) -> set[str]:
     return members
 
 
-USED_IN_PYTHON = {*IN_MESSAGE, "ENDS_EARLY", "CONDITIONAL", "TAIL", "INNER", "NESTED", "__ranges__"}
+USED_IN_PYTHON = {
+    *IN_MESSAGE,
+    "ENDS_EARLY",
+    "CONDITIONAL",
+    "TAIL",
+    "INNER",
+    "NESTED",
+    "__ranges__",
+}
 
 
 def test_python_declares_the_names_of_the_table(icd):
@@ -132,7 +158,11 @@ def test_python_declares_the_names_of_the_table(icd):
         if scope.startswith("members of "):
             texts -= USED_IN_PYTHON - in_table.get(scope, set())
     assert differences(in_code, in_table) == []
-    described = {scope: texts for scope, texts in in_table.items() if scope.startswith("members of ")}
+    described = {
+        scope: texts
+        for scope, texts in in_table.items()
+        if scope.startswith("members of ")
+    }
     assert described
     assert differences(described, in_code) == []
 
@@ -141,7 +171,17 @@ METHOD = re.compile(r"^    pub (?:const )?fn\s+((?:r#)?\w+)", re.M)
 FIELD = re.compile(r"^    pub ((?:r#)?\w+):", re.M)
 CONSTANT = re.compile(r"^    pub const (\w+):", re.M)
 OF_EVERY_TYPE = {"raw", "name", "write_to", "id", "length"}
-OF_EVERY_MESSAGE = {"from_bytes", "from_array", "to_bytes", "default", "from_longest", "size", "inner", "fit", "rows"}
+OF_EVERY_MESSAGE = {
+    "from_bytes",
+    "from_array",
+    "to_bytes",
+    "default",
+    "from_longest",
+    "size",
+    "inner",
+    "fit",
+    "rows",
+}
 CONSTANTS_OF_EVERY_MESSAGE = {"NAME", "LENGTH", "ID", "SET_ID", "GET_ID", "FIELDS"}
 
 
@@ -152,23 +192,38 @@ def test_rust_declares_the_names_of_the_table(icd):
         for composite in node.composites:
             code = texts[f"src/{node.name}/{composite.name}.rs"]
             scope = f"{node.name}::{composite.model.name}"
-            in_code[f"types of {node.name}"].update(re.findall(r"^pub struct (\w+)", code, re.M))
-            for kind, pattern in (("methods", METHOD), ("fields", FIELD), ("constants", CONSTANT)):
+            in_code[f"types of {node.name}"].update(
+                re.findall(r"^pub struct (\w+)", code, re.M)
+            )
+            for kind, pattern in (
+                ("methods", METHOD),
+                ("fields", FIELD),
+                ("constants", CONSTANT),
+            ):
                 in_code[f"{kind} of {scope}"].update(pattern.findall(code))
-            in_code[f"methods of {scope}"].update(re.findall(r"^    fn\s(read_\w+|write_\w+)", code, re.M))
+            in_code[f"methods of {scope}"].update(
+                re.findall(r"^    fn\s(read_\w+|write_\w+)", code, re.M)
+            )
         if node.enums:
             code = texts[f"src/{node.name}/enums.rs"]
-            in_code[f"enumerations of {node.name}"].update(re.findall(r"^pub enum (\w+)", code, re.M))
-            variants = dict(re.findall(r"^pub enum (\w+) \{\n(.*?)^\}", code, re.M | re.S))
+            in_code[f"enumerations of {node.name}"].update(
+                re.findall(r"^pub enum (\w+)", code, re.M)
+            )
+            variants = dict(
+                re.findall(r"^pub enum (\w+) \{\n(.*?)^\}", code, re.M | re.S)
+            )
             for enum in node.enums:
                 body = variants["".join(word.capitalize() for word in enum.words)]
                 scope = f"variants of {node.name}::{enum.model.name}"
-                in_code[scope].update(re.findall(r"^    (\w+)(?:\(\w+\))?(?: = -?\w+)?,$", body, re.M))
+                in_code[scope].update(
+                    re.findall(r"^    (\w+)(?:\(\w+\))?(?: = -?\w+)?,$", body, re.M)
+                )
     fixed = OF_EVERY_TYPE | OF_EVERY_MESSAGE | CONSTANTS_OF_EVERY_MESSAGE
     for scope, names in in_code.items():
         expected[scope] = in_table[scope]
         if scope.startswith(("methods of ", "constants of ")):
-            # What the generated code declares itself stands in the table only so that names of the ICD are compared with it.
+            # What the generated code declares itself stands in the table only so that
+            # names of the ICD are compared with it.
             own = {symbol for symbol in in_table[scope] if symbol not in fixed}
             expected[scope], in_code[scope] = own, names - (fixed - own)
         elif scope.startswith(("types of ", "enumerations of ")):
@@ -183,8 +238,13 @@ def _used_in_rust() -> set[str]:
     return {*names.USED_TYPES, "Option", "From", "Enumeration"}
 
 
-@pytest.mark.parametrize(("language", "comments"), [("python", r'"""(?:\\.|[^\\])*?"""|#.*'), ("rust", r"//.*")])
-def test_types_have_their_name_from_the_table_wherever_code_uses_them(monkeypatch, language, comments):
+@pytest.mark.parametrize(
+    ("language", "comments"),
+    [("python", r'"""(?:\\.|[^\\])*?"""|#.*'), ("rust", r"//.*")],
+)
+def test_types_have_their_name_from_the_table_wherever_code_uses_them(
+    monkeypatch, language, comments
+):
     icd = load([SETS["shipped"]], check=False).icd
     original, names = NamingPolicy.symbol, set()
 
@@ -198,7 +258,11 @@ def test_types_have_their_name_from_the_table_wherever_code_uses_them(monkeypatc
         return f"{text}Marked"
 
     monkeypatch.setattr(NamingPolicy, "symbol", symbol)
-    files = {path: text for path, text in generate(icd, language).items() if "cubemag" in path}
+    files = {
+        path: text
+        for path, text in generate(icd, language).items()
+        if "cubemag" in path
+    }
     unmarked = set()
     for text in files.values():
         code = re.sub(rf'{comments}|"(?:\\.|[^"\\])*"', "", text)

@@ -1,3 +1,5 @@
-"""icdgen: code, vectors and documentation from validated interface control documents (ICDs)."""
+"""icdgen: code, vectors and documentation from validated interface control documents
+(ICDs).
+"""
 
 __version__ = "0.4.0"

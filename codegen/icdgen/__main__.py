@@ -1,4 +1,7 @@
-"""Entry point of ``icdgen``. A build step without changes ends here, before any large module is imported."""
+"""Entry point of ``icdgen``.
+
+A build step without changes ends here, before any large module is imported.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,9 @@ import sys
 
 
 def main() -> None:
-    """Run the command line and exit: 0 success, 1 findings, 2 wrong usage, 130 interrupted."""
+    """Run the command line and exit: 0 success, 1 findings, 2 wrong usage, 130
+    interrupted.
+    """
     try:
         _main()
     except KeyboardInterrupt:  # only while modules are imported; later `cli` handles it
@@ -15,7 +20,9 @@ def main() -> None:
 
 
 def _main() -> None:
-    """Print the note of a recorded run whose files are unchanged, or else run the command."""
+    """Print the note of a recorded run whose files are unchanged, or else run the
+    command.
+    """
     from icdgen import cache
 
     arguments = sys.argv[1:]
@@ -36,13 +43,16 @@ def _main() -> None:
     try:
         cli.main(arguments, name)
     finally:
-        # Otherwise the interpreter collects once more at its end, which takes a tenth of
-        # the run.
+        # Otherwise the interpreter collects once more at its end, which takes a tenth
+        # of the run.
         gc.freeze()
 
 
 def _was_printed(note: str) -> bool:
-    """Print a note; return whether that succeeded. If not, the run continues with `cli`, which reports the error."""
+    """Print a note; return whether that succeeded.
+
+    If not, the run continues with `cli`, which reports the error.
+    """
     try:
         print(note, end="\n" if note else "", flush=True)
     except (OSError, ValueError):

@@ -1,10 +1,13 @@
-"""Cache of checked models and of finished runs, so that a build step without changes takes almost no time.
+"""Cache of checked models and of finished runs, so that a build step without changes
+takes almost no time.
 
-A record has data and a list of files with their SHA-256. It is valid only while all these files, and icdgen itself, are
-unchanged. Records are in the cache folder of the user; ``ICDGEN_CACHE=off`` disables the cache.
+A record has data and a list of files with their SHA-256. It is valid only while all
+these files, and icdgen itself, are unchanged. Records are in the cache folder of the
+user; ``ICDGEN_CACHE=off`` disables the cache.
 
-Records determine what is generated. Therefore a record is ignored if anyone other than the user could have written it, and
-records are plain data that is never executed. Every start imports this module, so it imports almost nothing.
+Records determine what is generated. Therefore a record is ignored if anyone other than
+the user could have written it, and records are plain data that is never executed. Every
+start imports this module, so it imports almost nothing.
 """
 
 from __future__ import annotations
@@ -21,7 +24,10 @@ _TEXT = ("utf-8", "surrogateescape")
 
 
 def folder() -> str | None:
-    """Return the cache folder; None if the cache is disabled or the user has no home folder."""
+    """Return the cache folder.
+
+    Returns None if the cache is disabled or the user has no home folder.
+    """
     chosen = os.environ.get("ICDGEN_CACHE")
     if chosen in ("off", "0"):
         return None
@@ -38,14 +44,26 @@ def folder() -> str | None:
 
 
 def key(*parts: str) -> str:
-    """Return the name of a record about ``parts`` that is valid for this version of icdgen."""
-    return sha256("\0".join((fingerprints.of_tool(), *parts)).encode(*_TEXT)).hexdigest()
+    """Return the name of a record about ``parts`` that is valid for this version of
+    icdgen.
+    """
+    return sha256(
+        "\0".join((fingerprints.of_tool(), *parts)).encode(*_TEXT)
+    ).hexdigest()
 
 
 def recall(kind: str, name: str) -> bytes | None:
-    """Return the data of a record; None if it is absent, damaged, not private, or if a file that it lists has changed."""
+    """Return the data of a record.
+
+    Returns None if it is absent, damaged, not private, or if a file that it lists has
+    changed.
+    """
     top = folder()
-    if top is None or not _is_private_folder(top) or not _is_private_folder(os.path.join(top, kind)):
+    if (
+        top is None
+        or not _is_private_folder(top)
+        or not _is_private_folder(os.path.join(top, kind))
+    ):
         return None
     digest, _, body = _content(os.path.join(top, kind, name)).partition(b"\n")
     if digest != sha256(body).hexdigest().encode():
@@ -59,28 +77,41 @@ def recall(kind: str, name: str) -> bytes | None:
 
 
 def remember(kind: str, name: str, data: bytes, files: dict[str, str]) -> None:
-    """Write a record. ``files`` has the fingerprint of each file that was read or written. Does not raise `OSError`."""
+    """Write a record.
+
+    ``files`` has the fingerprint of each file that was read or written. Does not raise
+    `OSError`.
+    """
     # Paths are stored one per line, so those with a line break cannot be recorded.
-    if fingerprints.UNKNOWN in files.values() or any(len(path.splitlines()) != 1 for path in files):
+    if fingerprints.UNKNOWN in files.values() or any(
+        len(path.splitlines()) != 1 for path in files
+    ):
         return
     top = folder()
     if top is None:
         return
-    head = "\n".join(f"{fingerprint} {path}" for path, fingerprint in files.items()).encode(*_TEXT)
+    head = "\n".join(
+        f"{fingerprint} {path}" for path, fingerprint in files.items()
+    ).encode(*_TEXT)
     body = head + b"\0" + data
     try:
         for place in (top, os.path.join(top, kind)):
             _make(place)
             if not _is_private_folder(place):
                 return
-        _write(os.path.join(top, kind, name), sha256(body).hexdigest().encode() + b"\n" + body)
+        _write(
+            os.path.join(top, kind, name),
+            sha256(body).hexdigest().encode() + b"\n" + body,
+        )
         _prune(os.path.join(top, kind))
     except OSError:
         return
 
 
 def _is_private(status: os.stat_result) -> bool:
-    """Return whether a file or folder belongs to the user, and no other user can write to it."""
+    """Return whether a file or folder belongs to the user, and no other user can write
+    to it.
+    """
     # On Windows, other users cannot write to the folders of a profile.
     if not hasattr(os, "getuid"):
         return True
@@ -97,13 +128,25 @@ def _is_private_folder(path: str) -> bool:
 
 
 def _content(path: str) -> bytes:
-    """Return the bytes of a private file; empty for anything else, such as a link or a pipe."""
-    flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    """Return the bytes of a private file.
+
+    Returns empty for anything else, such as a link or a pipe.
+    """
+    flags = (
+        os.O_RDONLY
+        | getattr(os, "O_NOFOLLOW", 0)
+        | getattr(os, "O_NONBLOCK", 0)
+        | getattr(os, "O_BINARY", 0)
+    )
     try:
         with open(os.open(path, flags), "rb") as file:
             status = os.fstat(file.fileno())
             # A second hard link could be in a folder that others can write to.
-            is_own = stat.S_ISREG(status.st_mode) and _is_private(status) and status.st_nlink == 1
+            is_own = (
+                stat.S_ISREG(status.st_mode)
+                and _is_private(status)
+                and status.st_nlink == 1
+            )
             return file.read() if is_own and status.st_size <= _BYTES else b""
     except OSError:
         return b""
@@ -119,7 +162,9 @@ def _make(place: str) -> None:
 def _write(target: str, data: bytes) -> None:
     """Write a file atomically."""
     part = f"{target}.{os.getpid()}"
-    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600)
+    handle = os.open(
+        part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600
+    )
     try:
         with open(handle, "wb") as file:
             file.write(data)

@@ -1,4 +1,7 @@
-"""Command line of icdgen. The commands are modules of ``icdgen.commands``, each imported only when it is used."""
+"""Command line of icdgen.
+
+The commands are modules of ``icdgen.commands``, each imported only when it is used.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,9 @@ _UNLIMITED = 10_000  # characters of a sentence in `--help`
 
 
 class _Commands(click.Group):
-    """A group whose default command is ``generate``, so that a build step reads ``icdgen --lang c``."""
+    """A group whose default command is ``generate``, so that a build step reads
+    ``icdgen --lang c``.
+    """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
@@ -45,21 +50,36 @@ class _Commands(click.Group):
         if name not in _COMMANDS:
             return None
         python = f"{name}_" if iskeyword(name) else name
-        command: click.Command = getattr(import_module(f"icdgen.commands.{python}"), python)
+        command: click.Command = getattr(
+            import_module(f"icdgen.commands.{python}"), python
+        )
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse arguments; insert the default command unless they begin with a command or an option of the group."""
+        """Parse arguments.
+
+        Insert the default command unless they begin with a command or an option of the
+        group.
+        """
         if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", *_FOLDERS):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the commands in groups, with the complete first sentence of each. Click would truncate it."""
+    def format_commands(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
+        """Write the commands in groups, with the complete first sentence of each.
+
+        Click would truncate it.
+        """
         for title, names in _GROUPS.items():
             commands = ((name, self.get_command(ctx, name)) for name in names)
-            rows = [(name, command.get_short_help_str(_UNLIMITED)) for name, command in commands if command is not None]
+            rows = [
+                (name, command.get_short_help_str(_UNLIMITED))
+                for name, command in commands
+                if command is not None
+            ]
             with formatter.section(title):
                 formatter.write_dl(rows)
 
@@ -72,7 +92,11 @@ class _Commands(click.Group):
         super().format_epilog(ctx, formatter)
 
     def invoke(self, ctx: click.Context) -> object:
-        """Run the command. Errors get the context of the shipped ICDs; a closed pipe has the exit status of SIGPIPE."""
+        """Run the command.
+
+        Errors get the context of the shipped ICDs; a closed pipe has the exit status of
+        SIGPIPE.
+        """
         try:
             return super().invoke(ctx)
         except UserError as error:
@@ -84,15 +108,24 @@ class _Commands(click.Group):
 
 
 def _refuse_mistyped(word: str) -> None:
-    """Raise `UserError` for a first argument that looks like a command but is neither a command nor a file or folder."""
+    """Raise `UserError` for a first argument that looks like a command but is neither a
+    command nor a file or folder.
+    """
     if not word.isidentifier() or os.path.lexists(word):
         return
-    help = question(close_words(word, _COMMANDS)) or "`icdgen --help` lists the commands"
+    help = (
+        question(close_words(word, _COMMANDS)) or "`icdgen --help` lists the commands"
+    )
     raise UserError(f"`{word}` is neither a command nor a file", help)
 
 
-def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Return an option that prints a shipped folder and exits. ``place`` is a function of `icdgen.shipped`."""
+def _folder(
+    name: str, what: str, place: str
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return an option that prints a shipped folder and exits.
+
+    ``place`` is a function of `icdgen.shipped`.
+    """
 
     def show(ctx: click.Context, option: click.Parameter, is_set: bool) -> None:
         if is_set:
@@ -103,7 +136,9 @@ def _folder(name: str, what: str, place: str) -> Callable[[Callable[..., None]],
             ctx.exit()
 
     help = f"Show the folder of {what}, and exit."
-    return click.option(name, is_flag=True, expose_value=False, is_eager=True, callback=show, help=help)
+    return click.option(
+        name, is_flag=True, expose_value=False, is_eager=True, callback=show, help=help
+    )
 
 
 @click.group(
@@ -124,7 +159,10 @@ def icdgen(ctx: click.Context) -> None:
 
 
 def _generate_or_help(ctx: click.Context) -> None:
-    """Generate the languages of icdgen.toml; if it names none, print the help and exit with status 2."""
+    """Generate the languages of icdgen.toml.
+
+    If it names none, print the help and exit with status 2.
+    """
     from icdgen.commands.common import chosen
 
     command = icdgen.get_command(ctx, _DEFAULT)
@@ -136,7 +174,10 @@ def _generate_or_help(ctx: click.Context) -> None:
 
 
 def main(arguments: list[str], run: str = "") -> None:
-    """Run a command line and exit. ``run`` is the name of the cache record of this command line."""
+    """Run a command line and exit.
+
+    ``run`` is the name of the cache record of this command line.
+    """
     try:
         _show_anything()
         status = _run(arguments, run)
@@ -153,9 +194,15 @@ def main(arguments: list[str], run: str = "") -> None:
         status = 141
     except OSError as error:
         place = error.filename or "the output cannot be written"
-        status = _complain(f"{place}: {error.strerror}", "check the path and the free space of the disk")
+        status = _complain(
+            f"{place}: {error.strerror}",
+            "check the path and the free space of the disk",
+        )
     except RecursionError:
-        status = _complain("the input is nested too deeply", "an ICD needs five levels, icdgen.toml two")
+        status = _complain(
+            "the input is nested too deeply",
+            "an ICD needs five levels, icdgen.toml two",
+        )
     except MemoryError:
         status = _complain("out of memory")
     if status != 0:
@@ -164,7 +211,9 @@ def main(arguments: list[str], run: str = "") -> None:
 
 
 def _show_anything() -> None:
-    """Make the standard streams print escapes for characters that the encoding of the terminal lacks."""
+    """Make the standard streams print escapes for characters that the encoding of the
+    terminal lacks.
+    """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -173,7 +222,9 @@ def _show_anything() -> None:
 def _run(arguments: list[str], run: str) -> int:
     """Run a command line; return its exit status."""
     try:
-        status = icdgen.main(arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run})
+        status = icdgen.main(
+            arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run}
+        )
     except SystemExit as end:
         status = end.code
     if sys.stdout is not None:
@@ -182,7 +233,10 @@ def _run(arguments: list[str], run: str) -> int:
 
 
 def _drop_unwritten_output() -> None:
-    """Discard output that cannot be written. Otherwise Python tries again at its end and prints a traceback."""
+    """Discard output that cannot be written.
+
+    Otherwise Python tries again at its end and prints a traceback.
+    """
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
@@ -191,7 +245,10 @@ def _drop_unwritten_output() -> None:
 
 
 def _complain(message: str, help: str = "") -> int:
-    """Print an error and its help, unless the error stream is closed; return the exit status 2."""
+    """Print an error and its help, unless the error stream is closed.
+
+    Return the exit status 2.
+    """
     lines = [f"icdgen: error: {line}" for line in message.split("\n")]
     lines += [f"  help: {line}" for line in help.split("\n") if line]
     with suppress(OSError):

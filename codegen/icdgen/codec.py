@@ -1,12 +1,16 @@
-"""Reference codec: slow, simple and exact. Tests compare all generated code with it, so it does not use ``icdgen.layout``.
+"""Reference codec: slow, simple and exact.
 
-Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and, for floats, the int of their
-IEEE 754 bits, which preserves the payload of a NaN. Physical values are exact `fractions.Fraction`s; of fields with a curve
-they are doubles.
+Tests compare all generated code with it, so it does not use ``icdgen.layout``.
 
-`decode_frame` returns the values that a frame has. Objects of generated code have room for the longest frame. Therefore
-`decode` returns and `encode` takes the values of the longest frame: elements that a frame does not have are 0, and
-bytes or text of variable length are padded with zeros. `decode` and `frame_with` convert between the two forms.
+Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and,
+for floats, the int of their IEEE 754 bits, which preserves the payload of a NaN.
+Physical values are exact `fractions.Fraction`s; of fields with a curve they are
+doubles.
+
+`decode_frame` returns the values that a frame has. Objects of generated code have room
+for the longest frame. Therefore `decode` returns and `encode` takes the values of the
+longest frame: elements that a frame does not have are 0, and bytes or text of variable
+length are padded with zeros. `decode` and `frame_with` convert between the two forms.
 """
 
 from __future__ import annotations
@@ -29,7 +33,10 @@ Raw: TypeAlias = "int | bytes"
 
 
 class CodecError(ValueError):
-    """A value is out of range, or a frame does not match the message. The text has the expected and the actual value."""
+    """A value is out of range, or a frame does not match the message.
+
+    The text has the expected and the actual value.
+    """
 
 
 class LengthError(CodecError):
@@ -41,7 +48,11 @@ class LengthError(CodecError):
 
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
-    """Return the raw values of the longest frame by name, without absent optional fields. Raises `LengthError`."""
+    """Return the raw values of the longest frame by name, without absent optional
+    fields.
+
+    Raises `LengthError`.
+    """
     raw = decode_frame(node, message, frame)
     if not message.layout.parts:
         return raw
@@ -58,7 +69,8 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
 def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     """Return the raw values that a frame has, by name. Raises `LengthError`.
 
-    The result has no entries for array elements that the frame lacks and for absent optional fields.
+    The result has no entries for array elements that the frame lacks and for absent
+    optional fields.
     """
     sizes = sizes_of_frame(node, message, frame)
     fields = frame_fields(message.layout, node.orders, sizes)
@@ -81,15 +93,27 @@ def decode_frame(node: Node, message: Message, frame: bytes) -> dict[str, Raw]:
     return raw | derived(message, raw) if message.layout.derived else raw
 
 
-def fields_of_frame(node: Node, message: Message, raw: Mapping[str, Raw]) -> list[FrameField]:
-    """List the scalars with values in `raw`, at their positions in the frame of these values. Raises `CodecError`."""
+def fields_of_frame(
+    node: Node, message: Message, raw: Mapping[str, Raw]
+) -> list[FrameField]:
+    """List the scalars with values in `raw`, at their positions in the frame of these
+    values.
+
+    Raises `CodecError`.
+    """
     return [
-        field for field in frame_fields(message.layout, node.orders, sizes_of_values(message, raw)) if field.name in raw
+        field
+        for field in frame_fields(
+            message.layout, node.orders, sizes_of_values(message, raw)
+        )
+        if field.name in raw
     ]
 
 
 def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
-    """Return the derived values whose operands have raw values, each as the bits of a double."""
+    """Return the derived values whose operands have raw values, each as the bits of a
+    double.
+    """
     scalars: dict[str, Scalar] = {}
     for node in message.layout.nodes:
         if isinstance(node, Scalar | Overlay | Derived):
@@ -98,13 +122,20 @@ def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:
     for node in message.layout.derived:
         operands = node.derivation.fields
         if all(name in values for name in operands):
-            doubles = [value_double(scalars[name], _number(values[name])) for name in operands]
-            values[node.name] = results[node.name] = float_bits(node.scalar, node.derivation.double(doubles))
+            doubles = [
+                value_double(scalars[name], _number(values[name])) for name in operands
+            ]
+            values[node.name] = results[node.name] = float_bits(
+                node.scalar, node.derivation.double(doubles)
+            )
     return results
 
 
 def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
-    """Return the size of each variable-length node of a frame. Raises `LengthError` if no sizes give its length."""
+    """Return the size of each variable-length node of a frame.
+
+    Raises `LengthError` if no sizes give its length.
+    """
     layout, actual = message.layout, len(frame)
     if actual < layout.shortest:
         raise LengthError(message, layout.shortest, actual)
@@ -114,35 +145,63 @@ def sizes_of_frame(node: Node, message: Message, frame: bytes) -> Sizes:
         return {}
     last = layout.parts[-1]
     sizes = {last.name: 0}
-    # If elements of the last part have variable-length arrays, its own counter is needed to place them.
+    # If elements of the last part have variable-length arrays, its own counter is
+    # needed to place them.
     for name, part in layout.parts_by_size.items():
         if part is not last or part.inner:
             if not part.low <= counters[part.counter] <= part.high:
-                raise LengthError(message, layout.length if actual == layout.longest else layout.longest, actual)
+                raise LengthError(
+                    message,
+                    layout.length if actual == layout.longest else layout.longest,
+                    actual,
+                )
             sizes[name] = counters[part.counter] + part.plus
     end = layout.size_of_frame(sizes)
     if last.inner:
         _check_length(message, range(end, end + 1), actual)
         return sizes
-    _check_length(message, range(end + last.fewest * last.step, end + last.most * last.step + 1, last.step), actual)
+    _check_length(
+        message,
+        range(
+            end + last.fewest * last.step, end + last.most * last.step + 1, last.step
+        ),
+        actual,
+    )
     sizes[last.name] = (actual - end) // last.step
     if not last.is_rest and counters[last.counter] + last.plus != sizes[last.name]:
-        raise LengthError(message, max(0, end + (counters[last.counter] + last.plus) * last.step), actual)
+        raise LengthError(
+            message,
+            max(0, end + (counters[last.counter] + last.plus) * last.step),
+            actual,
+        )
     return sizes
 
 
 def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
-    """Return the raw values of the fields that count the elements of variable-length nodes."""
+    """Return the raw values of the fields that count the elements of variable-length
+    nodes.
+    """
     names = {part.counter for part in layout.counted_parts if not part.is_rest}
     bits = int.from_bytes(frame, "little")
     fields = frame_fields(layout, node.orders, dict.fromkeys(layout.parts_by_size, 0))
-    return {field.name: _number(_read(field, bits)) for field in fields if field.name in names}
+    return {
+        field.name: _number(_read(field, bits))
+        for field in fields
+        if field.name in names
+    }
 
 
 def _check_length(message: Message, lengths: range, actual: int) -> None:
-    """Raise `LengthError` for a length that is not in `lengths`; it expects the next shorter length, or else the shortest."""
+    """Raise `LengthError` for a length that is not in `lengths`.
+
+    It expects the next shorter length, or else the shortest.
+    """
     if actual not in lengths:
-        raise LengthError(message, max((length for length in lengths if length < actual), default=lengths[0]), actual)
+        raise LengthError(
+            message,
+            max((length for length in lengths if length < actual), default=lengths[0]),
+            actual,
+        )
 
 
 def _number(raw: Raw) -> int:
@@ -151,15 +210,26 @@ def _number(raw: Raw) -> int:
 
 
 def sizes_of_values(message: Message, raw: Mapping[str, Raw]) -> Sizes:
-    """Return the size of each variable-length node, from the values of its counter. Raises `CodecError`."""
-    return {name: size_of_values(part, raw) for name, part in message.layout.parts_by_size.items()}
+    """Return the size of each variable-length node, from the values of its counter.
+
+    Raises `CodecError`.
+    """
+    return {
+        name: size_of_values(part, raw)
+        for name, part in message.layout.parts_by_size.items()
+    }
 
 
 def size_of_values(part: VariablePart, raw: Mapping[str, Raw]) -> int:
-    """Return the number of elements, or of bytes, of a part from its counter. Raises `CodecError` if it is out of range."""
+    """Return the number of elements, or of bytes, of a part from its counter.
+
+    Raises `CodecError` if it is out of range.
+    """
     value = _number(raw.get(part.counter, part.low))
     if not part.low <= value <= part.high:
-        raise CodecError(f"{part.counter!r} takes {part.low} to {part.high}, not {value}")
+        raise CodecError(
+            f"{part.counter!r} takes {part.low} to {part.high}, not {value}"
+        )
     return value + part.plus
 
 
@@ -174,35 +244,59 @@ def frame_of(frame: bytes, values: Mapping[FrameField, int]) -> bytes:
 
 def is_present(field: FrameField, raw: Mapping[str, Raw]) -> bool:
     """Return whether a message with these raw values meets all conditions of a field."""
-    return not field.scalar.present_if or all(raw.get(need.field, 0) in need.values for need in field.scalar.present_if)
+    return not field.scalar.present_if or all(
+        raw.get(need.field, 0) in need.values for need in field.scalar.present_if
+    )
 
 
-def message_of_frame(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
-    """Return the message of a frame among messages that share an id; None if the frame matches none of them.
+def message_of_frame(
+    icd: Icd, messages: Sequence[Message], frame: bytes
+) -> Message | None:
+    """Return the message of a frame among messages that share an id.
 
-    A frame matches a message that can have its length and whose constants it has. Constants of array elements, and constants
-    that all the messages have in common, are not compared. If several messages match, the message with the most constants is
-    returned. Raises `LengthError` if all messages have the same fixed length and the frame has another.
+    Returns None if the frame matches none of them.
+
+    A frame matches a message that can have its length and whose constants it has.
+    Constants of array elements, and constants that all the messages have in common, are
+    not compared. If several messages match, the message with the most constants is
+    returned. Raises `LengthError` if all messages have the same fixed length and the
+    frame has another.
     """
     bits = int.from_bytes(frame, "little")
-    constants = {id(message): _constants(icd.node(message.node), message) for message in messages}
-    shared = set.intersection(*(set(places) for places in constants.values())) if constants else set()
+    constants = {
+        id(message): _constants(icd.node(message.node), message) for message in messages
+    }
+    shared = (
+        set.intersection(*(set(places) for places in constants.values()))
+        if constants
+        else set()
+    )
     matches = []
     for message in messages:
         own = constants[id(message)]
         if len(frame) not in message.layout.lengths:
             continue
-        if all(_read(field, bits) == field.const for place, field in own.items() if place not in shared):
+        if all(
+            _read(field, bits) == field.const
+            for place, field in own.items()
+            if place not in shared
+        ):
             matches.append((len(own), message))
     if matches:
         return max(matches, key=lambda match: match[0])[1]
-    lengths = {length for message in messages for length in (message.layout.shortest, message.layout.longest)}
+    lengths = {
+        length
+        for message in messages
+        for length in (message.layout.shortest, message.layout.longest)
+    }
     if len(lengths) == 1 and len(frame) not in lengths:
         raise LengthError(messages[0], lengths.pop(), len(frame))
     return None
 
 
-def message_of_frame_if_any(icd: Icd, messages: Sequence[Message], frame: bytes) -> Message | None:
+def message_of_frame_if_any(
+    icd: Icd, messages: Sequence[Message], frame: bytes
+) -> Message | None:
     """Return the result of `message_of_frame`; None if it raises `LengthError`."""
     try:
         return message_of_frame(icd, messages, frame)
@@ -213,8 +307,8 @@ def message_of_frame_if_any(icd: Icd, messages: Sequence[Message], frame: bytes)
 def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
     """Return the frame with these values of the longest frame; reserved bits are 0.
 
-    Values of overlay fields, derived values and fields that are absent from the frame are ignored. Raises `CodecError` for
-    a missing, unknown or invalid value.
+    Values of overlay fields, derived values and fields that are absent from the frame
+    are ignored. Raises `CodecError` for a missing, unknown or invalid value.
     """
     fields = frame_fields(message.layout, node.orders)
     names = {field.name for field in fields}
@@ -228,36 +322,50 @@ def encode(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
 
 
 def initial_values(node: Node, message: Message) -> dict[str, Raw]:
-    """Return the raw values of a new message by name, without overlay fields, derived values and absent optional fields."""
-    fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
+    """Return the raw values of a new message by name, without overlay fields, derived
+    values and absent optional fields.
+    """
+    fields = [
+        field for field in frame_fields(message.layout, node.orders) if field.is_raw
+    ]
     raw = {field.name: initial_value(message, field) for field in fields}
     return {
-        field.name: raw[field.name] for field in fields if all(raw.get(c.field) in c.values for c in field.conditions)
+        field.name: raw[field.name]
+        for field in fields
+        if all(raw.get(c.field) in c.values for c in field.conditions)
     }
 
 
 def initial_value(message: Message, field: FrameField) -> Raw:
     """Return the raw value of a field of a new message: see `Scalar.initial_value`."""
-    return field.scalar.initial_value(field.bits, message.layout.smallest_raw(field.name))
+    return field.scalar.initial_value(
+        field.bits, message.layout.smallest_raw(field.name)
+    )
 
 
 def new(node: Node, message: Message) -> dict[str, Raw]:
     """Return the raw values of the longest frame for a new message.
 
-    Generated code sets constants also in absent elements of variable-length nodes, except of the last node.
+    Generated code sets constants also in absent elements of variable-length nodes,
+    except of the last node.
     """
     values = initial_values(node, message)
     numbers = message.layout.initial_numbers
     fields = frame_fields(message.layout, node.orders)
     arrays = (f for f in fields if f.steps[0].element is not None)
     elements = {
-        f.name: values[f.name] for f in arrays if (f.steps[0].element or 0) < numbers.get(f.steps[0].node.name, 0)
+        f.name: values[f.name]
+        for f in arrays
+        if (f.steps[0].element or 0) < numbers.get(f.steps[0].node.name, 0)
     }
     return decode(node, message, encode(node, message, values)) | elements
 
 
 def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
-    """Return the frame with these values of the longest frame; all other bits are 0. Raises `CodecError` if one is invalid."""
+    """Return the frame with these values of the longest frame; all other bits are 0.
+
+    Raises `CodecError` if one is invalid.
+    """
     layout, bits = message.layout, 0
     sizes = sizes_of_values(message, raw)
     for field in frame_fields(layout, node.orders, sizes):
@@ -267,19 +375,25 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, Raw]) -> bytes:
         # Cut variable-length bytes, which have the length of the longest frame.
         if field.scalar.length is not None and isinstance(value, (bytes, bytearray)):
             if len(value) != field.scalar.length.most:
-                raise CodecError(f"{field.name!r} takes {field.scalar.length.most} bytes")
+                raise CodecError(
+                    f"{field.name!r} takes {field.scalar.length.most} bytes"
+                )
             value = value[: field.bits // 8]
         bits |= _written(field, value)
     return bits.to_bytes(layout.size_of_frame(sizes), "little")
 
 
 def check_raw(field: AnyScalar, value: int | bytes) -> None:
-    """Raise `CodecError` if the raw value has the wrong type, size or range for the field."""
+    """Raise `CodecError` if the raw value has the wrong type, size or range for the
+    field.
+    """
     if field.is_bytes:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
             raise CodecError(f"{field.name!r} takes {field.bits // 8} bytes")
         return
-    if type(value) is not int and (isinstance(value, (bytes, bytearray, str)) or value != int(value)):
+    if type(value) is not int and (
+        isinstance(value, (bytes, bytearray, str)) or value != int(value)
+    ):
         raise CodecError(f"{field.name!r} takes an integer")
     low, high = field.raw_min, field.raw_max
     if not low <= value <= high:
@@ -287,20 +401,30 @@ def check_raw(field: AnyScalar, value: int | bytes) -> None:
 
 
 def physical(field: AnyScalar, raw: int) -> Fraction | None:
-    """Return the exact physical value of an integer field with a scale; None for any other field."""
+    """Return the exact physical value of an integer field with a scale.
+
+    Returns None for any other field.
+    """
     return field.scale.physical(raw) if field.scale else None
 
 
 def physical_double(field: AnyScalar, raw: int) -> float | None:
-    """Return the physical value as the nearest double, or the double that a curve gives; None without a formula."""
+    """Return the physical value as the nearest double, or the double that a curve
+    gives; None without a formula.
+    """
     if field.curve is not None:
-        return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
+        return field.curve.double(
+            float_value(field, raw) if field.type == "float" else raw
+        )
     exact = physical(field, raw)
     return None if exact is None else to_double(exact)
 
 
 def value_double(field: AnyScalar, raw: int) -> float:
-    """Return the physical value of a number as a double; without a formula its raw value."""
+    """Return the physical value of a number as a double.
+
+    Without a formula its raw value.
+    """
     physical = physical_double(field, raw)
     if physical is not None:
         return physical
@@ -308,24 +432,41 @@ def value_double(field: AnyScalar, raw: int) -> float:
 
 
 def raw_from_physical(field: AnyScalar, value: Fraction | int | float) -> int:
-    """Return the nearest raw value, ties to even. Raises `CodecError` if the value is not finite or out of range."""
+    """Return the nearest raw value, ties to even.
+
+    Raises `CodecError` if the value is not finite or out of range.
+    """
     if isinstance(value, float) and not math.isfinite(value):
         raise CodecError(f"{field.name!r} takes a finite number, not {value}")
     if field.curve is not None:
-        return _raw_on_curve(field, field.curve, value if isinstance(value, float) else to_double(Fraction(value)))
+        return _raw_on_curve(
+            field,
+            field.curve,
+            value if isinstance(value, float) else to_double(Fraction(value)),
+        )
     exact = Fraction(value)
     # Fraction rounds ties to even.
     raw = round(field.scale.raw(exact) if field.scale else exact)
     if not field.raw_min <= raw <= field.raw_max:
-        low, high = sorted(float(field.scale.physical(r)) if field.scale else r for r in (field.raw_min, field.raw_max))
-        raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {float(exact):g}")
+        low, high = sorted(
+            float(field.scale.physical(r)) if field.scale else r
+            for r in (field.raw_min, field.raw_max)
+        )
+        raise CodecError(
+            f"{field.name!r} takes {low:g} to {high:g}, not {float(exact):g}"
+        )
     return raw
 
 
 def _raw_on_curve(field: AnyScalar, curve: Curve, value: float) -> int:
-    """Return the raw value whose physical value on a curve is nearest. Raises `CodecError` if the value is out of range."""
+    """Return the raw value whose physical value on a curve is nearest.
+
+    Raises `CodecError` if the value is out of range.
+    """
     if not field.is_invertible:
-        raise CodecError(f"the physical value of {field.name!r} does not lead back to a raw value")
+        raise CodecError(
+            f"the physical value of {field.name!r} does not lead back to a raw value"
+        )
     if field.type == "float":
         inverse = curve.inverse(value)
         if not math.isfinite(inverse):
@@ -339,22 +480,35 @@ def _raw_on_curve(field: AnyScalar, curve: Curve, value: float) -> int:
 
 
 def text(raw: bytes) -> str:
-    """Return the characters of a text field up to the first NUL; U+FFFD for each byte that is not ASCII."""
+    """Return the characters of a text field up to the first NUL.
+
+    U+FFFD for each byte that is not ASCII.
+    """
     return raw.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
 def raw_from_text(field: AnyScalar, value: str) -> bytes:
-    """Return the bytes of a text, padded with NUL. Raises `CodecError` if it is too long, not ASCII or contains a NUL."""
+    """Return the bytes of a text, padded with NUL.
+
+    Raises `CodecError` if it is too long, not ASCII or contains a NUL.
+    """
     size = field.bits // 8
     if not value.isascii() or "\0" in value or len(value) > size:
-        raise CodecError(f"{field.name!r} takes up to {size} ASCII characters, none of them NUL")
+        raise CodecError(
+            f"{field.name!r} takes up to {size} ASCII characters, none of them NUL"
+        )
     return value.encode("ascii").ljust(size, b"\0")
 
 
 def special_of(field: AnyScalar, raw: int) -> Special | None:
-    """Return the special value that a raw value is, if any. Floats compare as numbers, so all NaNs are equal."""
+    """Return the special value that a raw value is, if any.
+
+    Floats compare as numbers, so all NaNs are equal.
+    """
     if field.type != "float":
-        return next((special for special in field.special if special.value == raw), None)
+        return next(
+            (special for special in field.special if special.value == raw), None
+        )
     number = float_value(field, raw)
     for special in field.special:
         value = float_value(field, special.value)
@@ -371,11 +525,16 @@ def float_value(field: AnyScalar, bits: int) -> float:
 
 
 def float_bits(field: AnyScalar, value: float) -> int:
-    """Return the bits of the nearest float of the width of the field. Raises `CodecError` on overflow."""
+    """Return the bits of the nearest float of the width of the field.
+
+    Raises `CodecError` on overflow.
+    """
     try:
         packed = struct.pack("<f" if field.bits == 32 else "<d", value)
     except OverflowError:
-        raise CodecError(f"{field.name!r} is a {field.bits}-bit float and cannot hold {value:g}") from None
+        raise CodecError(
+            f"{field.name!r} is a {field.bits}-bit float and cannot hold {value:g}"
+        ) from None
     return int.from_bytes(packed, "little")
 
 
@@ -391,15 +550,21 @@ def to_double(exact: Fraction) -> float:
 
 
 @lru_cache(maxsize=1 << 16)
-def _runs(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[tuple[int, int, int], ...]:
-    """Return the runs of contiguous bits of a value: (bit of the frame, bit of the value, number of bits)."""
+def _runs(
+    at: int, bits: int, byte_order: str, bit_order: str
+) -> tuple[tuple[int, int, int], ...]:
+    """Return the runs of contiguous bits of a value: (bit of the frame, bit of the
+    value, number of bits).
+    """
     places = []
     for number in range(at, at + bits):
         byte, bit = divmod(number, 8)
         places.append((byte, bit if bit_order == "lsb0" else 7 - bit))
     # Sort by significance: first the byte with the least significant bits, and in it
     # the least significant bit.
-    places.sort(key=lambda place: (place[0] if byte_order == "little" else -place[0], place[1]))
+    places.sort(
+        key=lambda place: (place[0] if byte_order == "little" else -place[0], place[1])
+    )
     runs: list[tuple[int, int, int]] = []
     for index, (byte, weight) in enumerate(places):
         start = 8 * byte + weight
@@ -417,7 +582,9 @@ def _read(field: FrameField, frame: int) -> Raw:
         part = frame >> field.at // 8 * 8 & (1 << field.bits) - 1
         return part.to_bytes(field.bits // 8, "little")
     value = 0
-    for start, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
+    for start, index, count in _runs(
+        field.at, field.bits, field.byte_order, field.bit_order
+    ):
         value |= (frame >> start & (1 << count) - 1) << index
     if scalar.is_signed and value >> (field.bits - 1):
         value -= 1 << field.bits
@@ -425,14 +592,19 @@ def _read(field: FrameField, frame: int) -> Raw:
 
 
 def _written(field: FrameField, value: Raw) -> int:
-    """Return the bits of the frame that a value sets. Raises `CodecError` if the value is invalid."""
+    """Return the bits of the frame that a value sets.
+
+    Raises `CodecError` if the value is invalid.
+    """
     check_raw(field, value)
     if not field.has_bits:
         return 0
     if isinstance(value, (bytes, bytearray)):
         return int.from_bytes(value, "little") << field.at // 8 * 8
     frame, value = 0, int(value)
-    for start, index, count in _runs(field.at, field.bits, field.byte_order, field.bit_order):
+    for start, index, count in _runs(
+        field.at, field.bits, field.byte_order, field.bit_order
+    ):
         frame |= (value >> index & (1 << count) - 1) << start
     return frame
 
@@ -445,6 +617,14 @@ def _constants(node: Node, message: Message) -> dict[_Place, FrameField]:
     """Return the constants that every frame of a message has, by position and value."""
     constants: dict[_Place, FrameField] = {}
     for field in frame_fields(message.layout, node.orders):
-        if field.has_bits and field.const is not None and not field.conditions and field.at < 8 * message.layout.length:
-            constants[_runs(field.at, field.bits, field.byte_order, field.bit_order), field.const] = field
+        if (
+            field.has_bits
+            and field.const is not None
+            and not field.conditions
+            and field.at < 8 * message.layout.length
+        ):
+            constants[
+                _runs(field.at, field.bits, field.byte_order, field.bit_order),
+                field.const,
+            ] = field
     return constants

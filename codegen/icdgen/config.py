@@ -1,9 +1,10 @@
-"""Configuration file ``icdgen.toml`` of a project. ``docs/reference/configuration.md`` describes it.
+"""Configuration file ``icdgen.toml`` of a project.
 
-name = "thruster"                # of the project, and of its Python package and Rust crate
-icds = ["icd/thruster.yaml"]     # files or folders, relative to this file
-lang = ["c", "python"]
-out = "generated"
+``docs/reference/configuration.md`` describes it.
+
+name = "thruster"                # of the project, and of its Python package and Rust
+crate icds = ["icd/thruster.yaml"]     # files or folders, relative to this file lang =
+["c", "python"] out = "generated"
 
 [rust]
 crate = "thruster_icd"
@@ -48,10 +49,14 @@ class Config:
         path = self.path or Path(NAME)
         base = path.parent
         named = icd.relative_to(base) if icd.is_relative_to(base) else icd
-        entry = re.compile(rf"""(?<=["'])(?:\./)*{re.escape(named.as_posix())}/*(?=["'])""")
+        entry = re.compile(
+            rf"""(?<=["'])(?:\./)*{re.escape(named.as_posix())}/*(?=["'])"""
+        )
         for number, line in enumerate(self.text.splitlines(), 1):
             if match := entry.search(line):
-                return Place(str(path), number, match.start() + 1, len(match.group()) or 1)
+                return Place(
+                    str(path), number, match.start() + 1, len(match.group()) or 1
+                )
         return Place(str(path))
 
     def place_of_key(self, section: str, key: str) -> Place:
@@ -60,7 +65,8 @@ class Config:
 
 
 def find(start: Path) -> Config:
-    """Return the configuration of a folder, or of the nearest parent folder that has one, up to the root of the repository.
+    """Return the configuration of a folder, or of the nearest parent folder that has
+    one, up to the root of the repository.
 
     Raises `UserError` if the file cannot be read.
     """
@@ -86,14 +92,19 @@ def _read(path: Path) -> Config:
         text = path.read_text(encoding="utf-8")
         data = tomllib.loads(text)
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}", "make it readable") from None
+        raise UserError(
+            f"{path}: cannot be read: {error.strerror}", "make it readable"
+        ) from None
     except UnicodeDecodeError as error:
-        raise UserError(f"{path}: cannot be read ({error})", "save it as UTF-8") from None
+        raise UserError(
+            f"{path}: cannot be read ({error})", "save it as UTF-8"
+        ) from None
     except tomllib.TOMLDecodeError as error:
         where = re.search(r" \(at line (\d+), column (\d+)\)$", str(error))
         place = f"{path}:{where[1]}:{where[2]}" if where else str(path)
         raise UserError(
-            f"{place}: not TOML: {str(error)[: where.start() if where else None]}", "see https://toml.io"
+            f"{place}: not TOML: {str(error)[: where.start() if where else None]}",
+            "see https://toml.io",
         ) from None
     packages = {}
     for key, value in data.items():
@@ -119,39 +130,78 @@ def _read(path: Path) -> Config:
 
 
 def _package(path: Path, text: str, section: str, value: object) -> str:
-    """Return the name of the package in a section; empty without a name. Raises `UserError`."""
+    """Return the name of the package in a section; empty without a name.
+
+    Raises `UserError`.
+    """
     key = PACKAGES[section]
     if not isinstance(value, dict):
         raise _wrong(
-            path, text, "", section, f"`{section}` must be a section", f'[{section}], and below it {key} = "..."'
+            path,
+            text,
+            "",
+            section,
+            f"`{section}` must be a section",
+            f'[{section}], and below it {key} = "..."',
         )
     for own_key, name in value.items():
         if own_key != key:
-            raise _wrong(path, text, section, own_key, f"unknown key `{own_key}` in [{section}]", f"known key: {key}")
+            raise _wrong(
+                path,
+                text,
+                section,
+                own_key,
+                f"unknown key `{own_key}` in [{section}]",
+                f"known key: {key}",
+            )
         _check_value(path, text, section, key, name, str)
     return str(value.get(key, ""))
 
 
-def _check_value(path: Path, text: str, section: str, key: str, value: object, kind: type) -> None:
-    """Raise `UserError` unless a value is a text, or a list of texts if ``kind`` is list."""
+def _check_value(
+    path: Path, text: str, section: str, key: str, value: object, kind: type
+) -> None:
+    """Raise `UserError` unless a value is a text, or a list of texts if ``kind`` is
+    list.
+    """
     values = value if isinstance(value, list) else [value]
     texts = [item for item in values if isinstance(item, str)]
     if not isinstance(value, kind) or len(texts) != len(values):
-        expected, example = ("a list of texts", '["..."]') if kind is list else ("a text", '"..."')
-        raise _wrong(path, text, section, key, f"`{key}` must be {expected}", f"for instance {key} = {example}")
+        expected, example = (
+            ("a list of texts", '["..."]') if kind is list else ("a text", '"..."')
+        )
+        raise _wrong(
+            path,
+            text,
+            section,
+            key,
+            f"`{key}` must be {expected}",
+            f"for instance {key} = {example}",
+        )
     if any(not item or "\0" in item for item in texts):
         help = "write a path or a name, or take it out"
-        raise _wrong(path, text, section, key, f"`{key}` holds an empty text, or a NUL character", help)
+        raise _wrong(
+            path,
+            text,
+            section,
+            key,
+            f"`{key}` holds an empty text, or a NUL character",
+            help,
+        )
 
 
-def _wrong(path: Path, text: str, section: str, key: str, message: str, help: str) -> UserError:
+def _wrong(
+    path: Path, text: str, section: str, key: str, message: str, help: str
+) -> UserError:
     """Return the error about a key, with its place in the file."""
     place = _place(path, text, section, key)
     return UserError(f"{path}:{place.line}:{place.column}: {message}", help)
 
 
 def _place(path: Path, text: str, section: str, key: str) -> Place:
-    """Return the place of a key, also in the form `section.key`; the start of the file if the key is not found.
+    """Return the place of a key, also in the form `section.key`.
+
+    The start of the file if the key is not found.
 
     `tomllib` does not report positions.
     """

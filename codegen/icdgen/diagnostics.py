@@ -1,4 +1,7 @@
-"""Findings and their places in source texts. The package ``icdgen.reports`` formats them."""
+"""Findings and their places in source texts.
+
+The package ``icdgen.reports`` formats them.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,10 @@ _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 
 
 class Place(NamedTuple):
-    """A range of a source line. ``line`` and ``column`` count from 1; ``length`` is in characters, at least 1."""
+    """A range of a source line.
+
+    ``line`` and ``column`` count from 1; ``length`` is in characters, at least 1.
+    """
 
     file: str
     line: int = 1
@@ -37,7 +43,9 @@ class Lines:
 
     def marked(self, place: Place) -> str:
         """Return the text at a place; empty if there is no such line."""
-        return (self[place.line] or "")[place.column - 1 : place.column - 1 + place.length]
+        return (self[place.line] or "")[
+            place.column - 1 : place.column - 1 + place.length
+        ]
 
 
 class Fix(NamedTuple):
@@ -88,4 +96,7 @@ def has_errors(findings: Iterable[Finding]) -> bool:
 
 def in_order(findings: list[Finding]) -> list[Finding]:
     """Return the findings sorted by place, without duplicates."""
-    return sorted(set(findings), key=lambda finding: (finding.place, finding.code, finding.message))
+    return sorted(
+        set(findings),
+        key=lambda finding: (finding.place, finding.code, finding.message),
+    )

@@ -1,4 +1,5 @@
-"""Fingerprints (SHA-256) of files, to detect changes of inputs, outputs and icdgen itself.
+"""Fingerprints (SHA-256) of files, to detect changes of inputs, outputs and icdgen
+itself.
 
 Every start imports this module, so it imports almost nothing.
 """
@@ -19,13 +20,18 @@ UNKNOWN = "?"
 
 
 def of_path(path: str) -> str:
-    """Return the SHA-256 of a file, or of the names in a folder; `ABSENT` or `UNKNOWN` for other paths."""
+    """Return the SHA-256 of a file, or of the names in a folder.
+
+    `ABSENT` or `UNKNOWN` for other paths.
+    """
     try:
         status = os.stat(path)
         if stat.S_ISREG(status.st_mode):
             return _of_file(path, status.st_size)
         if stat.S_ISDIR(status.st_mode):
-            return sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).hexdigest()
+            return sha256(
+                "\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")
+            ).hexdigest()
     except (FileNotFoundError, NotADirectoryError):
         return ABSENT
     except OSError:
@@ -56,9 +62,11 @@ _cached: list[str] = []  # the digest of icdgen, after the first use
 
 
 def of_tool() -> str:
-    """Return the digest of icdgen: its modules, templates and runtimes, the interpreter and jinja2.
+    """Return the digest of icdgen: its modules, templates and runtimes, the interpreter
+    and jinja2.
 
-    It is computed once, because a file that changes later does not change the running program.
+    It is computed once, because a file that changes later does not change the running
+    program.
     """
     if not _cached:
         _cached.append(_digest())
@@ -71,9 +79,15 @@ def _digest() -> str:
     data = os.path.join(package, "data")
     root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
     digest = sha256(sys.version.encode())
-    for top in (package, os.path.join(root, "templates"), os.path.join(root, "runtime")):
+    for top in (
+        package,
+        os.path.join(root, "templates"),
+        os.path.join(root, "runtime"),
+    ):
         for path in sorted(_files(top, data)):
-            digest.update(f"\0{path}\0{of_path(path)}".encode("utf-8", "surrogateescape"))
+            digest.update(
+                f"\0{path}\0{of_path(path)}".encode("utf-8", "surrogateescape")
+            )
     for place in sys.path:
         try:
             status = os.stat(os.path.join(place, "jinja2", "__init__.py"))
@@ -85,14 +99,20 @@ def _digest() -> str:
 
 
 def _files(top: str, without: str) -> list[str]:
-    """Return all files below a folder, except in the folder ``without``, in hidden folders and in ``__pycache__``."""
+    """Return all files below a folder, except in the folder ``without``, in hidden
+    folders and in ``__pycache__``.
+    """
     paths = []
     try:
         with os.scandir(top) as entries:
             for entry in entries:
                 if not entry.is_dir():
                     paths.append(entry.path)
-                elif entry.name != "__pycache__" and entry.name[0] != "." and entry.path != without:
+                elif (
+                    entry.name != "__pycache__"
+                    and entry.name[0] != "."
+                    and entry.path != without
+                ):
                     paths += _files(entry.path, without)
     except FileNotFoundError:  # an installed icdgen lacks some folders
         return []

@@ -1,8 +1,11 @@
-"""Replacement of ``@dataclass(frozen=True)`` that takes a quarter of the time to create classes.
+"""Replacement of ``@dataclass(frozen=True)`` that takes a quarter of the time to create
+classes.
 
-Every start creates the classes of the model and of the protocol. For type checkers they are frozen. At run time they are not,
-because `dataclasses` would spend most of the time on generating methods that reject assignments, which mypy rejects already.
-All classes share the implementation of comparison, hash and repr. ``__init__`` is generated with the first object of a class.
+Every start creates the classes of the model and of the protocol. For type checkers they
+are frozen. At run time they are not, because `dataclasses` would spend most of the time
+on generating methods that reject assignments, which mypy rejects already. All classes
+share the implementation of comparison, hash and repr. ``__init__`` is generated with
+the first object of a class.
 """
 
 from __future__ import annotations
@@ -21,13 +24,17 @@ else:
     def dataclass(
         *, frozen: bool, eq: bool = True, repr: bool = True, **options: bool
     ) -> Callable[[type[Any]], type[Any]]:
-        """Return a decorator for frozen classes, with the options of `dataclasses.dataclass`."""
+        """Return a decorator for frozen classes, with the options of
+        `dataclasses.dataclass`.
+        """
 
         def decorate(plain: type[Any]) -> type[Any]:
             # Without a docstring, `dataclasses` would compute the signature, which is
             # slow.
             plain.__doc__ = plain.__doc__ or plain.__name__
-            kind = dataclasses.dataclass(init=False, eq=False, repr=False, **options)(plain)
+            kind = dataclasses.dataclass(init=False, eq=False, repr=False, **options)(
+                plain
+            )
             _begin_late(kind)
             if eq:
                 _compare_by_value(kind)
@@ -45,7 +52,11 @@ def _compare_by_value(kind: type[Any]) -> None:
     hashed = attrgetter(*(field.name for field in compared if field.hash is not False))
 
     def equals(self: object, other: object) -> bool:
-        return value(self) == value(other) if other.__class__ is self.__class__ else NotImplemented
+        return (
+            value(self) == value(other)
+            if other.__class__ is self.__class__
+            else NotImplemented
+        )
 
     def hash_value(self: object) -> int:
         return hash(hashed(self))
@@ -54,7 +65,9 @@ def _compare_by_value(kind: type[Any]) -> None:
 
 
 def _begin_late(kind: type[Any]) -> None:
-    """Give a class an ``__init__`` that generates the real one on the first call: a run uses few of the classes."""
+    """Give a class an ``__init__`` that generates the real one on the first call: a run
+    uses few of the classes.
+    """
 
     def begin(self: Any, *positional: object, **keywords: object) -> None:
         kind.__init__ = _initialiser(kind)
@@ -64,7 +77,9 @@ def _begin_late(kind: type[Any]) -> None:
 
 
 def _initialiser(kind: type[Any]) -> Callable[..., None]:
-    """Return the ``__init__`` of a class, equivalent to the one that `dataclasses` generates."""
+    """Return the ``__init__`` of a class, equivalent to the one that `dataclasses`
+    generates.
+    """
     fields = sorted(dataclasses.fields(kind), key=lambda field: field.kw_only is True)
     # Default or factory of each field, by its name with a leading underscore.
     scope: dict[str, Any] = {}
@@ -80,9 +95,16 @@ def _initialiser(kind: type[Any]) -> Callable[..., None]:
         if field.kw_only is True and "*" not in parameters:
             parameters.append("*")
         parameters.append(f"{name}={default}" if default in scope else name)
-        value = f"{default}() if {name} is {default} else {name}" if default in factories else name
+        value = (
+            f"{default}() if {name} is {default} else {name}"
+            if default in factories
+            else name
+        )
         lines.append(f" self.{name} = {value}")
-    exec(f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines or [" pass"]), scope)
+    exec(
+        f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines or [" pass"]),
+        scope,
+    )
     initialiser: Callable[..., None] = scope["__init__"]
     return initialiser
 
@@ -90,5 +112,9 @@ def _initialiser(kind: type[Any]) -> Callable[..., None]:
 def _shown(instance: Any) -> str:
     """Return the repr of an object, as `dataclasses` does."""
     fields = dataclasses.fields(instance)
-    values = (f"{field.name}={getattr(instance, field.name)!r}" for field in fields if field.repr)
+    values = (
+        f"{field.name}={getattr(instance, field.name)!r}"
+        for field in fields
+        if field.repr
+    )
     return f"{type(instance).__qualname__}({', '.join(values)})"

@@ -16,24 +16,36 @@ from icdgen.icd.variants import Variant
 
 
 def pieces(field: FrameField | NodePlace, node: Node) -> tuple[Piece, ...]:
-    """Return the pieces of a number; an empty tuple for a derived value. For bytes and text see `byte_range`.
+    """Return the pieces of a number; an empty tuple for a derived value.
+
+    For bytes and text see `byte_range`.
 
     `node` is the ICD node with the default orders.
     """
     if field.derived:
         return ()
-    return pieces_at(field.at, field.bits, field.byte_order or node.byte_order, field.bit_order or node.bit_order)
+    return pieces_at(
+        field.at,
+        field.bits,
+        field.byte_order or node.byte_order,
+        field.bit_order or node.bit_order,
+    )
 
 
 def mask(field: FrameField | NodePlace, node: Node) -> int:
-    """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b + w."""
+    """Return a mask of the bits of a field in the frame.
+
+    Bit w of byte b is bit 8 * b + w.
+    """
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at
     return sum(piece.mask << 8 * piece.byte for piece in pieces(field, node))
 
 
 class ConstantByte(NamedTuple):
-    """A byte of the frame with bits of constants: frames of the message have ``value`` in the bits of ``mask``."""
+    """A byte of the frame with bits of constants: frames of the message have ``value``
+    in the bits of ``mask``.
+    """
 
     byte: int
     mask: int
@@ -41,14 +53,18 @@ class ConstantByte(NamedTuple):
 
 
 def constant_bytes(variant: Variant) -> tuple[ConstantByte, ...]:
-    """Return the bytes that identify a frame of the message among frames of the same length, in order."""
+    """Return the bytes that identify a frame of the message among frames of the same
+    length, in order.
+    """
     masks: dict[int, tuple[int, int]] = {}
     for field in variant.constants:
         for piece in pieces(field, variant.node):
             mask, value = masks.get(piece.byte, (0, 0))
             bits = (field.const or 0) >> piece.at & piece.low_mask
             masks[piece.byte] = mask | piece.mask, value | bits << piece.shift
-    return tuple(ConstantByte(byte, mask, value) for byte, (mask, value) in sorted(masks.items()))
+    return tuple(
+        ConstantByte(byte, mask, value) for byte, (mask, value) in sorted(masks.items())
+    )
 
 
 def byte_range(field: FrameField | NodePlace) -> range:
@@ -57,7 +73,9 @@ def byte_range(field: FrameField | NodePlace) -> range:
 
 
 class Gap(NamedTuple):
-    """A run of reserved bits, from bit ``at`` of the frame on, counted in the bit order of the ICD node."""
+    """A run of reserved bits, from bit ``at`` of the frame on, counted in the bit order
+    of the ICD node.
+    """
 
     at: int
     bits: int
@@ -75,6 +93,12 @@ def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
             free[field.at : field.at + field.bits] = bytes(field.bits)
             continue
         for piece in pieces(field, node):
-            first = 8 * piece.byte + (piece.shift if node.bit_order == "lsb0" else 8 - piece.shift - piece.bits)
+            first = 8 * piece.byte + (
+                piece.shift
+                if node.bit_order == "lsb0"
+                else 8 - piece.shift - piece.bits
+            )
             free[first : first + piece.bits] = bytes(piece.bits)
-    return tuple(Gap(run.start(), len(run.group())) for run in re.finditer(b"\1+", free))
+    return tuple(
+        Gap(run.start(), len(run.group())) for run in re.finditer(b"\1+", free)
+    )

@@ -1,7 +1,9 @@
-"""Link of a node as a tree of constructor calls, with the types and keywords of ``wire/link.py`` in the Python runtime.
+"""Link of a node as a tree of constructor calls, with the types and keywords of
+``wire/link.py`` in the Python runtime.
 
-The Python backend writes the calls into generated code. `icdgen.runtime_objects` evaluates them, so that the commands of icdgen
-have the same link without generating code.
+The Python backend writes the calls into generated code. `icdgen.runtime_objects`
+evaluates them, so that the commands of icdgen have the same link without generating
+code.
 """
 
 from __future__ import annotations
@@ -13,7 +15,17 @@ from typing import Any
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import Check, Stream, StreamRow
-from icdgen.protocol.sections import Crc, Download, Erasure, HoleMap, Listing, LogFile, LogMessage, Step, Upload
+from icdgen.protocol.sections import (
+    Crc,
+    Download,
+    Erasure,
+    HoleMap,
+    Listing,
+    LogFile,
+    LogMessage,
+    Step,
+    Upload,
+)
 
 # Types that have another name in generated code.
 _TYPES = {
@@ -53,7 +65,10 @@ class Commented:
 
 
 def link_call(link: LinkDescription) -> Call:
-    """Return the call that makes the link. Assumed values have the reason in a comment above them."""
+    """Return the call that makes the link.
+
+    Assumed values have the reason in a comment above them.
+    """
     return _LinkBuilder(link).link()
 
 
@@ -71,7 +86,11 @@ class _LinkBuilder:
     """Builds the calls for the parts of a link."""
 
     def __init__(self, link: LinkDescription) -> None:
-        self.description, self.facts, self.assumed = link, link.facts, Assumptions(link.facts)
+        self.description, self.facts, self.assumed = (
+            link,
+            link.facts,
+            Assumptions(link.facts),
+        )
 
     def link(self) -> Call:
         """Return the call of ``Link``."""
@@ -86,8 +105,12 @@ class _LinkBuilder:
             "telemetry_ids": (facts.telemetry_ids.first, facts.telemetry_ids.last),
             "settings": self.part(facts.client),
             "errors": self.commented_rest(facts.errors, "errors"),
-            "commands": {each.id: self.sent(each) for each in self.description.telecommands},
-            "frames": {each.id: each.message.length for each in self.description.telemetry},
+            "commands": {
+                each.id: self.sent(each) for each in self.description.telecommands
+            },
+            "frames": {
+                each.id: each.message.length for each in self.description.telemetry
+            },
             "TELECOMMANDS": Verbatim("TELECOMMANDS"),
             "TELEMETRY": Verbatim("TELEMETRY"),
         }
@@ -113,17 +136,29 @@ class _LinkBuilder:
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
-            "stream": self.commented_rest(facts.stream and _stream(facts.stream), "stream"),
+            "stream": self.commented_rest(
+                facts.stream and _stream(facts.stream), "stream"
+            ),
             "assumptions": self.assumptions() or None,
         }
-        return _call("Link", **parts, **{key: part for key, part in optional.items() if part is not None})
+        return _call(
+            "Link",
+            **parts,
+            **{key: part for key, part in optional.items() if part is not None},
+        )
 
     def commented_rest(self, value: object, section: str) -> object:
-        """Return a value, with the reasons for assumptions of a section that no comment of its keys has."""
-        return _commented(value, self.assumed.of_section(section) if value is not None else [])
+        """Return a value, with the reasons for assumptions of a section that no comment
+        of its keys has.
+        """
+        return _commented(
+            value, self.assumed.of_section(section) if value is not None else []
+        )
 
     def part(self, part: object, **computed: object) -> object:
-        """Return the call for a part of the link: its declared facts, then the keywords of ``computed``."""
+        """Return the call for a part of the link: its declared facts, then the keywords
+        of ``computed``.
+        """
         if part is None:
             return None
         call = _call(type_name(type(part)), **self.declared(part), **computed)
@@ -145,7 +180,11 @@ class _LinkBuilder:
         step = self.description.polled
         if step is None:
             return None
-        return _call("Polled", telemetry=step.message.telemetry_id, **{role: field.name for role, field in step.fields})
+        return _call(
+            "Polled",
+            telemetry=step.message.telemetry_id,
+            **{role: field.name for role, field in step.fields},
+        )
 
     def can(self) -> object:
         """Return the call for the link over CAN."""
@@ -164,7 +203,11 @@ class _LinkBuilder:
     def checksum(self) -> object:
         """Return the call for the checksum of messages."""
         form = self.facts.checksum
-        return self.part(form, crc=_call("CrcForm", **self.declared(form.crc))) if form else None
+        return (
+            self.part(form, crc=_call("CrcForm", **self.declared(form.crc)))
+            if form
+            else None
+        )
 
     def mask(self) -> object:
         """Return the call for the log mask."""
@@ -172,14 +215,19 @@ class _LinkBuilder:
         if mask is None:
             return None
         bits = {
-            bit: _row("LogBit", row.bit, row.id, row.length, row.name or "") for bit, row in sorted(mask.bits.items())
+            bit: _row("LogBit", row.bit, row.id, row.length, row.name or "")
+            for bit, row in sorted(mask.bits.items())
         }
         return self.part(mask, bits=bits)
 
     def index(self) -> object:
         """Return the call for the index of files."""
         index = self.facts.index
-        fields = {role: (field.at, field.bytes) for role, field in index.fields.items()} if index else {}
+        fields = (
+            {role: (field.at, field.bytes) for role, field in index.fields.items()}
+            if index
+            else {}
+        )
         return self.part(index, fields=fields)
 
     def hole_map(self) -> object:
@@ -212,20 +260,34 @@ class _LinkBuilder:
         """Return the call for a step of a procedure."""
         message = step.message
         ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
-        fields = {role: field.name for role, field in self.description.step(step).fields}
-        return _call("Step", **{key: id for key, id in ids.items() if id is not None}, fields=fields)
+        fields = {
+            role: field.name for role, field in self.description.step(step).fields
+        }
+        return _call(
+            "Step",
+            **{key: id for key, id in ids.items() if id is not None},
+            fields=fields,
+        )
 
     def sent(self, telecommand: SentMessage) -> object:
         """Return the call for the length and the acknowledge of a telecommand."""
         flags = {} if telecommand.message.acknowledge else {"acknowledged": False}
         flags |= {"setting": True} if telecommand.is_setting else {}
         message = telecommand.message
-        return self.commented_rest(_row("Sent", message.length, **flags), f"message {message.name}")
+        return self.commented_rest(
+            _row("Sent", message.length, **flags), f"message {message.name}"
+        )
 
     def assumptions(self) -> tuple[Call, ...]:
         """Return the calls for all assumptions of the ICD."""
         return tuple(
-            _call("Assumption", section=each.section, key=each.key, value=_plain(each.value), why=str(each.why))
+            _call(
+                "Assumption",
+                section=each.section,
+                key=each.key,
+                value=_plain(each.value),
+                why=str(each.why),
+            )
             for each in self.facts.assumptions
         )
 
@@ -237,26 +299,46 @@ def _explained(value: object, why: str) -> object:
 
 def _commented(value: object, reasons: list[tuple[str, str]]) -> object:
     """Return a value, with keys and reasons as comments."""
-    return Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons)) if reasons else value
+    return (
+        Commented(value, tuple(f"Assumed, {key}: {why}" for key, why in reasons))
+        if reasons
+        else value
+    )
 
 
 def _stream(form: Stream) -> Call:
     """Return the framing of sync, header, payload and checksum."""
     parts = _members(form)
-    parts["fields"] = tuple(_row("EnvelopeField", *_members(field).values()) for field in form.fields)
-    parts["telecommands"], parts["telemetry"] = map(_stream_rows, (form.telecommands, form.telemetry))
+    parts["fields"] = tuple(
+        _row("EnvelopeField", *_members(field).values()) for field in form.fields
+    )
+    parts["telecommands"], parts["telemetry"] = map(
+        _stream_rows, (form.telecommands, form.telemetry)
+    )
     check = parts.pop("check")
     if isinstance(check, Check):
         crc = {fact.name: getattr(check.crc, fact.name) for fact in facts_of(check.crc)}
-        crc_call = _row("CrcForm", **{key: value for key, value in crc.items() if value is not None})
-        parts["check"] = _row("CheckForm", *{**_members(check), "crc": crc_call}.values())
+        crc_call = _row(
+            "CrcForm", **{key: value for key, value in crc.items() if value is not None}
+        )
+        parts["check"] = _row(
+            "CheckForm", *{**_members(check), "crc": crc_call}.values()
+        )
     return _call("Stream", **parts)
 
 
 def _stream_rows(rows: tuple[StreamRow, ...]) -> tuple[Call, ...]:
-    """Return the calls for the messages of a direction; the last argument is the response, if the ICD declares one."""
-    values = ((row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply) for row in rows)
-    return tuple(_row("StreamRow", *(row if row[-1] is not None else row[:-1])) for row in values)
+    """Return the calls for the messages of a direction.
+
+    The last argument is the response, if the ICD declares one.
+    """
+    values = (
+        (row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply)
+        for row in rows
+    )
+    return tuple(
+        _row("StreamRow", *(row if row[-1] is not None else row[:-1])) for row in values
+    )
 
 
 def _flat(name: str, part: Any) -> Call:
@@ -272,7 +354,11 @@ def _members(part: Any) -> dict[str, object]:
 def _plain(value: object) -> object:
     """Return a value of the ICD as plain tuples, dicts and scalars, without places."""
     if isinstance(value, dict):
-        return {_plain(key): _plain(item) for key, item in value.items() if key not in ("assumptions", "source")}
+        return {
+            _plain(key): _plain(item)
+            for key, item in value.items()
+            if key not in ("assumptions", "source")
+        }
     if isinstance(value, list | tuple):
         return tuple(_plain(item) for item in value)
     # Before `int`, because a bool is an int in Python.

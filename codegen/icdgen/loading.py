@@ -21,10 +21,12 @@ def load(
     unsaved: Mapping[Path, bytes] | None = None,
     languages: Sequence[str] | None = None,
 ) -> Loaded:
-    """Load ICDs as `icdgen.icd.load.load` does, and check the names that generated code declares.
+    """Load ICDs as `icdgen.icd.load.load` does, and check the names that generated code
+    declares.
 
-    Names are checked for `plug_ins` and for the built-in `languages`, by default for all of them. Computing the names of one
-    language takes about as long as all other rules together, so commands pass only the languages that they generate.
+    Names are checked for `plug_ins` and for the built-in `languages`, by default for
+    all of them. Computing the names of one language takes about as long as all other
+    rules together, so commands pass only the languages that they generate.
     """
     built_in = backends.names() if languages is None else languages
     checked: list[Language] = [*map(backends.get, built_in), *plug_ins] if check else []

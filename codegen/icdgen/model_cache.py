@@ -1,4 +1,6 @@
-"""Load ICDs with all checks, or read the model of an earlier run with unchanged files from the cache."""
+"""Load ICDs with all checks, or read the model of an earlier run with unchanged files
+from the cache.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,12 @@ def load_checked(
     plug_ins: Sequence[Language] = (),
     with_positions: bool = False,
 ) -> Loaded:
-    """Load ICDs as `icdgen.loading.load` does. A model from the cache has no places and no texts.
+    """Load ICDs as `icdgen.loading.load` does.
 
-    The cache is not used with plug-ins, because their names can depend on files that icdgen does not know.
+    A model from the cache has no places and no texts.
+
+    The cache is not used with plug-ins, because their names can depend on files that
+    icdgen does not know.
     """
     if plug_ins or with_positions:
         from icdgen.loading import load
@@ -32,7 +37,9 @@ def load_checked(
         return load(paths, plug_ins=plug_ins, languages=languages)
     from icdgen.icd import model_json
 
-    name = cache.key("model", os.getcwd(), *sorted(languages), "", *(str(path) for path in paths))
+    name = cache.key(
+        "model", os.getcwd(), *sorted(languages), "", *(str(path) for path in paths)
+    )
     data = cache.recall(KIND, name)
     remembered = model_json.read(data) if data is not None else None
     if remembered is not None:
@@ -43,6 +50,9 @@ def load_checked(
     # Models with findings are not cached: the findings must be reported again in the
     # next run.
     if not loaded.findings:
-        files = {os.path.abspath(path): fingerprint for path, fingerprint in loaded.inputs.items()}
+        files = {
+            os.path.abspath(path): fingerprint
+            for path, fingerprint in loaded.inputs.items()
+        }
         cache.remember(KIND, name, model_json.text(loaded.icd, loaded.inputs), files)
     return loaded

@@ -1,4 +1,7 @@
-"""Conversion of names to identifiers. All languages use the same rules, which ``docs/reference/icd-format.md`` describes."""
+"""Conversion of names to identifiers.
+
+All languages use the same rules, which ``docs/reference/icd-format.md`` describes.
+"""
 
 from __future__ import annotations
 
@@ -8,23 +11,43 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 # Reserved names of files and folders on Windows, with any suffix.
-DEVICES = ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)))
+DEVICES = (
+    "aux",
+    "con",
+    "nul",
+    "prn",
+    *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)),
+)
 
 _SEPARATORS = re.compile(r"[^A-Za-z0-9]+")
 _DIGITS = re.compile(r"[0-9]*")
 # Letters that Unicode does not decompose into an ASCII letter and a mark.
-_LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "ł": "l", "đ": "d", "ð": "d", "þ": "th", "ı": "i"}
+_LETTERS = {
+    "ß": "ss",
+    "æ": "ae",
+    "œ": "oe",
+    "ø": "o",
+    "ł": "l",
+    "đ": "d",
+    "ð": "d",
+    "þ": "th",
+    "ı": "i",
+}
 _HUMPS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
 
 @lru_cache(maxsize=1 << 18)
 def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the words of a name in lower case: ``TcErrorReason`` -> ``('tc', 'error', 'reason')``.
+    """Return the words of a name in lower case: ``TcErrorReason`` -> ``('tc', 'error',
+    'reason')``.
 
-    Words of the ``vocabulary`` are not split. Empty if the name has no ASCII letters and digits.
+    Words of the ``vocabulary`` are not split. Empty if the name has no ASCII letters
+    and digits.
     """
     text = latin(name)
-    longest_first = sorted([word for word in map(latin, vocabulary) if word in text], key=len, reverse=True)
+    longest_first = sorted(
+        [word for word in map(latin, vocabulary) if word in text], key=len, reverse=True
+    )
     parts: list[str] = []
     for chunk in _SEPARATORS.split(text):
         parts += _split(chunk, longest_first) if longest_first else _humps(chunk)
@@ -32,15 +55,27 @@ def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
 
 
 def latin(text: str) -> str:
-    """Return the text in ASCII letters: ``Größe`` -> ``Grosse``. Other characters are unchanged."""
+    """Return the text in ASCII letters: ``Größe`` -> ``Grosse``.
+
+    Other characters are unchanged.
+    """
     if text.isascii():
         return text
-    letters = [character for character in unicodedata.normalize("NFKD", text) if not unicodedata.combining(character)]
-    return "".join(_letter(letter, after) for letter, after in zip(letters, [*letters[1:], ""], strict=True))
+    letters = [
+        character
+        for character in unicodedata.normalize("NFKD", text)
+        if not unicodedata.combining(character)
+    ]
+    return "".join(
+        _letter(letter, after)
+        for letter, after in zip(letters, [*letters[1:], ""], strict=True)
+    )
 
 
 def _letter(letter: str, after: str) -> str:
-    """Return a letter in ASCII, in the case of the word: ``AE`` of ``ÆRA``, ``Ae`` of ``Æra``."""
+    """Return a letter in ASCII, in the case of the word: ``AE`` of ``ÆRA``, ``Ae`` of
+    ``Æra``.
+    """
     replacement = _LETTERS.get(letter.lower(), letter)
     if replacement == letter or letter.islower():
         return replacement
@@ -54,13 +89,20 @@ def _humps(chunk: str) -> tuple[str, ...]:
 
 
 def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
-    """Yield the words of a text. Words of the vocabulary, with the digits after them, are not split."""
+    """Yield the words of a text.
+
+    Words of the vocabulary, with the digits after them, are not split.
+    """
     # Parts of the text, the next one last, and whether a part is a word of the
     # vocabulary.
     stack = [(chunk, False)]
     while stack:
         text, is_word = stack.pop()
-        word = None if is_word else next((word for word in vocabulary if word in text), None)
+        word = (
+            None
+            if is_word
+            else next((word for word in vocabulary if word in text), None)
+        )
         if is_word:
             yield text.lower()
         elif word is None:
@@ -71,7 +113,11 @@ def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
             before, _, after = text.partition(word)
             match = _DIGITS.match(after)
             digits = match.group() if match else ""
-            stack += [(after[len(digits) :], False), (word + digits, True), (before, False)]
+            stack += [
+                (after[len(digits) :], False),
+                (word + digits, True),
+                (before, False),
+            ]
 
 
 def snake(parts: Iterable[str]) -> str:
@@ -85,7 +131,10 @@ def upper(parts: Iterable[str]) -> str:
 
 
 def camel(parts: Iterable[str]) -> str:
-    """Return words in camel case: ``EstimatedRollAngle``. Two digits remain separated: ``Area1_2``."""
+    """Return words in camel case: ``EstimatedRollAngle``.
+
+    Two digits remain separated: ``Area1_2``.
+    """
     text = ""
     for part in parts:
         if text and text[-1].isdigit() and part[0].isdigit():

@@ -1,4 +1,7 @@
-"""Cached values of objects. `cached_property` is without the lock of `functools` before Python 3.12, which is slow."""
+"""Cached values of objects.
+
+`cached_property` is without the lock of `functools` before Python 3.12, which is slow.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,9 @@ else:
 
 
 def cached_by_owner(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
-    """Decorate a function of one object so that its result is cached in the ``__dict__`` of the object."""
+    """Decorate a function of one object so that its result is cached in the
+    ``__dict__`` of the object.
+    """
     name = f"_{function.__name__}"
 
     @wraps(function)

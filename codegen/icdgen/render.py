@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 
 class Named(Protocol):
-    """A backend, as far as `Renderer` needs it. It can also have the attributes ``templates`` and ``runtime``."""
+    """A backend, as far as `Renderer` needs it.
+
+    It can also have the attributes ``templates`` and ``runtime``.
+    """
 
     @property
     def name(self) -> str: ...
@@ -34,12 +37,18 @@ class Named(Protocol):
 class Renderer:
     """Renders the templates of a backend and reads the files of its runtime.
 
-    Files in ``override`` (``--templates DIR``) replace both. ``templates`` and ``runtime`` are the folders of a plug-in, by
-    default the shipped folders. ``looked_at`` has the fingerprint of each file in ``override`` that was read or absent.
+    Files in ``override`` (``--templates DIR``) replace both. ``templates`` and
+    ``runtime`` are the folders of a plug-in, by default the shipped folders.
+    ``looked_at`` has the fingerprint of each file in ``override`` that was read or
+    absent.
     """
 
     def __init__(
-        self, backend: str, override: Path | None = None, templates: Path | None = None, runtime: Path | None = None
+        self,
+        backend: str,
+        override: Path | None = None,
+        templates: Path | None = None,
+        runtime: Path | None = None,
     ) -> None:
         import jinja2
 
@@ -47,10 +56,13 @@ class Renderer:
         self._runtime = runtime or shipped.runtimes() / backend
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
-            loader=_loader(self._own, templates or shipped.templates() / backend, self.looked_at),
+            loader=_loader(
+                self._own, templates or shipped.templates() / backend, self.looked_at
+            ),
             bytecode_cache=_compiled(),
             undefined=jinja2.StrictUndefined,
-            autoescape=lambda template: template is not None and template.endswith((".html.j2", ".xml.j2")),
+            autoescape=lambda template: template is not None
+            and template.endswith((".html.j2", ".xml.j2")),
             trim_blocks=True,
             lstrip_blocks=True,
             keep_trailing_newline=True,
@@ -60,35 +72,60 @@ class Renderer:
 
     @classmethod
     def of(cls, backend: Named, override: Path | None = None) -> Renderer:
-        """Return the renderer of a backend, with its own folders of templates and runtime if it has them."""
-        folders = (getattr(backend, "templates", None), getattr(backend, "runtime", None))
+        """Return the renderer of a backend, with its own folders of templates and
+        runtime if it has them.
+        """
+        folders = (
+            getattr(backend, "templates", None),
+            getattr(backend, "runtime", None),
+        )
         return cls(backend.name, override, *folders)
 
     def __call__(self, template: str, **values: object) -> str:
-        """Render a template, given by its file name, such as ``message.h.j2``. Raises `UserError` for an error in it."""
+        """Render a template, given by its file name, such as ``message.h.j2``.
+
+        Raises `UserError` for an error in it.
+        """
         from jinja2 import TemplateError, TemplateSyntaxError
 
         try:
             return self._environment.get_template(template).render(values)
         except TemplateSyntaxError as error:
             where = f"{error.filename or template}:{error.lineno}"
-            raise UserError(f"{where}: {error.message}", "correct the template") from None
+            raise UserError(
+                f"{where}: {error.message}", "correct the template"
+            ) from None
         except TemplateError as error:
             raise UserError(
-                f"{_where(error, template)}: {error.message or type(error).__name__}", "correct the template"
+                f"{_where(error, template)}: {error.message or type(error).__name__}",
+                "correct the template",
             ) from None
         except Exception as error:  # an expression of a template can raise anything
             raise UserError(
-                f"{_where(error, template)}: {type(error).__name__}: {error}", "correct the template"
+                f"{_where(error, template)}: {type(error).__name__}: {error}",
+                "correct the template",
             ) from error
 
     def runtime_files(self, folder: str = ".") -> list[str]:
-        """Return the source files of the runtime below ``folder``, as paths relative to the runtime."""
-        files = (path.relative_to(self._runtime) for path in (self._runtime / folder).rglob("*") if path.is_file())
-        return sorted(path.as_posix() for path in files if not any(map(_is_output_of_tools, path.parts)))
+        """Return the source files of the runtime below ``folder``, as paths relative to
+        the runtime.
+        """
+        files = (
+            path.relative_to(self._runtime)
+            for path in (self._runtime / folder).rglob("*")
+            if path.is_file()
+        )
+        return sorted(
+            path.as_posix()
+            for path in files
+            if not any(map(_is_output_of_tools, path.parts))
+        )
 
     def source(self, file: str) -> str:
-        """Return the text of a file of the runtime, or of its replacement. Raises `UserError` if that cannot be read."""
+        """Return the text of a file of the runtime, or of its replacement.
+
+        Raises `UserError` if that cannot be read.
+        """
         for folder in self._own:
             path = folder / file
             self.looked_at[path] = fingerprints.of_path(os.fspath(path))
@@ -122,13 +159,20 @@ def _context_class() -> type[Context]:
     from jinja2.runtime import Context, Macro
 
     class PlainContext(Context):
-        """Context that calls functions directly. Jinja's own `call` first checks whether a function needs the context."""
+        """Context that calls functions directly.
+
+        Jinja's own `call` first checks whether a function needs the context.
+        """
 
         def call(
             self, function: Callable[..., object], /, *args: object, _loop_vars: object = None, _block_vars: object = None,
             **named: object,
         ) -> object:  # fmt: skip
-            return function(self.eval_ctx, *args, **named) if type(function) is Macro else function(*args, **named)
+            return (
+                function(self.eval_ctx, *args, **named)
+                if type(function) is Macro
+                else function(*args, **named)
+            )
 
     return PlainContext
 
@@ -141,7 +185,9 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseL
     class Loader(jinja2.FileSystemLoader):
         """Adds the fingerprints of templates in ``own`` to ``looked_at``."""
 
-        def get_source(self, environment: Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
+        def get_source(
+            self, environment: Environment, template: str
+        ) -> tuple[str, str, Callable[[], bool]]:
             for folder in own:
                 path = folder.joinpath(*split_template_path(template))
                 looked_at[path] = fingerprints.of_path(os.fspath(path))
@@ -155,31 +201,54 @@ def _compiled() -> BytecodeCache:
     import jinja2
 
     class Compiled(jinja2.BytecodeCache):
-        """Stores the compiled code of shipped templates in ``__pycache__`` in the folder of their source, like Python.
+        """Stores the compiled code of shipped templates in ``__pycache__`` in the
+        folder of their source, like Python.
 
-        Loading code from there is safe: anyone who can write to that folder can change icdgen itself. The code of other
-        templates is not stored.
+        Loading code from there is safe: anyone who can write to that folder can change
+        icdgen itself. The code of other templates is not stored.
         """
 
         def get_cache_key(self, name: str, filename: str | None = None) -> str:
-            """Return the path of the compiled code; empty for a template that is not shipped."""
-            is_shipped = filename is not None and Path(filename).is_relative_to(shipped.templates())
-            return cache_from_source(filename) if filename and is_shipped and sys.implementation.cache_tag else ""
+            """Return the path of the compiled code.
+
+            Returns empty for a template that is not shipped.
+            """
+            is_shipped = filename is not None and Path(filename).is_relative_to(
+                shipped.templates()
+            )
+            return (
+                cache_from_source(filename)
+                if filename and is_shipped and sys.implementation.cache_tag
+                else ""
+            )
 
         def get_source_checksum(self, source: str) -> str:
-            """Return a checksum of the template and of icdgen, with which stored code must agree."""
+            """Return a checksum of the template and of icdgen, with which stored code
+            must agree.
+            """
             return sha256(f"{fingerprints.of_tool()}\0{source}".encode()).hexdigest()
 
         def load_bytecode(self, bucket: Bucket) -> None:
             """Load the code of a template, if it is stored and current."""
             try:
-                checksum, _, code = SourceFileLoader("", bucket.key).get_data(bucket.key).partition(b"\n")
-                bucket.code = marshal.loads(code) if checksum == bucket.checksum.encode() else None
+                checksum, _, code = (
+                    SourceFileLoader("", bucket.key)
+                    .get_data(bucket.key)
+                    .partition(b"\n")
+                )
+                bucket.code = (
+                    marshal.loads(code)
+                    if checksum == bucket.checksum.encode()
+                    else None
+                )
             except (OSError, EOFError, ValueError, TypeError):
                 return
 
         def dump_bytecode(self, bucket: Bucket) -> None:
-            """Store the code of a template. `set_data` writes atomically, and ignores errors."""
+            """Store the code of a template.
+
+            `set_data` writes atomically, and ignores errors.
+            """
             if bucket.key and not sys.dont_write_bytecode:
                 data = bucket.checksum.encode() + b"\n" + marshal.dumps(bucket.code)
                 SourceFileLoader("", bucket.key).set_data(bucket.key, data)

@@ -1,4 +1,6 @@
-"""Folders of the files that icdgen ships with its code: in a wheel below ``icdgen/data``, in a checkout at the top."""
+"""Folders of the files that icdgen ships with its code: in a wheel below
+``icdgen/data``, in a checkout at the top.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ def templates() -> Path:
 
 
 def runtimes() -> Path:
-    """Return the folder of the runtimes of generated code, with a subfolder per backend."""
+    """Return the folder of the runtimes of generated code, with a subfolder per
+    backend.
+    """
     return _root() / "runtime"
 
 
@@ -48,12 +52,16 @@ def docs() -> Path:
 
 
 def provide_runtime() -> None:
-    """Make ``icdgen_runtime``, the runtime of generated Python code, importable for commands that talk to devices."""
+    """Make ``icdgen_runtime``, the runtime of generated Python code, importable for
+    commands that talk to devices.
+    """
     name = "icdgen_runtime"
     if name in sys.modules:
         return
     folder = runtimes() / "python" / name
-    spec = spec_from_file_location(name, folder / "__init__.py", submodule_search_locations=[str(folder)])
+    spec = spec_from_file_location(
+        name, folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
     assert spec and spec.loader
     sys.modules[name] = module = module_from_spec(spec)
     spec.loader.exec_module(module)

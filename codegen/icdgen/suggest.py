@@ -15,11 +15,13 @@ _PER_EDIT = 4
 
 
 def close_words(wanted: str, names: Iterable[str], most: int = 3) -> list[str]:
-    """Return the known words that are similar to ``wanted``, ignoring case, the most similar first.
+    """Return the known words that are similar to ``wanted``, ignoring case, the most
+    similar first.
 
-    An edit inserts, removes or replaces a character, or exchanges two neighbours. Names of 3 to 7 characters can differ in
-    one edit, names of 8 to 11 characters in two, and so on. Names are also similar if one has all words of the other, such
-    as `Processed` and `Processed Flag`; these come last.
+    An edit inserts, removes or replaces a character, or exchanges two neighbours. Names
+    of 3 to 7 characters can differ in one edit, names of 8 to 11 characters in two, and
+    so on. Names are also similar if one has all words of the other, such as `Processed`
+    and `Processed Flag`; these come last.
     """
     name = wanted.casefold()
     if not name or len(name) > _LONGEST:
@@ -32,7 +34,9 @@ def close_words(wanted: str, names: Iterable[str], most: int = 3) -> list[str]:
             similar.append((edits, candidate))
         elif _has_words_of(name, folded) or _has_words_of(folded, name):
             similar.append((_LONGEST, candidate))
-    return [candidate for _, candidate in sorted(similar, key=lambda pair: pair[0])[:most]]
+    return [
+        candidate for _, candidate in sorted(similar, key=lambda pair: pair[0])[:most]
+    ]
 
 
 def close_to(wanted: str, names: Iterable[str]) -> str:
@@ -41,7 +45,10 @@ def close_to(wanted: str, names: Iterable[str]) -> str:
 
 
 def question(names: Iterable[str]) -> str:
-    """Return the help "did you mean `a` or `b`?" with similar names; empty without names."""
+    """Return the help "did you mean `a` or `b`?" with similar names.
+
+    Returns empty without names.
+    """
     quoted = [f"`{name}`" for name in names]
     return f"did you mean {' or '.join(quoted)}?" if quoted else ""
 
@@ -49,11 +56,16 @@ def question(names: Iterable[str]) -> str:
 def _has_words_of(name: str, part: str) -> bool:
     """Return whether ``name`` has all words of ``part``."""
     words = set(_WORD.findall(part))
-    return words <= set(_WORD.findall(name)) and any(len(word) >= _LEAST for word in words)
+    return words <= set(_WORD.findall(name)) and any(
+        len(word) >= _LEAST for word in words
+    )
 
 
 def _edits(word: str, other: str) -> int | None:
-    """Return the edit distance of two words (optimal string alignment); None if they are not similar."""
+    """Return the edit distance of two words (optimal string alignment).
+
+    Returns None if they are not similar.
+    """
     if word == other:
         return 0
     longest = max(len(word), len(other))
@@ -67,8 +79,17 @@ def _edits(word: str, other: str) -> int | None:
     for i, character in enumerate(word, 1):
         before_previous, previous, row = previous, row, [i]
         for j, other_character in enumerate(other, 1):
-            cost = min(previous[j] + 1, row[j - 1] + 1, previous[j - 1] + (character != other_character))
-            if i > 1 and j > 1 and character == other[j - 2] and word[i - 2] == other_character:
+            cost = min(
+                previous[j] + 1,
+                row[j - 1] + 1,
+                previous[j - 1] + (character != other_character),
+            )
+            if (
+                i > 1
+                and j > 1
+                and character == other[j - 2]
+                and word[i - 2] == other_character
+            ):
                 cost = min(cost, before_previous[j - 2] + 1)
             row.append(cost)
         # No later row can have a smaller minimum.

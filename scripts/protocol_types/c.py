@@ -13,7 +13,9 @@ _TYPES = {
     Kind.TIME: "uint32_t ", Kind.FLAG: "bool ", Kind.BUSES: "uint8_t ", Kind.SPAN: "icd_part_t ",
     Kind.ALLOWED: "const uint8_t *", Kind.STEP: "icd_step_t ",
 }  # fmt: skip
-_MEMBER = re.compile(r"(?:    /\*\*(?:(?!\*/).|\n)*\*/\n)?    [\w ]+[ *](\w+)(?:\[\w+\])?(?:, \w+)*;.*\n")
+_MEMBER = re.compile(
+    r"(?:    /\*\*(?:(?!\*/).|\n)*\*/\n)?    [\w ]+[ *](\w+)(?:\[\w+\])?(?:, \w+)*;.*\n"
+)
 
 
 def written(text: str) -> str:
@@ -25,13 +27,20 @@ def written(text: str) -> str:
             before, start, body = before.rpartition("typedef struct {\n")
             facts = facts_of(part)
             names = {member for fact in facts for member, _ in _members(fact)}
-            other_members = (match.group() for match in _MEMBER.finditer(body) if match.group(1) not in names)
+            other_members = (
+                match.group()
+                for match in _MEMBER.finditer(body)
+                if match.group(1) not in names
+            )
             fact_members = (
-                comment([f"{about[0].upper()}{about[1:]}."], "    ") + f"\n    {text};\n"
+                comment([f"{about[0].upper()}{about[1:]}."], "    ")
+                + f"\n    {text};\n"
                 for fact in facts
                 for text, about in _declared(fact)
             )
-            text = before + start + "".join([*fact_members, *other_members]) + end + after
+            text = (
+                before + start + "".join([*fact_members, *other_members]) + end + after
+            )
     return text
 
 
@@ -56,7 +65,11 @@ def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
         elif fact.kind is Kind.BUSES:
             about += "; bit n: on bus n of icd_bus_t"
         elif fact.is_optional and not has_presence_flag(fact):
-            about += "; -1 if the ICD does not say" if fact.least == 0 else "; 0 if the ICD does not say"
+            about += (
+                "; -1 if the ICD does not say"
+                if fact.least == 0
+                else "; 0 if the ICD does not say"
+            )
         yield f"{type}{name}", about
 
 
@@ -65,4 +78,8 @@ def _type(fact: Fact) -> str:
         return _TYPES[fact.kind]
     if fact.is_optional and fact.least == 0 and not has_presence_flag(fact):
         return "int16_t " if fact.holds <= U16 // 2 else "int32_t "
-    return "uint8_t " if fact.holds <= BYTE else "uint16_t " if fact.holds <= U16 else "uint32_t "
+    return (
+        "uint8_t "
+        if fact.holds <= BYTE
+        else "uint16_t " if fact.holds <= U16 else "uint32_t "
+    )

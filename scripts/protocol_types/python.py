@@ -26,22 +26,45 @@ def written(text: str) -> str:
 def _with_facts(text: str, part: type) -> str:
     name, facts = type_name(part), facts_of(part)
     class_node = next(
-        (node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name), None
+        (
+            node
+            for node in ast.parse(text).body
+            if isinstance(node, ast.ClassDef) and node.name == name
+        ),
+        None,
     )
     if class_node is None:
         return text
     lines, names = text.splitlines(), {fact.name for fact in facts}
-    members, begin, end = {}, class_node.body[0].end_lineno or 0, class_node.body[0].end_lineno or 0
-    for statement, after in zip(class_node.body[1:], [*class_node.body[2:], None], strict=True):
+    members, begin, end = (
+        {},
+        class_node.body[0].end_lineno or 0,
+        class_node.body[0].end_lineno or 0,
+    )
+    for statement, after in zip(
+        class_node.body[1:], [*class_node.body[2:], None], strict=True
+    ):
         if isinstance(statement, ast.FunctionDef):
             break
         end = statement.end_lineno or end
-        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+        if isinstance(statement, ast.AnnAssign) and isinstance(
+            statement.target, ast.Name
+        ):
             has_docstring = isinstance(after, ast.Expr)
-            own = lines[statement.lineno - 1 : after.end_lineno if has_docstring and after else statement.end_lineno]
+            own = lines[
+                statement.lineno
+                - 1 : (
+                    after.end_lineno
+                    if has_docstring and after
+                    else statement.end_lineno
+                )
+            ]
             members[statement.target.id] = own, statement.value is not None
     other_members = [own for key, own in members.items() if key not in names]
-    fact_members = [([_member(fact, part), *_about(fact)], fact.default in (None, ())) for fact in facts]
+    fact_members = [
+        ([_member(fact, part), *_about(fact)], fact.default in (None, ()))
+        for fact in facts
+    ]
     ordered = sorted([*fact_members, *other_members], key=lambda member: member[1])
     member_lines = [line for own, _ in ordered for line in own]
     return "\n".join([*lines[:begin], "", *member_lines, *lines[end:]]) + "\n"

@@ -25,8 +25,18 @@ def written(text: str) -> str:
             body, end, after = following.partition("}\n")
             facts = facts_of(part)
             names = {member_name(fact) for fact in facts}
-            other_fields = (field.group() for field in _FIELD.finditer(body) if field.group(1) not in names)
-            text = before + start + "".join([*map(_field, facts), *other_fields]) + end + after
+            other_fields = (
+                field.group()
+                for field in _FIELD.finditer(body)
+                if field.group(1) not in names
+            )
+            text = (
+                before
+                + start
+                + "".join([*map(_field, facts), *other_fields])
+                + end
+                + after
+            )
     return text
 
 

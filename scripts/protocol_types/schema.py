@@ -19,19 +19,27 @@ def written(text: str) -> str:
         for fact in facts_of(part):
             if fact.key and fact.kind not in (Kind.STEP, Kind.BUSES):
                 *sections, key = f"{path}.{fact.key}".split(".")
-                _put(_section(schema["$defs"]["protocol"], sections), key, fragment(fact))
+                _put(
+                    _section(schema["$defs"]["protocol"], sections), key, fragment(fact)
+                )
     return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
 
 def _section(schema: Schema, path: list[str]) -> Schema:
     for key in path:
-        schema = schema["additionalProperties"] if key == "*" else schema["properties"][key]
+        schema = (
+            schema["additionalProperties"] if key == "*" else schema["properties"][key]
+        )
     return schema
 
 
 def _put(section: Schema, key: str, fragment: Schema) -> None:
     properties = section["properties"]
-    last = {} if key in properties or _LAST not in properties else {_LAST: properties.pop(_LAST)}
+    last = (
+        {}
+        if key in properties or _LAST not in properties
+        else {_LAST: properties.pop(_LAST)}
+    )
     properties[key] = fragment
     properties.update(last)
 
@@ -42,15 +50,38 @@ def fragment(fact: Fact) -> Schema:
     if fact.kind is Kind.OCTET:
         return {"$ref": "#/$defs/byte", "description": about}
     if fact.kind is Kind.ALLOWED:
-        value = {"type": "integer", "minimum": 0, "maximum": 255, "description": "value of the enumeration"}
-        return {"type": "array", "items": value, "minItems": 1, "uniqueItems": True, "description": about}
+        value = {
+            "type": "integer",
+            "minimum": 0,
+            "maximum": 255,
+            "description": "value of the enumeration",
+        }
+        return {
+            "type": "array",
+            "items": value,
+            "minItems": 1,
+            "uniqueItems": True,
+            "description": about,
+        }
     if fact.listed:
         entry = {"enum": sorted(fact.words, key=lambda word: word != fact.listed)}
-        return {"type": "array", "items": entry, "minItems": 1, "uniqueItems": True, "description": about}
+        return {
+            "type": "array",
+            "items": entry,
+            "minItems": 1,
+            "uniqueItems": True,
+            "description": about,
+        }
     if fact.kind is Kind.FLAG:
         plain = fact.words[0] is False
-        return {"type": "boolean", "description": about} if plain else {"enum": [*fact.words], "description": about}
+        return (
+            {"type": "boolean", "description": about}
+            if plain
+            else {"enum": [*fact.words], "description": about}
+        )
     if fact.kind is Kind.TIME:
         about += ", in milliseconds" if fact.factor == 1 else ", in seconds"
-    limits = {"minimum": fact.least} | ({} if fact.most is None else {"maximum": fact.most})
+    limits = {"minimum": fact.least} | (
+        {} if fact.most is None else {"maximum": fact.most}
+    )
     return {"type": "integer", **limits, "description": about}

@@ -1,6 +1,8 @@
-"""Which lines of the files of vectors fail on ICDs: each question is put to the reference, as the conformance run does it.
+"""Which lines of the files of vectors fail on ICDs: each question is put to the
+reference, as the conformance run does it.
 
-Nothing of this is shared with the trace: lines are looked up in the text, and the answers are those of the testee.
+Nothing of this is shared with the trace: lines are looked up in the text, and the
+answers are those of the testee.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ class Vectors:
         self.lines = {node: text.split("\n") for node, text in texts.items()}
         self.names = member_names(self.files)
 
-    @cache  # noqa: B019 - as many as there are messages, and as long as the test
+    @cache  # noqa: B019
     def of_message(self, node: str, name: str) -> list[tuple[int, list[Case]]]:
         """Each line that is about a message, and what it demands."""
         return list(self._of_message(node, name))
@@ -48,7 +50,11 @@ class Vectors:
         found: dict[str, None] = {}
         name = ""
         for number, text in enumerate(self.lines[node], 1):
-            if text.startswith('{"name":') and ',"kind":' in text and '"type":' not in text:
+            if (
+                text.startswith('{"name":')
+                and ',"kind":' in text
+                and '"type":' not in text
+            ):
                 name = json.loads(text.rstrip(",") + "}")["name"]
             if number in numbers and name:
                 found[name] = None
@@ -57,14 +63,23 @@ class Vectors:
     def _of_message(self, node: str, name: str) -> Iterator[tuple[int, list[Case]]]:
         data = self.files[node]
         message = next(one for one in data["messages"] if one["name"] == name)
-        cases = MessageCases(node, message, self.names, data["never_set"], shared_names(data))
+        cases = MessageCases(
+            node, message, self.names, data["never_set"], shared_names(data)
+        )
         constants = cases.constants()
         of_fields = ("default", "special", "limits")
         at = self._after(node, 0, {"name": name, "kind": message["kind"]}, ",")
-        yield at, [constants._replace(answer={**constants.answer, **dict.fromkeys(of_fields, ...)})]
+        yield at, [
+            constants._replace(
+                answer={**constants.answer, **dict.fromkeys(of_fields, ...)}
+            )
+        ]
         for field in message["fields"]:
             at = self._after(node, at, field)
-            own = [*cases.unfit(field), *(cases.settings(field) if "set" in field else ())]
+            own = [
+                *cases.unfit(field),
+                *(cases.settings(field) if "set" in field else ()),
+            ]
             yield at, [_only(constants, field["name"]), *own]
         at = self._after(node, at, {"refused_lengths": message["refused_lengths"]}, "")
         yield at, list(cases.refused_lengths())
@@ -84,22 +99,36 @@ class Vectors:
         for direction in DIRECTIONS:
             at = self._after(node, 0, {direction: data["ids"][direction]}, "")
             alone = {key: value for key, value in data.items() if key != "shared_ids"}
-            yield at, [case for case in node_cases(alone) if case.request.get("kind") == direction]
+            yield at, [
+                case
+                for case in node_cases(alone)
+                if case.request.get("kind") == direction
+            ]
         for row in data.get("shared_ids", ()):
-            yield self._after(node, 0, row), list(shared_ids({**data, "shared_ids": [row]}))
+            yield self._after(node, 0, row), list(
+                shared_ids({**data, "shared_ids": [row]})
+            )
         for enum in data["enums"]:
             yield self._after(node, 0, enum), [
-                case for case in enum_cases(data) if case.request["enum"] == enum["name"]
+                case
+                for case in enum_cases(data)
+                if case.request["enum"] == enum["name"]
             ]
 
     def _after(self, node: str, line: int, value: dict, end: str = "}") -> int:
-        """The number of the next line that begins with the value, or with its only key, or with the object that it begins."""
+        """The number of the next line that begins with the value, or with its only key,
+        or with the object that it begins.
+        """
         if end:
             text = _compact(value).removesuffix("}") + end
         else:
             ((key, item),) = value.items()
             text = f'"{key}": {_compact(item)}'
-        return next(n for n, one in enumerate(self.lines[node][line:], line + 1) if one.startswith(text))
+        return next(
+            n
+            for n, one in enumerate(self.lines[node][line:], line + 1)
+            if one.startswith(text)
+        )
 
 
 def _compact(value: object) -> str:

@@ -1,4 +1,6 @@
-"""What is measured with compilers, on a small ICD: the numbers are there, a gap is told, and the pack takes them."""
+"""What is measured with compilers, on a small ICD: the numbers are there, a gap is
+told, and the pack takes them.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,15 @@ import sys
 import pytest
 
 from icdgen.loading import load
-from tests.assurance.measure import coverage, misra, python_coverage, rest, rust_coverage, rust_rest, sizes
+from tests.assurance.measure import (
+    coverage,
+    misra,
+    python_coverage,
+    rest,
+    rust_coverage,
+    rust_rest,
+    sizes,
+)
 from tests.assurance.measure.measurement import Measured, share
 from tests.assurance.test_pack import make
 
@@ -19,23 +29,44 @@ def of(folder, name) -> dict:
     return json.loads((folder / f"{name}.json").read_text("utf-8"))
 
 
-def test_the_vectors_execute_every_line_and_both_ways_of_every_condition_of_the_c_of_an_icd(demo, tmp_path):
+def test_the_vectors_execute_every_line_and_both_ways_of_every_condition_of_the_c_of_an_icd(
+    demo, tmp_path
+):
     assert coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == 0
     data = of(tmp_path / "measured", "coverage-c")
     rows = [row for row in data["rows"] if not row[0].startswith("icdgen")]
-    assert {row[0] for row in rows} >= {"demo.h", "demo/estimated_roll.h", "demo/set_roll.h"}
+    assert {row[0] for row in rows} >= {
+        "demo.h",
+        "demo/estimated_roll.h",
+        "demo/set_roll.h",
+    }
     for _, functions, called, lines, executed, branches, taken in rows:
-        assert functions == called and lines == executed and branches == taken and int(lines) > 0
+        assert (
+            functions == called
+            and lines == executed
+            and branches == taken
+            and int(lines) > 0
+        )
     out = make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
-    assert {path.name for path in out.iterdir()} >= {"coverage-c.html", "coverage-c.csv", "coverage-c-gaps.csv"}
+    assert {path.name for path in out.iterdir()} >= {
+        "coverage-c.html",
+        "coverage-c.csv",
+        "coverage-c-gaps.csv",
+    }
 
 
 def test_what_is_not_executed_is_told_and_fails(demo, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(rest, "source", lambda icd: "int main(void) { return 0; }\n")
     assert coverage.main(["--out", str(tmp_path), str(demo)]) == 1
     said = capsys.readouterr().err
-    assert "demo/estimated_roll.h" in said and "line not executed, and nobody knows why" in said
-    assert any(row[3] == "branch" and not row[5] for row in of(tmp_path, "coverage-c-gaps")["rows"])
+    assert (
+        "demo/estimated_roll.h" in said
+        and "line not executed, and nobody knows why" in said
+    )
+    assert any(
+        row[3] == "branch" and not row[5]
+        for row in of(tmp_path, "coverage-c-gaps")["rows"]
+    )
 
 
 def test_a_decision_that_mixes_and_with_or_is_noticed(tmp_path):
@@ -43,7 +74,9 @@ def test_a_decision_that_mixes_and_with_or_is_noticed(tmp_path):
         "/* a && b || c; */ int f(int a) { if (a > 1 && a < 3) { return a == 1 || a == 2; } }\n"
     )
     assert coverage.mixed(tmp_path) == []
-    (tmp_path / "other.h").write_text("int g(int a) { return (a > 1 && a < 3) || a == 7; }\n")
+    (tmp_path / "other.h").write_text(
+        "int g(int a) { return (a > 1 && a < 3) || a == 7; }\n"
+    )
     assert coverage.mixed(tmp_path) == ["other.h: return (a > 1 && a < 3) || a == 7"]
 
 
@@ -51,8 +84,14 @@ def test_sizes_of_each_message_are_what_the_compiler_made(demo, tmp_path):
     assert sizes.main(["--out", str(tmp_path / "measured"), str(demo)]) == 0
     for name in ("sizes-cortex-m4", "sizes-avr"):
         rows = of(tmp_path / "measured", name)["rows"]
-        assert [row[:3] for row in rows] == [["demo", "Estimated Roll", "3"], ["demo", "Set Roll", "2"]]
-        assert all(int(row[3]) >= 2 and 10 < int(row[4]) < 200 and 10 < int(row[5]) < 200 for row in rows)
+        assert [row[:3] for row in rows] == [
+            ["demo", "Estimated Roll", "3"],
+            ["demo", "Set Roll", "2"],
+        ]
+        assert all(
+            int(row[3]) >= 2 and 10 < int(row[4]) < 200 and 10 < int(row[5]) < 200
+            for row in rows
+        )
     make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
 
 
@@ -87,25 +126,43 @@ def test_measurements_of_an_icd_that_changed_are_refused(demo, tmp_path):
 
 def test_the_vectors_execute_every_line_of_the_python_of_an_icd(demo, tmp_path):
     assert python_coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == 0
-    rows = {name: (lines, executed) for name, lines, executed in of(tmp_path / "measured", "coverage-python")["rows"]}
+    rows = {
+        name: (lines, executed)
+        for name, lines, executed in of(tmp_path / "measured", "coverage-python")[
+            "rows"
+        ]
+    }
     made = {name: pair for name, pair in rows.items() if "/demo/" in name}
     assert len(made) > 3 and all(lines == executed for lines, executed in made.values())
-    assert 0 < int(rows["icdgen_messages/_compiled.py"][1]) < int(rows["icdgen_messages/_compiled.py"][0])
+    assert (
+        0
+        < int(rows["icdgen_messages/_compiled.py"][1])
+        < int(rows["icdgen_messages/_compiled.py"][0])
+    )
     make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
 
 
-def test_a_line_of_python_that_is_not_executed_is_told_and_fails(demo, tmp_path, monkeypatch, capsys):
+def test_a_line_of_python_that_is_not_executed_is_told_and_fails(
+    demo, tmp_path, monkeypatch, capsys
+):
     monkeypatch.setattr(python_coverage, "by_id", lambda icd, built: [])
     assert python_coverage.main(["--out", str(tmp_path), str(demo)]) == 1
-    assert re.search(r"icdgen_messages/demo/__init__\.py:\d+: not executed", capsys.readouterr().err)
+    assert re.search(
+        r"icdgen_messages/demo/__init__\.py:\d+: not executed", capsys.readouterr().err
+    )
 
 
 def test_branches_of_python_are_found():
-    assert python_coverage.branches("if TYPE_CHECKING:\n    import a\nx = 1 if y else 2\nfor z in y:\n    pass\n") == [
+    assert python_coverage.branches(
+        "if TYPE_CHECKING:\n    import a\nx = 1 if y else 2\nfor z in y:\n    pass\n"
+    ) == [
         3,
         4,
     ]
-    assert python_coverage.executable("if TYPE_CHECKING:\n    import a\nx = 1\n") == {1, 3}
+    assert python_coverage.executable("if TYPE_CHECKING:\n    import a\nx = 1\n") == {
+        1,
+        3,
+    }
 
 
 COV = """\
@@ -124,22 +181,36 @@ for path in sorted(source.rglob("*.rs")):
 
 
 @pytest.mark.parametrize(("count", "status"), [(3, 0), (0, 1)])
-def test_lines_of_rust_that_were_not_executed_are_told_and_fail(demo, tmp_path, monkeypatch, capsys, count, status):
-    """The programs are built, run and counted as ever; what reads the counts is no part of Rust and is replaced."""
+def test_lines_of_rust_that_were_not_executed_are_told_and_fail(
+    demo, tmp_path, monkeypatch, capsys, count, status
+):
+    """The programs are built, run and counted as ever.
+
+    What reads the counts is no part of Rust and is replaced.
+    """
     if not rust_coverage.can_count():
         pytest.skip("this rustc was built without the profiler's runtime")
     cov = tmp_path / "bin" / "cov"
     cov.parent.mkdir()
-    cov.write_text(COV.replace("{python}", sys.executable).replace("{count}", str(count)))
+    cov.write_text(
+        COV.replace("{python}", sys.executable).replace("{count}", str(count))
+    )
     cov.chmod(0o755)
     monkeypatch.setenv("PATH", str(cov.parent), prepend=os.pathsep)
-    assert rust_coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == status
+    assert (
+        rust_coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == status
+    )
     rows = of(tmp_path / "measured", "coverage-rust")["rows"]
     assert ["demo/set_roll.rs", "1", "1" if count else "0"] in rows
-    assert ("demo/set_roll.rs:2: not executed" in capsys.readouterr().err) == bool(status)
+    assert ("demo/set_roll.rs:2: not executed" in capsys.readouterr().err) == bool(
+        status
+    )
     if not status:
         out = make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
-        assert {path.name for path in out.iterdir()} >= {"coverage-rust.html", "coverage-rust.csv"}
+        assert {path.name for path in out.iterdir()} >= {
+            "coverage-rust.html",
+            "coverage-rust.csv",
+        }
 
 
 def test_what_only_rust_has_is_asked_of_every_message_enumeration_and_id(demo):

@@ -1,4 +1,6 @@
-"""The pack as files: pages to print, tables for a spreadsheet, and measurements of nothing else."""
+"""The pack as files: pages to print, tables for a spreadsheet, and measurements of
+nothing else.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,12 @@ VALIDATE = Path(__file__).parent.parent / "site" / "npm" / ".htmlvalidate.json"
 
 
 def make(icd: Path, out: Path, *more: str) -> Path:
-    done = CliRunner().invoke(icdgen, ["--lang", "assurance", "--out", str(out), *more, str(icd)], obj={})
-    if isinstance(done.exception, Exception) and not isinstance(done.exception, SystemExit):
+    done = CliRunner().invoke(
+        icdgen, ["--lang", "assurance", "--out", str(out), *more, str(icd)], obj={}
+    )
+    if isinstance(done.exception, Exception) and not isinstance(
+        done.exception, SystemExit
+    ):
         raise done.exception
     assert done.exit_code == 0, done.output
     return out
@@ -54,16 +60,28 @@ def test_the_pages_are_valid_html_without_script(pack):
 
 
 def test_every_link_of_the_pages_leads_to_a_file_of_the_pack(pack):
-    links = {link for page in pack.glob("*.html") for link in re.findall(r'href="([^"]*)"', page.read_text("utf-8"))}
-    assert links >= {"trace.csv", "changes.csv"} and all((pack / link).is_file() for link in links)
+    links = {
+        link
+        for page in pack.glob("*.html")
+        for link in re.findall(r'href="([^"]*)"', page.read_text("utf-8"))
+    }
+    assert links >= {"trace.csv", "changes.csv"} and all(
+        (pack / link).is_file() for link in links
+    )
 
 
 def test_the_tables_are_csv_with_a_header_and_as_many_cells_in_each_row(pack):
     for path in pack.glob("*.csv"):
         data = path.read_bytes()
         assert b"\r\n" in data and data.endswith(b"\r\n")
-        rows = list(csv.reader(io.StringIO(data.decode("utf-8"), newline=""), strict=True))
-        assert len(rows) > 1 and {len(row) for row in rows} == {len(rows[0])} and all(rows[0])
+        rows = list(
+            csv.reader(io.StringIO(data.decode("utf-8"), newline=""), strict=True)
+        )
+        assert (
+            len(rows) > 1
+            and {len(row) for row in rows} == {len(rows[0])}
+            and all(rows[0])
+        )
 
 
 def test_each_paper_names_the_digest_of_the_icds(pack, tmp_path):
@@ -96,8 +114,14 @@ def test_a_measurement_goes_into_the_pack(demo, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"icd": "0" * 64}, "it measures other ICDs: the digest is 0000000000000000 there and "),
-        ({"code": {"c": "0" * 64}}, "it measures other code: the digest of `c` is 0000000000000000 there and "),
+        (
+            {"icd": "0" * 64},
+            "it measures other ICDs: the digest is 0000000000000000 there and ",
+        ),
+        (
+            {"code": {"c": "0" * 64}},
+            "it measures other code: the digest of `c` is 0000000000000000 there and ",
+        ),
         ({"icdgen_measurement": 2}, "not a measurement"),
         ({"rows": [["Roll"]]}, "a row has not as many cells as there are columns"),
         ({"name": "../up"}, "`name` is no name for a file"),
@@ -105,7 +129,9 @@ def test_a_measurement_goes_into_the_pack(demo, tmp_path):
         ({"facts": [["All"]]}, "`facts` is missing or not of its kind"),
     ],
 )
-def test_a_measurement_of_something_else_is_refused_and_nothing_written(demo, tmp_path, changes, said):
+def test_a_measurement_of_something_else_is_refused_and_nothing_written(
+    demo, tmp_path, changes, said
+):
     folder = keep(tmp_path / "measured", measurement(demo, **changes))
     with pytest.raises(UserError, match=said) as found:
         make(demo, tmp_path / "pack", "--measured", str(folder))
@@ -116,7 +142,10 @@ def test_a_measurement_of_something_else_is_refused_and_nothing_written(demo, tm
 def test_a_measurement_of_this_very_code_is_taken(demo, tmp_path):
     from icdgen.backends.assurance.pack import code_now
 
-    folder = keep(tmp_path / "measured", measurement(demo, code={"c": code_now(load([demo]).icd, "c")}))
+    folder = keep(
+        tmp_path / "measured",
+        measurement(demo, code={"c": code_now(load([demo]).icd, "c")}),
+    )
     make(demo, tmp_path / "pack", "--measured", str(folder))
 
 
@@ -131,5 +160,8 @@ def test_what_is_no_measurement_is_refused(demo, tmp_path, text):
 def test_measurements_go_nowhere_else(demo, tmp_path):
     with pytest.raises(UserError, match="measurements go into the assurance pack only"):
         CliRunner().invoke(
-            icdgen, ["--lang", "c", "--measured", str(tmp_path), str(demo)], obj={}, catch_exceptions=False
+            icdgen,
+            ["--lang", "c", "--measured", str(tmp_path), str(demo)],
+            obj={},
+            catch_exceptions=False,
         )

@@ -37,8 +37,13 @@ class Pack:
         self.folder = folder
         self.icd: Icd = load([folder]).icd
         backend = backends.get("assurance")
-        self.files = {str(path): made for path, made in backend.files(self.icd, Renderer.of(backend))}
-        self.vectors = Vectors({node.name: text(make(self.icd, node)) for node in self.icd.nodes})
+        self.files = {
+            str(path): made
+            for path, made in backend.files(self.icd, Renderer.of(backend))
+        }
+        self.vectors = Vectors(
+            {node.name: text(make(self.icd, node)) for node in self.icd.nodes}
+        )
         self.trace, self.changes = self.table("trace.csv"), self.table("changes.csv")
 
     def table(self, name: str) -> list[dict[str, str]]:
@@ -48,39 +53,74 @@ class Pack:
         """The ICDs, read anew with one value of one line changed."""
         shutil.copytree(self.folder, folder)
         needed = {change["node"], *self.listed(change)}
-        needed |= {one.name for name in needed for one in self.icd.included(self.icd.node(name))}
+        needed |= {
+            one.name
+            for name in needed
+            for one in self.icd.included(self.icd.node(name))
+        }
         for node in self.icd.nodes:  # reading them all takes a second each time
             if node.name not in needed:
                 Path(node.file.replace(str(self.folder), str(folder), 1)).unlink()
         path = folder / change["file"]
         text = path.read_text("utf-8")
-        before = sum(len(one) + 1 for one in text.split("\n")[: int(change["line"]) - 1]) + int(change["column"]) - 1
+        before = (
+            sum(len(one) + 1 for one in text.split("\n")[: int(change["line"]) - 1])
+            + int(change["column"])
+            - 1
+        )
         rest = text[before:]
         if rest.startswith("["):  # an id as the numbers that are sent, or points
-            end = next(end for end in range(1, len(rest)) if rest[:end].count("[") == rest[:end].count("]"))
+            end = next(
+                end
+                for end in range(1, len(rest))
+                if rest[:end].count("[") == rest[:end].count("]")
+            )
         else:
-            end = next(end for end in range(1, len(rest) + 1) if _value(rest[:end]) == change["says"])
-        now = json.dumps(change["changed to"]) if change["kind"] == "formula" else change["changed to"]
+            end = next(
+                end
+                for end in range(1, len(rest) + 1)
+                if _value(rest[:end]) == change["says"]
+            )
+        now = (
+            json.dumps(change["changed to"])
+            if change["kind"] == "formula"
+            else change["changed to"]
+        )
         path.write_text(text[:before] + now + rest[end:], "utf-8")
         return load([folder], check=False).icd
 
     def fields(self, message: str, node: str, icd: Icd | None = None) -> list[str]:
         """The names of the fields of a message."""
-        found = next(one for one in (icd or self.icd).node(node).messages if one.name == message)
+        found = next(
+            one for one in (icd or self.icd).node(node).messages if one.name == message
+        )
         return [field.name for field in found.fields]
 
     def messages_of(self, change: dict[str, str]) -> list[str]:
-        """The message that a change is part of; those in which the struct stands that it is part of."""
+        """The message that a change is part of.
+
+        Those in which the struct stands that it is part of.
+        """
         node, part = self.icd.node(change["node"]), change["part of"]
-        holders = (m.name for m in node.messages if any(s.name == part for s in structs(m.layout)))
-        return list(dict.fromkeys([*(m.name for m in node.messages if m.name == part), *holders]))
+        holders = (
+            m.name
+            for m in node.messages
+            if any(s.name == part for s in structs(m.layout))
+        )
+        return list(
+            dict.fromkeys(
+                [*(m.name for m in node.messages if m.name == part), *holders]
+            )
+        )
 
     def listed(self, change: dict[str, str]) -> dict[str, set[int]]:
         return noticed(change["vectors"])
 
 
 def structs(layout: Layout) -> Iterator[Layout]:
-    """The layouts of the structs that stand in a message or a struct, and of those in them."""
+    """The layouts of the structs that stand in a message or a struct, and of those in
+    them.
+    """
     for place in places_in(layout):
         if place.struct is not None:
             yield place.struct
@@ -88,12 +128,16 @@ def structs(layout: Layout) -> Iterator[Layout]:
 
 
 def _value(text: str) -> str:
-    """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts without quotes."""
+    """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts
+    without quotes.
+    """
     text = text.strip()
     if text[:1] == "'":
         return text[1:-1] if len(text) > 1 and text[-1] == "'" else ""
     try:
-        if text[:1] == '"':  # names in formulas of derived values have what must be escaped
+        if (
+            text[:1] == '"'
+        ):  # names in formulas of derived values have what must be escaped
             return str(json.loads(text))
         return str(int(text, 0) if text.lower().startswith("0x") else text)
     except ValueError:
@@ -127,22 +171,33 @@ def demo_pack(tmp_path_factory) -> Pack:
 
 
 def hold(pack: Pack, change: dict[str, str], folder: Path) -> None:
-    """Every vector that the trace names fails, and of the frames of what the line is about no other does."""
+    """Every vector that the trace names fails, and of the frames of what the line is
+    about no other does.
+    """
     changed, listed = pack.changed(change, folder), pack.listed(change)
     judge = Judge(pack.vectors, changed)
     for node, numbers in listed.items():
-        about = [*pack.vectors.of_node(node)] if min(numbers) < pack.vectors.first_message(node) else []
+        about = (
+            [*pack.vectors.of_node(node)]
+            if min(numbers) < pack.vectors.first_message(node)
+            else []
+        )
         for name in pack.vectors.messages_at(node, numbers):
             about += pack.vectors.of_message(node, name)
-        failing = judge.failing((number, cases) for number, cases in about if number in numbers)
+        failing = judge.failing(
+            (number, cases) for number, cases in about if number in numbers
+        )
         assert numbers == failing, (change, node, sorted(numbers - failing))
     if change["kind"] not in ("enum value", "id", "length", "node"):
         node = change["node"]
         for message in pack.messages_of(change):
             if pack.fields(message, node) != pack.fields(message, node, changed):
-                continue  # parts that no longer make up their field, or elements: all frames are decoded to other names
+                # Parts that no longer make up their field, or elements: all frames are
+                # decoded to other names.
+                continue
             others = pack.vectors.of_message(node, message)
-            # a value that does not come back from its physical one is asked in another frame than that of the row
+            # a value that does not come back from its physical one is asked in another
+            # frame than that of the row
             rest = [
                 (number, [one for one in cases if one.answer.get("bytes") is not ...])
                 for number, cases in others
@@ -155,7 +210,9 @@ def is_row(cases: list) -> bool:
     return bool(cases) and cases[0].request["op"] == "decode" and cases[0].answer["ok"]
 
 
-def test_each_change_of_a_small_icd_fails_the_vectors_that_the_trace_names(demo_pack, tmp_path):
+def test_each_change_of_a_small_icd_fails_the_vectors_that_the_trace_names(
+    demo_pack, tmp_path
+):
     assert {change["kind"] for change in demo_pack.changes} >= {
         "offset",
         "width",
@@ -187,11 +244,15 @@ messages:
 """
 
 
-def test_each_change_of_a_range_or_of_a_special_value_fails_the_vectors_that_the_trace_names(tmp_path):
+def test_each_change_of_a_range_or_of_a_special_value_fails_the_vectors_that_the_trace_names(
+    tmp_path,
+):
     (tmp_path / "icd").mkdir()
     (tmp_path / "icd" / "demo.yaml").write_text(NAMED, "utf-8")
     pack = Pack(tmp_path / "icd")
-    named = [change for change in pack.changes if change["kind"] in ("enum value", "special")]
+    named = [
+        change for change in pack.changes if change["kind"] in ("enum value", "special")
+    ]
     assert len(named) == 14
     for number, change in enumerate(named):
         assert change["vectors"], change
@@ -217,12 +278,20 @@ messages:
 """
 
 
-def test_each_change_of_a_derived_value_and_of_a_condition_fails_the_vectors_that_the_trace_names(tmp_path):
+def test_each_change_of_a_derived_value_and_of_a_condition_fails_the_vectors_that_the_trace_names(
+    tmp_path,
+):
     (tmp_path / "icd").mkdir()
     (tmp_path / "icd" / "demo.yaml").write_text(DERIVED, "utf-8")
     pack = Pack(tmp_path / "icd")
-    told = [change for change in pack.changes if change["key"] == "formula" or change["kind"] == "condition"]
-    assert [change["changed to"] for change in told if change["kind"] == "condition"] == ["0"]
+    told = [
+        change
+        for change in pack.changes
+        if change["key"] == "formula" or change["kind"] == "condition"
+    ]
+    assert [
+        change["changed to"] for change in told if change["kind"] == "condition"
+    ] == ["0"]
     assert {change["name"] for change in told} == {"Triple", "Power", "Level"}
     for number, change in enumerate(told):
         assert change["vectors"], change
@@ -239,24 +308,38 @@ messages:
 """
 
 
-def test_elements_of_a_struct_that_take_the_bits_of_each_other_when_they_grow_fail_what_the_trace_names(tmp_path):
+def test_elements_of_a_struct_that_take_the_bits_of_each_other_when_they_grow_fail_what_the_trace_names(
+    tmp_path,
+):
     (tmp_path / "icd").mkdir()
     (tmp_path / "icd" / "demo.yaml").write_text(OVERLAPPING, "utf-8")
     pack = Pack(tmp_path / "icd")
-    assert {"offset", "width", "count", "type"} <= {change["kind"] for change in pack.changes}
+    assert {"offset", "width", "count", "type"} <= {
+        change["kind"] for change in pack.changes
+    }
     for number, change in enumerate(pack.changes):
         assert change["vectors"], change
         hold(pack, change, tmp_path / str(number))
 
 
-def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names(shipped, tmp_path):
-    decided = {(e["node"], e["touches"]) for e in shipped.table("errata.csv") if e["kind"] == "Erratum"}
+def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names(
+    shipped, tmp_path
+):
+    decided = {
+        (e["node"], e["touches"])
+        for e in shipped.table("errata.csv")
+        if e["kind"] == "Erratum"
+    }
     touched = {(node, line) for node, lines in decided for line in lines.split("; ")}
     source = random.Random(13)
     for kind in sorted({change["kind"] for change in shipped.changes}):
-        # where a decision stands on what is printed there, the line cannot be changed without it
+        # where a decision stands on what is printed there, the line cannot be changed
+        # without it
         free = [
-            c for c in shipped.changes if c["kind"] == kind and (c["node"], f"{c['file']}:{c['line']}") not in touched
+            c
+            for c in shipped.changes
+            if c["kind"] == kind
+            and (c["node"], f"{c['file']}:{c['line']}") not in touched
         ]
         for number, change in enumerate(source.sample(free, min(EACH, len(free)))):
             hold(shipped, change, tmp_path / f"{kind}{number}")
@@ -264,7 +347,9 @@ def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names
 
 @settings(max_examples=3)
 @given(icds())
-def test_changed_lines_of_any_icd_fail_the_vectors_that_the_trace_names(tmp_path_factory, trees):
+def test_changed_lines_of_any_icd_fail_the_vectors_that_the_trace_names(
+    tmp_path_factory, trees
+):
     folder = tmp_path_factory.mktemp("random")
     (folder / "icd").mkdir()
     written(trees, folder / "icd")
@@ -280,30 +365,48 @@ def test_every_change_of_the_shipped_icds_is_noticed(shipped):
 
 
 def test_every_message_field_and_member_is_traced_to_its_line_and_its_symbols(shipped):
-    rows = {(row["kind"], row["node"], row["part of"], row["name"]): row for row in shipped.trace}
+    rows = {
+        (row["kind"], row["node"], row["part of"], row["name"]): row
+        for row in shipped.trace
+    }
     for node in shipped.icd.nodes:
         for message in node.messages:
             row = rows["message", node.name, "", message.name]
-            assert row["table"] == str(message.table or "") and row["C"] and row["Python"] and row["Rust"]
+            assert (
+                row["table"] == str(message.table or "")
+                and row["C"]
+                and row["Python"]
+                and row["Rust"]
+            )
             for field in message.fields:
                 row = rows["field", node.name, message.name, field.name]
-                line = (ROOT / "icd" / row["file"]).read_text("utf-8").split("\n")[int(row["line"]) - 1]
+                line = (
+                    (ROOT / "icd" / row["file"])
+                    .read_text("utf-8")
+                    .split("\n")[int(row["line"]) - 1]
+                )
                 assert field.name in line and row["C"] and row["Python"] and row["Rust"]
 
 
 def test_the_symbols_of_a_line_stand_in_the_generated_code(shipped):
     texts = {
         language: "\n".join(
-            path.read_text("utf-8") for path in (ROOT / "generated" / language).rglob("*") if path.suffix == suffix
+            path.read_text("utf-8")
+            for path in (ROOT / "generated" / language).rglob("*")
+            if path.suffix == suffix
         )
         for language, suffix in (("c", ".h"), ("python", ".py"), ("rust", ".rs"))
     }
-    rows = [row for row in shipped.trace if row["kind"] in ("field", "member", "message")]
+    rows = [
+        row for row in shipped.trace if row["kind"] in ("field", "member", "message")
+    ]
     for row in random.Random(5).sample(rows, 300):
         for language, column in (("c", "C"), ("python", "Python"), ("rust", "Rust")):
             for symbol in row[column].split("; "):
                 name, _, scope = symbol.partition(" (")
-                assert ("file" in scope.lower() and "scope" not in scope) or name in texts[language], (
+                assert (
+                    "file" in scope.lower() and "scope" not in scope
+                ) or name in texts[language], (
                     row["name"],
                     symbol,
                 )
@@ -332,7 +435,9 @@ messages:
 """
 
 
-def test_each_change_of_elements_behind_a_variable_part_fails_the_vectors_that_the_trace_names(tmp_path):
+def test_each_change_of_elements_behind_a_variable_part_fails_the_vectors_that_the_trace_names(
+    tmp_path,
+):
     (tmp_path / "icd").mkdir()
     (tmp_path / "icd" / "demo.yaml").write_text(TWO_PARTS, "utf-8")
     pack = Pack(tmp_path / "icd")

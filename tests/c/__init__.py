@@ -1,1 +1,3 @@
-"""The C that is generated: it compiles everywhere, and does what the reference codec does."""
+"""The C that is generated: it compiles everywhere, and does what the reference codec
+does.
+"""

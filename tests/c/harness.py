@@ -15,14 +15,22 @@ from icdgen.backends.c.types import type_of
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from tests.conformance.icds import SHIPPED, read, shipped  # noqa: F401  (tests take them from here)
+from tests.conformance.icds import (
+    SHIPPED,  # noqa: F401
+    read,  # noqa: F401
+    shipped,  # noqa: F401
+)
 
 HERE = Path(__file__).parent
 WARNINGS = (
     "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wcast-align -Wundef -Wdouble-promotion "
     "-Wfloat-equal -Werror"
 ).split()
-LANGUAGES = [(compiler, standard) for compiler in ("gcc", "clang") for standard in ("c99", "c11", "c2x")]
+LANGUAGES = [
+    (compiler, standard)
+    for compiler in ("gcc", "clang")
+    for standard in ("c99", "c11", "c2x")
+]
 LANGUAGES += [("g++", "c++17"), ("clang++", "c++17")]
 SANITIZERS = "-fsanitize=address,undefined -fno-sanitize-recover=all".split()
 
@@ -51,7 +59,12 @@ def generate(icd: Icd, folder: Path) -> Path:
     return folder
 
 
-def compile(source: Path, *options: str | Path, compiler: str = "gcc", output: str | Path = "/dev/null") -> Path:
+def compile(
+    source: Path,
+    *options: str | Path,
+    compiler: str = "gcc",
+    output: str | Path = "/dev/null",
+) -> Path:
     """Compiles and links; fails with what the compiler says."""
     command = [compiler, *map(str, options), str(source), "-o", str(output)]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -59,23 +72,51 @@ def compile(source: Path, *options: str | Path, compiler: str = "gcc", output: s
     return Path(output)
 
 
-def compile_all(icd: Icd, folder: Path, compiler: str, standard: str, *options: str) -> None:
+def compile_all(
+    icd: Icd, folder: Path, compiler: str, standard: str, *options: str
+) -> None:
     """Compiles a program that includes every header of the folder, under all warnings."""
     cpp = standard.startswith("c++")
     source = folder / ("all.cpp" if cpp else "all.c")
-    headers = [*(f"{node.name}.h" for node in icd.nodes), *sorted(p.relative_to(folder) for p in folder.rglob("*.h"))]
-    source.write_text("".join(f'#include "{header}"\n' for header in headers) + "int main(void) { return 0; }\n")
-    of_language = ("-Wold-style-cast",) if cpp else ("-Wstrict-prototypes", "-Wmissing-prototypes")
-    compile(source, f"-std={standard}", *WARNINGS, *of_language, *options, f"-I{folder}", compiler=compiler)
+    headers = [
+        *(f"{node.name}.h" for node in icd.nodes),
+        *sorted(p.relative_to(folder) for p in folder.rglob("*.h")),
+    ]
+    source.write_text(
+        "".join(f'#include "{header}"\n' for header in headers)
+        + "int main(void) { return 0; }\n"
+    )
+    of_language = (
+        ("-Wold-style-cast",)
+        if cpp
+        else ("-Wstrict-prototypes", "-Wmissing-prototypes")
+    )
+    compile(
+        source,
+        f"-std={standard}",
+        *WARNINGS,
+        *of_language,
+        *options,
+        f"-I{folder}",
+        compiler=compiler,
+    )
 
 
 def wrappers(icd: Icd) -> str:
-    """A source that calls every decode and encode function, each from a function of its own."""
+    """A source that calls every decode and encode function, each from a function of its
+    own.
+    """
     text = "".join(f'#include "{node.name}.h"\n' for node in icd.nodes)
     for name in (stem(target.message) for target in targets(icd)):
         for head, call in (
-            (f"d_{name}({name}_t *m, const uint8_t *b, size_t n)", f"{name}_decode(m, b, n)"),
-            (f"e_{name}(const {name}_t *m, uint8_t *b, size_t n)", f"{name}_encode(m, b, n)"),
+            (
+                f"d_{name}({name}_t *m, const uint8_t *b, size_t n)",
+                f"{name}_decode(m, b, n)",
+            ),
+            (
+                f"e_{name}(const {name}_t *m, uint8_t *b, size_t n)",
+                f"{name}_encode(m, b, n)",
+            ),
         ):
             text += f"icd_status_t {head};\nicd_status_t {head} {{ return {call}; }}\n"
     return text
@@ -83,7 +124,9 @@ def wrappers(icd: Icd) -> str:
 
 @dataclass(frozen=True)
 class Target:
-    """A message with where each raw value stands in the record that the test program reads and writes."""
+    """A message with where each raw value stands in the record that the test program
+    reads and writes.
+    """
 
     message: MessageDescription
     places: tuple[int, ...]
@@ -105,9 +148,12 @@ def targets(icd: Icd) -> list[Target]:
 
 def frames_source(icd: Icd) -> str:
     """The test program of ``frames.c.j2``."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True
+    )
     return environment.get_template("frames.c.j2").render(
-        nodes=[node.name for node in icd.nodes], messages=[_row(target) for target in targets(icd)]
+        nodes=[node.name for node in icd.nodes],
+        messages=[_row(target) for target in targets(icd)],
     )
 
 
@@ -116,18 +162,33 @@ def _row(target: Target) -> dict[str, object]:
     collect, assign, fields = [], [], []
     for one, place in zip(message.fields, target.places, strict=True):
         field, name = one.model, one.name
-        fields.append({"at": field.at, "bits": field.bits, "type": _TYPES[field.type], "place": place})
+        fields.append(
+            {
+                "at": field.at,
+                "bits": field.bits,
+                "type": _TYPES[field.type],
+                "place": place,
+            }
+        )
         if field.is_bytes:
-            collect.append(f"memcpy(record + {place}, message.{name}, {field.bits // 8});")
-            assign.append(f"memcpy(message.{name}, record + {place}, {field.bits // 8});")
+            collect.append(
+                f"memcpy(record + {place}, message.{name}, {field.bits // 8});"
+            )
+            assign.append(
+                f"memcpy(message.{name}, record + {place}, {field.bits // 8});"
+            )
         elif field.type == "float":
             word = f"uint{field.bits}_t"
-            collect.append(f"{{ {word} b; memcpy(&b, &message.{name}, sizeof b); record_put(record, {place}, b); }}")
+            collect.append(
+                f"{{ {word} b; memcpy(&b, &message.{name}, sizeof b); record_put(record, {place}, b); }}"
+            )
             get = f"const {word} b = ({word})record_get(record, {place});"
             assign.append(f"{{ {get} memcpy(&message.{name}, &b, sizeof b); }}")
         else:
             collect.append(f"record_put(record, {place}, (uint64_t)message.{name});")
-            assign.append(f"message.{name} = ({type_of(one)})record_get(record, {place});")
+            assign.append(
+                f"message.{name} = ({type_of(one)})record_get(record, {place});"
+            )
     return {
         "stem": stem(message),
         "big_endian": str(message.node.byte_order == "big").lower(),

@@ -1,6 +1,8 @@
-"""What cppcheck's addon finds of MISRA C:2012 in the runtime and in C made from the shipped ICDs, held against the record.
+"""What cppcheck's addon finds of MISRA C:2012 in the runtime and in C made from the
+shipped ICDs, held against the record.
 
-``python -m tests.c.misra`` writes the places found into the record; what a rule is deviated from for, you write.
+``python -m tests.c.misra`` writes the places found into the record; what a rule is
+deviated from for, you write.
 """
 
 from __future__ import annotations
@@ -19,7 +21,14 @@ from tests.conftest import ROOT
 
 RUNTIME = ROOT / "runtime" / "c"
 RECORD = RUNTIME / "misra.yaml"
-COMMAND = ("cppcheck", "--addon=misra", "--enable=style", "--std=c99", "--platform=unix64", "--quiet")
+COMMAND = (
+    "cppcheck",
+    "--addon=misra",
+    "--enable=style",
+    "--std=c99",
+    "--platform=unix64",
+    "--quiet",
+)
 GNUC = (
     "-D__GNUC__=12",
     "-D__x86_64__=1",
@@ -27,7 +36,9 @@ GNUC = (
     "-D__ORDER_LITTLE_ENDIAN__=1",
     "-DUINTPTR_MAX=0xFFFFFFFFFFFFFFFFu",
 )
-"""What the faster ways through the support header ask for: words in the byte order of the machine."""
+"""What the faster ways through the support header ask for: words in the byte order of
+the machine.
+"""
 
 _FINDING = re.compile(r"misra-c2012-(?P<rule>[\d.]+) (?P<file>\S+) (?P<at>\d+:\d+)")
 _ORDER = ("rule", "category", "verdict", "reason", "runtime", "generated")
@@ -39,10 +50,19 @@ Places = dict[str, dict[str, Any]]
 def findings(*arguments: str | Path) -> set[tuple[str, str, str]]:
     """Rule, file and place of each finding in a source."""
     done = subprocess.run(
-        [*COMMAND, "--template=misra {id} {file} {line}:{column}", *map(str, arguments)], capture_output=True, text=True
+        [
+            *COMMAND,
+            "--template=misra {id} {file} {line}:{column}",
+            *map(str, arguments),
+        ],
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    return {(match["rule"], match["file"], match["at"]) for match in _FINDING.finditer(done.stderr)}
+    return {
+        (match["rule"], match["file"], match["at"])
+        for match in _FINDING.finditer(done.stderr)
+    }
 
 
 def found() -> Places:
@@ -56,9 +76,15 @@ def _all(folder: Path) -> set[tuple[str, str, str]]:
     made = harness.generate(icd, folder / "made")
     wide, nodes = folder / "wide.c", folder / "nodes.c"
     wide.write_text(f'#include "{RUNTIME / "icdgen_wide.h"}"\n')
-    nodes.write_text("".join(f'#include "{made / node.name}.h"\n' for node in icd.nodes))
+    nodes.write_text(
+        "".join(f'#include "{made / node.name}.h"\n' for node in icd.nodes)
+    )
     shared = "-DICDGEN_SHARED=1"
-    rows = findings(shared, wide) | findings(shared, *GNUC, wide) | findings(shared, RUNTIME / "icdgen_wire.c")
+    rows = (
+        findings(shared, wide)
+        | findings(shared, *GNUC, wide)
+        | findings(shared, RUNTIME / "icdgen_wire.c")
+    )
     rows |= findings(shared, nodes)
     for link in sorted(made.glob("*/link.c")):
         rows |= findings(shared, link)
@@ -76,7 +102,10 @@ def places(rows: set[tuple[str, str, str]], folder: Path) -> Places:
         elif not path.name.startswith("icdgen"):  # those are the runtime once more
             generated[rule].add(template(path.relative_to(folder / "made")))
     return {
-        rule: {"runtime": dict(sorted(runtime[rule].items())), "generated": sorted(generated[rule])}
+        rule: {
+            "runtime": dict(sorted(runtime[rule].items())),
+            "generated": sorted(generated[rule]),
+        }
         for rule in runtime.keys() | generated.keys()
     }
 
@@ -106,11 +135,17 @@ def differences(recorded: list[dict[str, Any]], now: Places) -> list[str]:
         for file in sorted(old["runtime"].keys() | new["runtime"].keys()):
             before, after = old["runtime"].get(file, 0), new["runtime"].get(file, 0)
             if before != after:
-                lines.append(f"{rule}: runtime/c/{file}: {before} in the record, {after} found")
+                lines.append(
+                    f"{rule}: runtime/c/{file}: {before} in the record, {after} found"
+                )
         lines += [
-            f"{rule}: {name} is not in the record" for name in sorted(set(new["generated"]) - set(old["generated"]))
+            f"{rule}: {name} is not in the record"
+            for name in sorted(set(new["generated"]) - set(old["generated"]))
         ]
-        lines += [f"{rule}: {name} is stale" for name in sorted(set(old["generated"]) - set(new["generated"]))]
+        lines += [
+            f"{rule}: {name} is stale"
+            for name in sorted(set(old["generated"]) - set(new["generated"]))
+        ]
     return lines
 
 
@@ -119,8 +154,20 @@ def update() -> None:
     now, known = found(), {one["rule"]: one for one in record()}
     text = RECORD.read_text("utf-8").partition("findings:")[0] + "findings:\n"
     for rule in sorted(now, key=_number):
-        one = {"rule": rule, "category": "", "verdict": "", "reason": "", **known.get(rule, {}), **now[rule]}
-        text += yaml.safe_dump([{key: one[key] for key in _ORDER}], sort_keys=False, width=140, allow_unicode=True)
+        one = {
+            "rule": rule,
+            "category": "",
+            "verdict": "",
+            "reason": "",
+            **known.get(rule, {}),
+            **now[rule],
+        }
+        text += yaml.safe_dump(
+            [{key: one[key] for key in _ORDER}],
+            sort_keys=False,
+            width=140,
+            allow_unicode=True,
+        )
     RECORD.write_text(text, "utf-8")
 
 

@@ -1,4 +1,6 @@
-"""ICDs unlike ours: every bit and byte order, every width at every place, names that try to break out."""
+"""ICDs unlike ours: every bit and byte order, every width at every place, names that
+try to break out.
+"""
 
 from __future__ import annotations
 
@@ -24,9 +26,17 @@ def write(folder: Path) -> list[Path]:
     found = []
     for byte_order, bit_order in ORDERS:
         name = f"odd_{byte_order}_{bit_order}"
-        found.append(_write(folder / f"{name}.yaml", _node(name, byte_order, bit_order, _messages(name))))
+        found.append(
+            _write(
+                folder / f"{name}.yaml",
+                _node(name, byte_order, bit_order, _messages(name)),
+            )
+        )
     found.append(
-        _write(folder / "hostile.yaml", {**_node("hostile", "little", "lsb0", _hostile()), **_hostile_enums()})
+        _write(
+            folder / "hostile.yaml",
+            {**_node("hostile", "little", "lsb0", _hostile()), **_hostile_enums()},
+        )
     )
     found.append(_write(folder / "silent.yaml", _node("silent", "little", "lsb0", [])))
     return found
@@ -38,13 +48,22 @@ def _write(path: Path, tree: dict) -> Path:
 
 
 def _node(name: str, byte_order: str, bit_order: str, messages: list[dict]) -> dict:
-    head = {"name": name, "title": name, "byte_order": byte_order, "bit_order": bit_order}
+    head = {
+        "name": name,
+        "title": name,
+        "byte_order": byte_order,
+        "bit_order": bit_order,
+    }
     return {"icdgen": 1, "node": head, "messages": messages, "enums": [_WIDE_ENUM]}
 
 
 _WIDE_ENUM = {
     "name": "Wide Mode",
-    "members": [{"value": 0, "name": "Zero"}, {"value": 0xFFFFFFFFFFFFFFFF, "name": "All"}, {"value": 7, "name": "7"}],
+    "members": [
+        {"value": 0, "name": "Zero"},
+        {"value": 0xFFFFFFFFFFFFFFFF, "name": "All"},
+        {"value": 7, "name": "7"},
+    ],
 }
 _WIDE_ENUM["members"][2]["identifier"] = "Seven"
 
@@ -53,33 +72,66 @@ def _messages(seed: str) -> list[dict]:
     source = random.Random(seed)
     messages = [_random_message(source, number) for number in range(8)]
     messages.append(_flags("Flags Up", range(40), 100))
-    messages.append(_flags("Flags Down", [8 * (n // 8) + 7 - n % 8 for n in range(40)], 101))
+    messages.append(
+        _flags("Flags Down", [8 * (n // 8) + 7 - n % 8 for n in range(40)], 101)
+    )
     messages.append(_flags("Flags Mixed", source.sample(range(40), 40), 102))
     messages.append(_rows(103))
     messages.append({"name": "Nothing", "kind": "telecommand", "id": 104, "length": 0})
-    messages.append({"name": "Only Reserved", "kind": "telemetry", "id": 105, "length": 3})
+    messages.append(
+        {"name": "Only Reserved", "kind": "telemetry", "id": 105, "length": 3}
+    )
     return messages
 
 
 def _flags(name: str, positions, number: int) -> dict:
-    fields = [{"at": at, "bits": 1, "name": f"Flag {index}", "type": "bool"} for index, at in enumerate(positions)]
-    return {"name": name, "kind": "telemetry", "id": number, "length": 5, "fields": fields}
+    fields = [
+        {"at": at, "bits": 1, "name": f"Flag {index}", "type": "bool"}
+        for index, at in enumerate(positions)
+    ]
+    return {
+        "name": name,
+        "kind": "telemetry",
+        "id": number,
+        "length": 5,
+        "fields": fields,
+    }
 
 
 def _rows(number: int) -> dict:
     fields, at = [], 0
-    for bits, kinds in ((8, ("uint", "int")), (16, ("int", "uint")), (32, ("float", "int")), (64, ("uint", "float"))):
+    for bits, kinds in (
+        (8, ("uint", "int")),
+        (16, ("int", "uint")),
+        (32, ("float", "int")),
+        (64, ("uint", "float")),
+    ):
         for index in range(9):
-            fields.append({"at": at, "bits": bits, "name": f"Word {bits} {index}", "type": kinds[index % 2]})
+            fields.append(
+                {
+                    "at": at,
+                    "bits": bits,
+                    "name": f"Word {bits} {index}",
+                    "type": kinds[index % 2],
+                }
+            )
             at += bits
-    return {"name": "Rows", "kind": "telemetry", "id": number, "length": at // 8, "fields": fields}
+    return {
+        "name": "Rows",
+        "kind": "telemetry",
+        "id": number,
+        "length": at // 8,
+        "fields": fields,
+    }
 
 
 def _random_message(source: random.Random, number: int) -> dict:
     fields, at = [], 0
     for index in range(14):
         at += source.choice([0, 0, 0, 1, 3, 9])
-        kind = source.choice(["uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text"])
+        kind = source.choice(
+            ["uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text"]
+        )
         bits = {
             "bool": 1,
             "float": source.choice([32, 64]),
@@ -110,8 +162,20 @@ FORMULAS = [
 
 
 def _hostile_enums() -> dict:
-    members = [{"value": n, "name": text, "identifier": f"Value {n}"} for n, text in enumerate(HOSTILE)]
-    return {"enums": [{"name": HOSTILE[0], "identifier": "Bad Enum", "summary": HOSTILE[1], "members": members}]}
+    members = [
+        {"value": n, "name": text, "identifier": f"Value {n}"}
+        for n, text in enumerate(HOSTILE)
+    ]
+    return {
+        "enums": [
+            {
+                "name": HOSTILE[0],
+                "identifier": "Bad Enum",
+                "summary": HOSTILE[1],
+                "members": members,
+            }
+        ]
+    }
 
 
 def _hostile() -> list[dict]:

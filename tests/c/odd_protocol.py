@@ -1,4 +1,6 @@
-"""The shipped ICDs with another protocol: every choice that the format allows is made the other way round."""
+"""The shipped ICDs with another protocol: every choice that the format allows is made
+the other way round.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +22,19 @@ def _changed(node: Node) -> Node:
             "escape": 0x10, "start_of_message": 2, "end_of_message": 3, "escaped_data": 0x11, "other": "ignore",
             "escaped_in": ["data"],
         }  # fmt: skip
-        protocol["can"]["extended"] |= {"fill": 0xA5, "packets_left_in_last": 1, "max_packets": 255, "max_bytes": 1785}
+        protocol["can"]["extended"] |= {
+            "fill": 0xA5,
+            "packets_left_in_last": 1,
+            "max_packets": 255,
+            "max_bytes": 1785,
+        }
         protocol["can"]["node_address"] = 9
-        protocol["crc16"] |= {"init": 0xFFFF, "reflect_in": True, "reflect_out": True, "xor_out": 0xFFFF}
+        protocol["crc16"] |= {
+            "init": 0xFFFF,
+            "reflect_in": True,
+            "reflect_out": True,
+            "xor_out": 0xFFFF,
+        }
         files = protocol["file_transfer"]
         files |= {"first_packet": 1, "fill": 0x5A}
         files["hole_map"] |= {"bit_order": "msb0", "received": 0, "beyond_end": 0}
@@ -36,4 +48,6 @@ def _changed(node: Node) -> Node:
         protocol["crc8"].pop("empty", None)
     if "log_mask" in protocol:
         protocol["log_mask"] |= {"bit_order": "msb0", "fill": 0x77}
-    return dataclasses.replace(node, byte_order="big", bit_order="msb0", protocol=protocol)
+    return dataclasses.replace(
+        node, byte_order="big", bit_order="msb0", protocol=protocol
+    )

@@ -26,10 +26,16 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     known = facts.of(icd, node)
     plans = {one.model.name: one for one in describe(icd).node(node).all_messages}
     telecommands = [plans[m.name] for m in known.telecommands.values()]
-    starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    starters = [
+        one.name
+        for one in icd.nodes
+        if one.protocol.get("program_start", {}).get("application") == node.name
+    ]
     boot = icd.node(starters[0])
     name = boot.protocol["program_start"]["message"]
-    start = next(one for one in describe(icd).node(boot).all_messages if one.model.name == name)
+    start = next(
+        one for one in describe(icd).node(boot).all_messages if one.model.name == name
+    )
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(harness.HERE),
         trim_blocks=True,
@@ -40,14 +46,22 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     return environment.get_template("sim_client.c.j2").render(
         node=node.name,
         telemetry=[plans[m.name] for m in known.telemetry.values()],
-        settings=[(plan, _ones(plan)) for plan in telecommands if plan.model.kind == CONFIGURATION],
+        settings=[
+            (plan, _ones(plan))
+            for plan in telecommands
+            if plan.model.kind == CONFIGURATION
+        ],
         others=sorted(
             (plan for plan in telecommands if plan.model.kind != CONFIGURATION),
             key=lambda plan: plan.model.expects_reset,
         ),
         log=plans[icd.protocol_of(node)["unsolicited_log"]["configured_by"]["message"]],
         last=plans[known.polled.message.name],
-        last_id=next(m.name for m in plans[known.polled.message.name].fields if m.model.name == known.polled.id),
+        last_id=next(
+            m.name
+            for m in plans[known.polled.message.name].fields
+            if m.model.name == known.polled.id
+        ),
         identification=plans[known.identification.message.name],
         restarted=starters[0],
         start=stem(start).upper(),
@@ -57,7 +71,11 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 
 def _ones(plan: MessageDescription) -> list[str]:
     """Members that are set to 1, which any of them can hold."""
-    return [m.name for m in plan.fields if m.model.type in ("uint", "int", "bool") and m.model.const is None]
+    return [
+        m.name
+        for m in plan.fields
+        if m.model.type in ("uint", "int", "bool") and m.model.const is None
+    ]
 
 
 def build(folder: Path) -> Path:
@@ -65,7 +83,13 @@ def build(folder: Path) -> Path:
     headers = harness.generate(harness.shipped(), folder)
     main = folder / "sim_client.c"
     main.write_text(source(harness.shipped()), encoding="utf-8")
-    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", "-O1", *harness.WARNINGS, *harness.SANITIZERS)
+    flags = (
+        "-std=c99",
+        "-D_POSIX_C_SOURCE=200809L",
+        "-O1",
+        *harness.WARNINGS,
+        *harness.SANITIZERS,
+    )
     places = (f"-I{headers}", f"-I{harness.HERE}", f"-I{ROOT / 'examples'}")
     return harness.compile(main, *flags, *places, output=folder / "sim_client")
 

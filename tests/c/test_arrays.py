@@ -1,4 +1,6 @@
-"""Arrays in C: members that are arrays, and accessors that take the index of an element."""
+"""Arrays in C: members that are arrays, and accessors that take the index of an
+element.
+"""
 
 from __future__ import annotations
 
@@ -75,7 +77,15 @@ def test_elements_are_members_and_an_index_is_held_to_the_count(compiler, tmp_pa
     standard = "c++17" if compiler == "g++" else "c99"
     where = f"-I{folder}"
     program = harness.compile(
-        source, f"-std={standard}", *options, *harness.SANITIZERS, where, compiler=compiler, output=folder / "user"
+        source,
+        f"-std={standard}",
+        *options,
+        *harness.SANITIZERS,
+        where,
+        compiler=compiler,
+        output=folder / "user",
     )
     done = subprocess.run([program], capture_output=True, text=True)
-    assert done.returncode == 0, f"line {done.returncode} of the program: {done.stderr[:2000]}"
+    assert (
+        done.returncode == 0
+    ), f"line {done.returncode} of the program: {done.stderr[:2000]}"

@@ -1,4 +1,6 @@
-"""Whoever lends a buffer says how large it is, and is refused where it is too small: nothing is written past its end."""
+"""Whoever lends a buffer says how large it is, and is refused where it is too small:
+nothing is written past its end.
+"""
 
 from __future__ import annotations
 
@@ -54,10 +56,14 @@ int main(void)
 def test_a_buffer_that_is_too_small_for_a_block_is_refused(tmp_path, compiler):
     headers = harness.generate(harness.shipped(), tmp_path)
     icd = harness.shipped()
-    destination = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"]["destinations"][0]
+    destination = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"][
+        "destinations"
+    ][0]
     source = tmp_path / "buffers.c"
     source.write_text(PROGRAM.replace("DESTINATION", str(destination)))
     flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
-    program = harness.compile(source, *flags, compiler=compiler, output=tmp_path / "buffers")
+    program = harness.compile(
+        source, *flags, compiler=compiler, output=tmp_path / "buffers"
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")

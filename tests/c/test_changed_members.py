@@ -1,4 +1,6 @@
-"""What C makes of members that a program changed after decoding: counts, and what says which members are there."""
+"""What C makes of members that a program changed after decoding: counts, and what says
+which members are there.
+"""
 
 from __future__ import annotations
 
@@ -74,10 +76,14 @@ int main(void)
 """
 
 
-def test_a_count_too_small_makes_no_huge_size_and_a_constant_is_right_once_it_is_there(tmp_path):
+def test_a_count_too_small_makes_no_huge_size_and_a_constant_is_right_once_it_is_there(
+    tmp_path,
+):
     (tmp_path / "demo.yaml").write_text(ICD, encoding="utf-8")
     folder = harness.generate(harness.read(tmp_path / "demo.yaml"), tmp_path / "c")
     (folder / "user.c").write_text(USER)
     options = (*harness.WARNINGS, *harness.SANITIZERS, f"-I{folder}")
-    program = harness.compile(folder / "user.c", "-std=c99", *options, output=folder / "user")
+    program = harness.compile(
+        folder / "user.c", "-std=c99", *options, output=folder / "user"
+    )
     assert subprocess.run([program]).returncode == 0

@@ -1,4 +1,6 @@
-"""The CMake module: `examples/cmake` builds, and builds again what a changed ICD concerns."""
+"""The CMake module: `examples/cmake` builds, and builds again what a changed ICD
+concerns.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,20 @@ import pytest
 from tests.c import harness
 
 ROOT = harness.HERE.parent.parent
-GENERATORS = [name for name, tool in (("Unix Makefiles", "make"), ("Ninja", "ninja")) if shutil.which(tool)]
+GENERATORS = [
+    name
+    for name, tool in (("Unix Makefiles", "make"), ("Ninja", "ninja"))
+    if shutil.which(tool)
+]
 
 pytestmark = pytest.mark.skipif(not shutil.which("cmake"), reason="needs cmake")
 
 
 def run(*command: str | Path, status: int = 0) -> str:
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "codegen")}
-    done = subprocess.run([*map(str, command)], capture_output=True, text=True, env=environment)
+    done = subprocess.run(
+        [*map(str, command)], capture_output=True, text=True, env=environment
+    )
     assert done.returncode == status, done.stdout + done.stderr
     return done.stdout + done.stderr
 
@@ -38,7 +46,10 @@ def test_the_example_decodes_a_frame(tmp_path, generator):
     assert run(tmp_path / "decode", "146", "2efb0a000000") == (
         "Estimated Attitude Angles: roll -12.34, pitch 0.1, yaw 0 deg\n"
     )
-    assert run(tmp_path / "decode", "146", "2efb", status=1) == "Estimated Attitude Angles has 6 bytes, 2 given\n"
+    assert (
+        run(tmp_path / "decode", "146", "2efb", status=1)
+        == "Estimated Attitude Angles has 6 bytes, 2 given\n"
+    )
     assert run(tmp_path / "decode", "77", "00", status=1) == "no telemetry 77\n"
 
 
@@ -77,11 +88,23 @@ messages:
 def test_the_command_line_says_where_the_module_is(tmp_path):
     """As the README has it: a project of somebody who installed icdgen."""
     folder = run(sys.executable, "-m", "icdgen", "--cmake-dir").strip()
-    (tmp_path / "wheel.yaml").write_text(NODE.format(name="wheel", include="", message="Speed", id=1))
+    (tmp_path / "wheel.yaml").write_text(
+        NODE.format(name="wheel", include="", message="Speed", id=1)
+    )
     (tmp_path / "CMakeLists.txt").write_text(INSTALLED)
-    (tmp_path / "main.c").write_text('#include "wheel.h"\nint main(void) { return 0; }\n')
+    (tmp_path / "main.c").write_text(
+        '#include "wheel.h"\nint main(void) { return 0; }\n'
+    )
     command = f"-DICDGEN_COMMAND={sys.executable};-m;icdgen"
-    run("cmake", f"-DCMAKE_MODULE_PATH={folder}", "-S", tmp_path, "-B", tmp_path / "build", command)
+    run(
+        "cmake",
+        f"-DCMAKE_MODULE_PATH={folder}",
+        "-S",
+        tmp_path,
+        "-B",
+        tmp_path / "build",
+        command,
+    )
     run("cmake", "--build", tmp_path / "build")
 
 
@@ -89,9 +112,15 @@ def test_the_command_line_says_where_the_module_is(tmp_path):
 def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
     icds = tmp_path / "my icd"
     icds.mkdir()
-    (tmp_path / "CMakeLists.txt").write_text(USER.format(module=(ROOT / "cmake" / "icdgen.cmake").as_posix()))
-    (icds / "device.yaml").write_text(NODE.format(name="device", include="shared.yaml", message="One", id=1))
-    (icds / "shared.yaml").write_text(NODE.format(name="shared", include="", message="Two", id=2))
+    (tmp_path / "CMakeLists.txt").write_text(
+        USER.format(module=(ROOT / "cmake" / "icdgen.cmake").as_posix())
+    )
+    (icds / "device.yaml").write_text(
+        NODE.format(name="device", include="shared.yaml", message="One", id=1)
+    )
+    (icds / "shared.yaml").write_text(
+        NODE.format(name="shared", include="", message="Two", id=2)
+    )
     (tmp_path / "one.c").write_text('#include "device/one.h"\ndevice_one_t one;\n')
     (tmp_path / "two.c").write_text('#include "shared/two.h"\nshared_two_t two;\n')
     build = tmp_path / "build"
@@ -105,7 +134,11 @@ def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
     shared = icds / "shared.yaml"
     shared.write_text(shared.read_text().replace("Level", "Height"))
     changed = run("cmake", "--build", build)
-    assert "Generating messages" in changed and "two.c" in changed and "one.c" not in changed
+    assert (
+        "Generating messages" in changed
+        and "two.c" in changed
+        and "one.c" not in changed
+    )
     same = run("cmake", "--build", build)
     assert "Generating" not in same and "one.c" not in same and "two.c" not in same
 
@@ -113,15 +146,24 @@ def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
 def test_a_wrong_icd_stops_the_build_and_says_why(tmp_path):
     icds = tmp_path / "my icd"
     icds.mkdir()
-    (tmp_path / "CMakeLists.txt").write_text(USER.format(module=(ROOT / "cmake" / "icdgen.cmake").as_posix()))
+    (tmp_path / "CMakeLists.txt").write_text(
+        USER.format(module=(ROOT / "cmake" / "icdgen.cmake").as_posix())
+    )
     (icds / "device.yaml").write_text(
-        NODE.format(name="device", include="", message="One", id=1).replace("bits: 8", "bits: 9")
+        NODE.format(name="device", include="", message="One", id=1).replace(
+            "bits: 8", "bits: 9"
+        )
     )
     for name in ("one.c", "two.c"):
         (tmp_path / name).write_text("int unused;\n")
     build = tmp_path / "build"
     configure(tmp_path, build, GENERATORS[0])
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "codegen")}
-    done = subprocess.run(["cmake", "--build", build], capture_output=True, text=True, env=environment)
+    done = subprocess.run(
+        ["cmake", "--build", build], capture_output=True, text=True, env=environment
+    )
     assert done.returncode != 0
-    assert "device.yaml:" in done.stdout + done.stderr and "Level" in done.stdout + done.stderr
+    assert (
+        "device.yaml:" in done.stdout + done.stderr
+        and "Level" in done.stdout + done.stderr
+    )

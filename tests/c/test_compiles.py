@@ -1,4 +1,6 @@
-"""All headers compile without a warning: as C and C++, with gcc and clang, for hosts and microcontrollers."""
+"""All headers compile without a warning: as C and C++, with gcc and clang, for hosts
+and microcontrollers.
+"""
 
 from __future__ import annotations
 
@@ -33,19 +35,33 @@ def test_without_a_warning(headers, compiler, standard):
     harness.compile_all(harness.shipped(), headers, compiler, standard)
 
 
-@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
-@pytest.mark.parametrize("option", ["-DICDGEN_PORTABLE", "-O2", "-Os", "-fsanitize=address,undefined"])
+@pytest.mark.parametrize(
+    ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
+)
+@pytest.mark.parametrize(
+    "option", ["-DICDGEN_PORTABLE", "-O2", "-Os", "-fsanitize=address,undefined"]
+)
 def test_without_a_warning_in_other_settings(headers, compiler, standard, option):
     harness.compile_all(harness.shipped(), headers, compiler, standard, option, "-c")
 
 
 @pytest.mark.parametrize("option", ["-O1", "-O2", "-O3", "-Os"])
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_without_a_warning_of_the_optimiser_where_functions_are_used(headers, tmp_path, compiler, option):
+def test_without_a_warning_of_the_optimiser_where_functions_are_used(
+    headers, tmp_path, compiler, option
+):
     source = tmp_path / "used.c"
     source.write_text(harness.wrappers(harness.shipped()))
     more = ("-Wstringop-overflow=4", "-Warray-bounds=2") if compiler == "gcc" else ()
-    options = ("-std=c99", option, "-D_FORTIFY_SOURCE=2", *harness.WARNINGS, *more, "-c", f"-I{headers}")
+    options = (
+        "-std=c99",
+        option,
+        "-D_FORTIFY_SOURCE=2",
+        *harness.WARNINGS,
+        *more,
+        "-c",
+        f"-I{headers}",
+    )
     harness.compile(source, *options, compiler=compiler)
 
 
@@ -57,28 +73,50 @@ def test_every_header_stands_alone(headers):
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_no_double_needs_no_floating_point_registers(headers, compiler):
     harness.compile_all(
-        harness.shipped(), headers, compiler, "c99", "-DICDGEN_NO_DOUBLE", "-mgeneral-regs-only", "-O2", "-c"
+        harness.shipped(),
+        headers,
+        compiler,
+        "c99",
+        "-DICDGEN_NO_DOUBLE",
+        "-mgeneral-regs-only",
+        "-O2",
+        "-c",
     )
 
 
 def test_no_double_leaves_no_arithmetic_behind(headers, tmp_path):
     source = tmp_path / "all.c"
-    source.write_text("".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes))
+    source.write_text(
+        "".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes)
+    )
     done = subprocess.run(
-        ["gcc", "-std=c99", "-E", "-P", "-DICDGEN_NO_DOUBLE", f"-I{headers}", source], capture_output=True, text=True
+        ["gcc", "-std=c99", "-E", "-P", "-DICDGEN_NO_DOUBLE", f"-I{headers}", source],
+        capture_output=True,
+        text=True,
     )
     without_members = re.sub(r"(?m)^ *(?:double|float) \w+;$", "", done.stdout)
     assert without_members != done.stdout
-    bits = re.findall(r"(?:double|float) \*value|\b(?:double|float) icd_f\d\d_of", done.stdout)  # copied, not computed
-    compared = re.findall(r"icd_is_special_f\d\d\((?:double|float) value, (?:double|float) special\)", done.stdout)
+    bits = re.findall(
+        r"(?:double|float) \*value|\b(?:double|float) icd_f\d\d_of", done.stdout
+    )  # copied, not computed
+    compared = re.findall(
+        r"icd_is_special_f\d\d\((?:double|float) value, (?:double|float) special\)",
+        done.stdout,
+    )
     everywhere = re.findall(r"\b(?:double|float)\b", without_members)
     assert len(bits) + 2 * len(compared) == len(everywhere) == 10
 
 
-@pytest.mark.parametrize("shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"])
-def test_clang_has_nothing_to_say_with_every_warning_there_is(headers, tmp_path, shared):
+@pytest.mark.parametrize(
+    "shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"]
+)
+def test_clang_has_nothing_to_say_with_every_warning_there_is(
+    headers, tmp_path, shared
+):
     source = tmp_path / "everything.c"
-    source.write_text("".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes))
+    source.write_text(
+        "".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes)
+    )
     wide = tmp_path / "wide.c"  # no formula of the shipped ICDs needs it
     wide.write_text(f'#include "{ROOT / "runtime" / "c" / "icdgen_wide.h"}"\n')
     flags = (
@@ -90,14 +128,27 @@ def test_clang_has_nothing_to_say_with_every_warning_there_is(headers, tmp_path,
     )
     for one in (source, wide, *(headers.rglob("*.c") if shared else ())):
         if one.name != "all.c":
-            harness.compile(one, *flags, *shared, "-fsyntax-only", f"-I{headers}", compiler="clang")
+            harness.compile(
+                one, *flags, *shared, "-fsyntax-only", f"-I{headers}", compiler="clang"
+            )
 
 
 @pytest.mark.skipif(not AVR, reason="needs gcc-avr and avr-libc")
-@pytest.mark.parametrize("option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE", "-DICDGEN_SHARED"])
+@pytest.mark.parametrize(
+    "option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE", "-DICDGEN_SHARED"]
+)
 def test_without_a_warning_where_int_has_16_bits(headers, option):
     """AVR: double may have 32 bits there, of which -Wdouble-promotion knows nothing."""
-    harness.compile_all(harness.shipped(), headers, "avr-gcc", "c99", "-mmcu=atmega2560", "-Os", "-c", option)
+    harness.compile_all(
+        harness.shipped(),
+        headers,
+        "avr-gcc",
+        "c99",
+        "-mmcu=atmega2560",
+        "-Os",
+        "-c",
+        option,
+    )
 
 
 @pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")
@@ -105,15 +156,23 @@ def test_without_a_warning_where_int_has_16_bits(headers, option):
 @pytest.mark.parametrize("option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE"])
 def test_cortex_m(headers, cpu, option):
     cpu_options = (f"-mcpu={cpu}", "-mthumb", "-Os", "-c", "-ffreestanding", option)
-    harness.compile_all(harness.shipped(), headers, "arm-none-eabi-gcc", "c99", *cpu_options)
+    harness.compile_all(
+        harness.shipped(), headers, "arm-none-eabi-gcc", "c99", *cpu_options
+    )
 
 
 @pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")
 def test_cortex_m4_needs_at_most_12_bytes_of_code_a_field(headers, tmp_path):
     source = tmp_path / "size.c"
     source.write_text(harness.wrappers(harness.shipped()))
-    fields = sum(len(target.message.fields) for target in harness.targets(harness.shipped()))
+    fields = sum(
+        len(target.message.fields) for target in harness.targets(harness.shipped())
+    )
     options = ("-mcpu=cortex-m4", "-mthumb", "-Os", "-std=c99", "-c", f"-I{headers}")
-    harness.compile(source, *options, compiler="arm-none-eabi-gcc", output=tmp_path / "size.o")
-    text = subprocess.run(["arm-none-eabi-size", tmp_path / "size.o"], capture_output=True, text=True).stdout
+    harness.compile(
+        source, *options, compiler="arm-none-eabi-gcc", output=tmp_path / "size.o"
+    )
+    text = subprocess.run(
+        ["arm-none-eabi-size", tmp_path / "size.o"], capture_output=True, text=True
+    ).stdout
     assert int(text.splitlines()[1].split()[0]) <= 12 * fields

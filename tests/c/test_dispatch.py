@@ -1,4 +1,6 @@
-"""From an id to the message, for every node and direction, and what is said to ids that no message has."""
+"""From an id to the message, for every node and direction, and what is said to ids that
+no message has.
+"""
 
 from __future__ import annotations
 
@@ -79,13 +81,27 @@ def test_every_id_of_every_node_leads_to_its_message(tmp_path):
     checks, names, ids = [], [], 0
     for node in icd.nodes:
         messages = icd.messages_of(node)
-        for kind, id_of in ((TELEMETRY, "telemetry_id"), (TELECOMMAND, "telecommand_id")):
-            rows = sorted((getattr(m, id_of), m.name, m.length) for m in messages if getattr(m, id_of) is not None)
+        for kind, id_of in (
+            (TELEMETRY, "telemetry_id"),
+            (TELECOMMAND, "telecommand_id"),
+        ):
+            rows = sorted(
+                (getattr(m, id_of), m.name, m.length)
+                for m in messages
+                if getattr(m, id_of) is not None
+            )
             if rows:
                 ids += len(rows) if node.name != "common" else 0
                 names.append(f"{node.name}_{kind}")
-                text = ", ".join(f"{{ {id}, {literal(name)}, {length} }}" for id, name, length in rows)
-                checks.append(CHECK.format(name=names[-1], rows=text, longest=max(r[2] for r in rows) + 1))
+                text = ", ".join(
+                    f"{{ {id}, {literal(name)}, {length} }}"
+                    for id, name, length in rows
+                )
+                checks.append(
+                    CHECK.format(
+                        name=names[-1], rows=text, longest=max(r[2] for r in rows) + 1
+                    )
+                )
     source = tmp_path / "dispatch.c"
     source.write_text(
         PROGRAM.format(
@@ -94,7 +110,14 @@ def test_every_id_of_every_node_leads_to_its_message(tmp_path):
             calls="\n".join(f"    check_{name}();" for name in names),
         )
     )
-    program = harness.compile(source, "-std=c99", "-O1", *harness.SANITIZERS, f"-I{tmp_path}", output=tmp_path / "d")
+    program = harness.compile(
+        source,
+        "-std=c99",
+        "-O1",
+        *harness.SANITIZERS,
+        f"-I{tmp_path}",
+        output=tmp_path / "d",
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert ids > 209  # all wire ids, those of `common` under each node that includes it
@@ -104,9 +127,14 @@ def test_ids_that_fill_more_than_a_byte_get_the_wider_type():
     icd = harness.shipped()
     node = icd.node("cubeacp")
     first, *others = (message for message in node.messages if message.id is not None)
-    wide = dataclasses.replace(node, messages=(dataclasses.replace(first, id=300), *others))
+    wide = dataclasses.replace(
+        node, messages=(dataclasses.replace(first, id=300), *others)
+    )
     wider = Icd(tuple(wide if one is node else one for one in icd.nodes))
     for known, bits in ((icd, 8), (wider, 16)):
-        files = {str(path): text for path, text in CBackend().files(known, harness._renderer())}
+        files = {
+            str(path): text
+            for path, text in CBackend().files(known, harness._renderer())
+        }
         types = set(re.findall(r"uint\d+_t (?=id[;,)])", files["cubeacp.h"]))
         assert types == {f"uint{bits}_t "}

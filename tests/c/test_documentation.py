@@ -12,16 +12,29 @@ from icdgen.describe.comments import words
 from tests.c import harness
 from tests.icd import hostile_words
 
-CHECK = ("clang", "-std=c11", "-fsyntax-only", "-Wdocumentation", "-Werror", "-fcomment-block-commands=file")
+CHECK = (
+    "clang",
+    "-std=c11",
+    "-fsyntax-only",
+    "-Wdocumentation",
+    "-Werror",
+    "-fcomment-block-commands=file",
+)
 
 
 @pytest.mark.parametrize("which", ["shipped", "hostile"])
 def test_clang_has_nothing_to_say_about_the_documentation(which, tmp_path):
-    icd = harness.shipped() if which == "shipped" else harness.read(hostile_words.write(tmp_path))
+    icd = (
+        harness.shipped()
+        if which == "shipped"
+        else harness.read(hostile_words.write(tmp_path))
+    )
     folder = harness.generate(icd, tmp_path / "c")
     source = folder / "all.c"
     source.write_text("".join(f'#include "{node.name}.h"\n' for node in icd.nodes))
-    done = subprocess.run([*CHECK, f"-I{folder}", str(source)], capture_output=True, text=True)
+    done = subprocess.run(
+        [*CHECK, f"-I{folder}", str(source)], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr[:4000]
 
 
@@ -50,12 +63,18 @@ def doxygen(folder):
     """What Doxygen has to say about a folder; its pages lie in ``doxygen/html``."""
     configuration = folder / "Doxyfile"
     configuration.write_text(DOXYGEN.format(folder=folder))
-    return subprocess.run(["doxygen", configuration], capture_output=True, text=True, check=True).stderr
+    return subprocess.run(
+        ["doxygen", configuration], capture_output=True, text=True, check=True
+    ).stderr
 
 
 @pytest.mark.parametrize("which", ["shipped", "hostile"])
 def test_doxygen_builds_a_site_without_a_warning(which, tmp_path):
-    icd = harness.shipped() if which == "shipped" else harness.read(hostile_words.write(tmp_path))
+    icd = (
+        harness.shipped()
+        if which == "shipped"
+        else harness.read(hostile_words.write(tmp_path))
+    )
     folder = harness.generate(icd, tmp_path / "c")
     assert doxygen(folder) == ""
     page = "estimated__attitude__angles_8h.html" if which == "shipped" else "index.html"
@@ -63,7 +82,9 @@ def test_doxygen_builds_a_site_without_a_warning(which, tmp_path):
 
 
 def test_doxygen_would_complain(tmp_path):
-    (tmp_path / "bad.h").write_text("/** @file */\n/** @param other what there is not */\nint bad(int one);\n")
+    (tmp_path / "bad.h").write_text(
+        "/** @file */\n/** @param other what there is not */\nint bad(int one);\n"
+    )
     assert "other" in doxygen(tmp_path)
 
 
@@ -71,5 +92,7 @@ def test_doxygen_would_complain(tmp_path):
 def test_without_its_backslashes_a_comment_says_what_the_icd_says(word):
     text = comment([words(word)]).removeprefix("/** ").removesuffix(" */")
     said = re.sub(r"\\(.)", r"\1", text)
-    assert said.replace(" ", "") == words(word).replace(" ", "")  # comment delimiters and trigraphs are taken apart
+    assert said.replace(" ", "") == words(word).replace(
+        " ", ""
+    )  # comment delimiters and trigraphs are taken apart
     assert not re.search(r"(?<!\\)(\\\\)*[@]|(?<!\\)<[A-Za-z/!]", text)

@@ -1,4 +1,6 @@
-"""The guide to drivers in C: its first lines compile, and its main loop runs on a UART driver of the test."""
+"""The guide to drivers in C: its first lines compile, and its main loop runs on a UART
+driver of the test.
+"""
 
 from __future__ import annotations
 
@@ -54,15 +56,24 @@ def program(tmp_path_factory):
     headers = harness.generate(harness.shipped(), folder)
     source = folder / "driver.c"
     source.write_text(DRIVER % EXAMPLE)
-    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", *harness.WARNINGS, *harness.SANITIZERS)
-    return harness.compile(source, *flags, f"-I{headers}", f"-I{EXAMPLE.parent}", output=folder / "loop")
+    flags = (
+        "-std=c99",
+        "-D_POSIX_C_SOURCE=200809L",
+        *harness.WARNINGS,
+        *harness.SANITIZERS,
+    )
+    return harness.compile(
+        source, *flags, f"-I{headers}", f"-I{EXAMPLE.parent}", output=folder / "loop"
+    )
 
 
 def test_the_loop_requests_an_angle_each_second(program):
     angle = ("--set", "Estimated Attitude Angles", "roll=12.5")
     with (
         simulator("--node", "cubeacp", "--tcp", "0", *angle) as (place, _),
-        subprocess.Popen([program, str(urlsplit(place).port)], stdout=subprocess.PIPE, text=True) as process,
+        subprocess.Popen(
+            [program, str(urlsplit(place).port)], stdout=subprocess.PIPE, text=True
+        ) as process,
     ):
         lines = [process.stdout.readline() for _ in range(2)]
         process.kill()
@@ -70,7 +81,9 @@ def test_the_loop_requests_an_angle_each_second(program):
 
 
 def test_the_guide_shows_the_loop():
-    assert EXAMPLE.read_text(encoding="utf-8").partition("*/\n")[2] in documents.text("guides/driver-in-c")
+    assert EXAMPLE.read_text(encoding="utf-8").partition("*/\n")[2] in documents.text(
+        "guides/driver-in-c"
+    )
 
 
 def test_the_first_lines_of_the_guide_decode_and_encode(tmp_path):
@@ -82,7 +95,18 @@ def test_the_first_lines_of_the_guide_decode_and_encode(tmp_path):
         f"bool use(uint8_t id, const uint8_t *data, size_t length)\n{{\n{body}return temperature > raw && buffer[0] == 1u;\n}}\n"
     )
     for command in (("init", "heater"), ("--lang", "c")):
-        subprocess.run([sys.executable, "-m", "icdgen", *command], cwd=tmp_path, check=True, capture_output=True)
+        subprocess.run(
+            [sys.executable, "-m", "icdgen", *command],
+            cwd=tmp_path,
+            check=True,
+            capture_output=True,
+        )
     harness.compile(
-        source, "-std=c99", "-Wall", "-Wextra", "-c", f"-I{tmp_path / 'generated' / 'c'}", output=tmp_path / "o"
+        source,
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-c",
+        f"-I{tmp_path / 'generated' / 'c'}",
+        output=tmp_path / "o",
     )

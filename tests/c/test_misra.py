@@ -1,4 +1,6 @@
-"""Every violation of MISRA C:2012 that cppcheck finds is in the record, with a reason, and nothing else is."""
+"""Every violation of MISRA C:2012 that cppcheck finds is in the record, with a reason,
+and nothing else is.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +21,17 @@ def now():
 
 def test_the_record_is_what_cppcheck_finds(now):
     differences = misra.differences(misra.record(), now)
-    assert differences == [], "mend the code, or give the reason in runtime/c/misra.yaml: python -m tests.c.misra"
+    assert (
+        differences == []
+    ), "mend the code, or give the reason in runtime/c/misra.yaml: python -m tests.c.misra"
 
 
 def test_the_runtime_and_every_template_were_looked_at(now):
-    assert now["15.5"]["runtime"].keys() >= {"wire/client.c", "wire/upload.c", "support/wide.h"}
+    assert now["15.5"]["runtime"].keys() >= {
+        "wire/client.c",
+        "wire/upload.c",
+        "support/wide.h",
+    }
     assert set(now["2.5"]["generated"]) | set(now["15.5"]["generated"]) == {
         "client.h.j2", "enums.h.j2", "link.c.j2", "link.h.j2", "message.h.j2", "node.h.j2"
     }  # fmt: skip
@@ -32,7 +40,9 @@ def test_the_runtime_and_every_template_were_looked_at(now):
 def test_every_entry_says_why_it_stays():
     for one in misra.record():
         assert one["verdict"] in VERDICTS and one["category"] in CATEGORIES, one["rule"]
-        assert len(one["reason"].split()) > 4 and one["reason"].endswith("."), one["rule"]
+        assert len(one["reason"].split()) > 4 and one["reason"].endswith("."), one[
+            "rule"
+        ]
 
 
 def test_a_violation_that_is_new_is_noticed(tmp_path):
@@ -45,7 +55,9 @@ def test_a_violation_that_is_new_is_noticed(tmp_path):
     program.write_text(f'#include "{source}"\n')
     found = misra.places(misra.findings(program), tmp_path)
     assert found["17.2"] == {"runtime": {}, "generated": ["message.h.j2"]}
-    assert "17.2: message.h.j2 is not in the record" in misra.differences(misra.record(), found)
+    assert "17.2: message.h.j2 is not in the record" in misra.differences(
+        misra.record(), found
+    )
 
 
 def test_an_entry_that_nothing_breaks_any_more_is_noticed():
@@ -54,4 +66,7 @@ def test_an_entry_that_nothing_breaks_any_more_is_noticed():
     assert misra.differences(recorded, found) == []
     del found["19.2"]
     found["15.5"]["runtime"]["wire/uart.c"] -= 1
-    assert [line.split(":")[0] for line in misra.differences(recorded, found)] == ["15.5", "19.2"]
+    assert [line.split(":")[0] for line in misra.differences(recorded, found)] == [
+        "15.5",
+        "19.2",
+    ]

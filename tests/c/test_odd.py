@@ -27,18 +27,24 @@ def test_portable_code_agrees_too(icd, tmp_path):
     assert_no_differences([build(icd, tmp_path, "-DICDGEN_PORTABLE")])
 
 
-@pytest.mark.skipif(not shutil.which("qemu-s390x"), reason="needs qemu-user and gcc-s390x-linux-gnu")
+@pytest.mark.skipif(
+    not shutil.which("qemu-s390x"), reason="needs qemu-user and gcc-s390x-linux-gnu"
+)
 def test_big_endian_machines_agree_too(icd, tmp_path):
     harness.generate(icd, tmp_path)
     source = tmp_path / "frames.c"
     source.write_text(harness.frames_source(icd))
     options = ("-std=c99", "-O2", "-static", f"-I{tmp_path}", f"-I{harness.HERE}")
-    program = harness.compile(source, *options, compiler="s390x-linux-gnu-gcc", output=tmp_path / "frames")
+    program = harness.compile(
+        source, *options, compiler="s390x-linux-gnu-gcc", output=tmp_path / "frames"
+    )
     assert_no_differences(["qemu-s390x", program])
 
 
 def assert_no_differences(program: list[str | Path]) -> None:
-    done = subprocess.run([*program, "random", "200", "11"], capture_output=True, text=True)
+    done = subprocess.run(
+        [*program, "random", "200", "11"], capture_output=True, text=True
+    )
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
 
 
@@ -50,9 +56,21 @@ def test_text_from_the_icd_breaks_out_of_nothing(icd, tmp_path, compiler, standa
 
 def test_names_of_the_manual_come_back_to_the_letter(icd, tmp_path):
     harness.generate(icd, tmp_path)
-    calls = "".join(f"    puts(hostile_telemetry_name({n})); putchar(1);\n" for n in range(len(odd.HOSTILE)))
+    calls = "".join(
+        f"    puts(hostile_telemetry_name({n})); putchar(1);\n"
+        for n in range(len(odd.HOSTILE))
+    )
     source = tmp_path / "names.c"
-    source.write_text(f'#include "hostile.h"\n#include <stdio.h>\nint main(void)\n{{\n{calls}    return 0;\n}}\n')
-    program = harness.compile(source, "-std=c99", "-Werror", "-Wall", f"-I{tmp_path}", output=tmp_path / "names")
+    source.write_text(
+        f'#include "hostile.h"\n#include <stdio.h>\nint main(void)\n{{\n{calls}    return 0;\n}}\n'
+    )
+    program = harness.compile(
+        source,
+        "-std=c99",
+        "-Werror",
+        "-Wall",
+        f"-I{tmp_path}",
+        output=tmp_path / "names",
+    )
     out = subprocess.run([program], capture_output=True).stdout.decode("utf-8")
     assert out.split("\n\x01")[:-1] == odd.HOSTILE

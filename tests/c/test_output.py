@@ -1,4 +1,6 @@
-"""What the files look like, which of them change, and that all names they declare are known to the name rules."""
+"""What the files look like, which of them change, and that all names they declare are
+known to the name rules.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ from tests.c import harness, odd
 
 
 def files(icd: Icd) -> dict[str, str]:
-    return {str(path): text for path, text in CBackend().files(icd, harness._renderer())}
+    return {
+        str(path): text for path, text in CBackend().files(icd, harness._renderer())
+    }
 
 
 @pytest.fixture(scope="module")
@@ -28,14 +32,18 @@ def shipped() -> dict[str, str]:
     return files(harness.shipped())
 
 
-def without_a_field(icd: Icd, node_name: str, message_name: str, field_name: str) -> Icd:
+def without_a_field(
+    icd: Icd, node_name: str, message_name: str, field_name: str
+) -> Icd:
     def fewer(message):
         fixed = tuple(one for one in message.layout.fixed if one.name != field_name)
         layout = dataclasses.replace(message.layout, fixed=fixed)
         return dataclasses.replace(message, layout=layout)
 
     def changed(node):
-        messages = tuple(fewer(m) if m.name == message_name else m for m in node.messages)
+        messages = tuple(
+            fewer(m) if m.name == message_name else m for m in node.messages
+        )
         return dataclasses.replace(node, messages=messages, digest="0" * 64)
 
     return Icd(tuple(changed(n) if n.name == node_name else n for n in icd.nodes))
@@ -47,15 +55,23 @@ def test_a_message_or_an_enumeration_is_in_a_file_of_its_node(shipped):
     enums = sum(bool(node.enums) for node in icd.nodes)
     links = sum(bool(icd.protocol_of(node)) for node in icd.nodes)
     assert len(shipped) == 3 + len(icd.nodes) + enums + messages + 3 * links
-    assert "cubeacp/estimated_attitude_angles.h" in shipped and "cubeacp.h" in shipped and "icdgen.h" in shipped
+    assert (
+        "cubeacp/estimated_attitude_angles.h" in shipped
+        and "cubeacp.h" in shipped
+        and "icdgen.h" in shipped
+    )
 
 
 def test_deleting_a_field_changes_only_its_message_and_the_digest_of_its_node(shipped):
-    icd = without_a_field(harness.shipped(), "cubeacp", "Commanded Attitude Angles", "Commanded Yaw Angle")
+    icd = without_a_field(
+        harness.shipped(), "cubeacp", "Commanded Attitude Angles", "Commanded Yaw Angle"
+    )
     changed = {path for path, text in files(icd).items() if shipped[path] != text}
     assert changed == {"cubeacp/commanded_attitude_angles.h", "cubeacp.h"}
     digest = re.compile(r'_DIGEST "[0-9a-f]{16}"')
-    assert digest.sub("", files(icd)["cubeacp.h"]) == digest.sub("", shipped["cubeacp.h"])
+    assert digest.sub("", files(icd)["cubeacp.h"]) == digest.sub(
+        "", shipped["cubeacp.h"]
+    )
 
 
 def test_output_is_the_same_every_time_and_says_nothing_of_the_machine(shipped):
@@ -63,7 +79,12 @@ def test_output_is_the_same_every_time_and_says_nothing_of_the_machine(shipped):
     for path, text in shipped.items():
         assert text.endswith("\n") and not text.endswith("\n\n"), path
         assert not re.search(r"[ \t]+$|\t|\r|\n\n\n", text, re.M), path
-        assert "/work/" not in text and "/home/" not in text and "Copyright" not in text and "SPDX" not in text
+        assert (
+            "/work/" not in text
+            and "/home/" not in text
+            and "Copyright" not in text
+            and "SPDX" not in text
+        )
 
 
 def test_lines_keep_to_the_width_where_names_allow_it(shipped):
@@ -82,7 +103,13 @@ def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
         target.write_text(text, encoding="utf-8")
     style = f"--style=file:{harness.HERE.parent.parent / '.clang-format'}"
     done = subprocess.run(
-        ["clang-format", style, "--dry-run", "-Werror", *map(str, sorted(tmp_path.rglob("*.[ch]")))],
+        [
+            "clang-format",
+            style,
+            "--dry-run",
+            "-Werror",
+            *map(str, sorted(tmp_path.rglob("*.[ch]"))),
+        ],
         capture_output=True,
         text=True,
     )
@@ -92,7 +119,11 @@ def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
 @pytest.mark.parametrize("which", ["shipped", "odd", "links"])
 def test_every_declared_name_is_known_to_the_name_rules(tmp_path, which):
     links = [harness.HERE.parent.parent / "examples" / "links"]
-    icd = harness.shipped() if which == "shipped" else harness.read(*(odd.write(tmp_path) if which == "odd" else links))
+    icd = (
+        harness.shipped()
+        if which == "shipped"
+        else harness.read(*(odd.write(tmp_path) if which == "odd" else links))
+    )
     known = {one.text for one in CBackend().identifiers(icd)}
     undeclared = []
     for path, text in files(icd).items():
@@ -100,12 +131,16 @@ def test_every_declared_name_is_known_to_the_name_rules(tmp_path, which):
             continue
         code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
         names = re.findall(r"^#define (\w+)", code, re.M)
-        names += re.findall(r"^(?:static inline|ICDGEN_API) [\w \n*]*?(\w+)\(", code, re.M)
+        names += re.findall(
+            r"^(?:static inline|ICDGEN_API) [\w \n*]*?(\w+)\(", code, re.M
+        )
         names += re.findall(r"^(?:typedef \w+|\}) (\w+);", code, re.M)
         names += re.findall(r"^    (\w+) = \w+,?$", code, re.M)
         for body in re.findall(r"^typedef struct \{(.*?)^\}", code, re.M | re.S):
             names += [
-                n for n in re.findall(r"(\w+)(?:\[\d+\])?;", body) if n not in ("id", "as", "empty", "client", "sender")
+                n
+                for n in re.findall(r"(\w+)(?:\[\d+\])?;", body)
+                if n not in ("id", "as", "empty", "client", "sender")
             ]
         undeclared += [f"{path}: {name}" for name in names if name not in known]
         assert path in known
@@ -120,7 +155,11 @@ def test_no_two_names_of_the_shipped_icds_clash():
 
 
 def test_no_two_names_of_the_shipped_icds_are_the_same_in_the_63_characters_that_c_guarantees():
-    names = {one.text for one in CBackend().identifiers(harness.shipped()) if one.scope == FILE}
+    names = {
+        one.text
+        for one in CBackend().identifiers(harness.shipped())
+        if one.scope == FILE
+    }
     assert len(names) > 3000 and len({name[:63] for name in names}) == len(names)
 
 
@@ -146,14 +185,23 @@ def test_long_comments_are_wrapped():
     assert max(map(len, block.splitlines())) <= 120
 
 
-@pytest.mark.parametrize("text", [*odd.HOSTILE, "", "?", "???", '"', "\\", "\\\\n", "\0001", "\u20acuro"])
+@pytest.mark.parametrize(
+    "text", [*odd.HOSTILE, "", "?", "???", '"', "\\", "\\\\n", "\0001", "\u20acuro"]
+)
 def test_string_literals_hold_the_text(tmp_path, text):
     source = tmp_path / "text.c"
     source.write_text(
         f"#include <stdio.h>\nint main(void)\n{{\n    static const char text[] = {literal(text)};\n"
         f"    fwrite(text, 1, sizeof text - 1, stdout);\n    return 0;\n}}\n"
     )
-    program = harness.compile(source, "-std=c99", "-Wall", "-Werror", "-Wno-trigraphs", output=tmp_path / "text")
+    program = harness.compile(
+        source,
+        "-std=c99",
+        "-Wall",
+        "-Werror",
+        "-Wno-trigraphs",
+        output=tmp_path / "text",
+    )
     assert subprocess.run([program], capture_output=True).stdout.decode() == text
 
 
@@ -185,11 +233,30 @@ def test_the_name_of_the_node_stands_once(tmp_path):
     icd = harness.read(tmp_path / "pump.yaml")
     texts = files(icd)
     enums, status = texts["pump/enums.h"], texts["pump/pump_status.h"]
-    assert "typedef uint8_t pump_state_t;" in enums and "PUMP_STATE_RUNNING = 1" in enums
-    assert "pump_status_decode(" in status and "PUMP_STATUS_ID" in status and "pump_state_t state;" in status
-    assert "pump_pump_set_level_v(" in texts["pump/pump.h"] and "pump_pumped_volume_t" in texts["pump/pumped_volume.h"]
-    assert not [path for path, text in texts.items() if re.search("pump_pump_st", text, re.IGNORECASE)]
+    assert (
+        "typedef uint8_t pump_state_t;" in enums and "PUMP_STATE_RUNNING = 1" in enums
+    )
+    assert (
+        "pump_status_decode(" in status
+        and "PUMP_STATUS_ID" in status
+        and "pump_state_t state;" in status
+    )
+    assert (
+        "pump_pump_set_level_v(" in texts["pump/pump.h"]
+        and "pump_pumped_volume_t" in texts["pump/pumped_volume.h"]
+    )
+    assert not [
+        path
+        for path, text in texts.items()
+        if re.search("pump_pump_st", text, re.IGNORECASE)
+    ]
     harness.compile_all(icd, harness.generate(icd, tmp_path / "c"), "gcc", "c99")
-    (tmp_path / "pump.yaml").write_text(STUTTER + "  - {name: Status, id: 4, kind: telemetry, length: 0}\n")
+    (tmp_path / "pump.yaml").write_text(
+        STUTTER + "  - {name: Status, id: 4, kind: telemetry, length: 0}\n"
+    )
     (clash,) = load([tmp_path / "pump.yaml"]).findings
-    assert clash.code == "ICD071" and "`PUMP_STATUS_" in clash.message and clash.message.endswith("in c")
+    assert (
+        clash.code == "ICD071"
+        and "`PUMP_STATUS_" in clash.message
+        and clash.message.endswith("in c")
+    )

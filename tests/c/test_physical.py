@@ -1,6 +1,8 @@
-"""Physical values are the correctly rounded doubles of the exact ones, and setting them finds the nearest raw value.
+"""Physical values are the correctly rounded doubles of the exact ones, and setting them
+finds the nearest raw value.
 
-Exhaustive for fields of up to 16 bits; extremes and random values for wider ones. The reference codec judges.
+Exhaustive for fields of up to 16 bits; extremes and random values for wider ones. The
+reference codec judges.
 """
 
 from __future__ import annotations
@@ -39,18 +41,32 @@ def test_every_scaled_field_of_the_shipped_icds(tmp_path):
 def test_odd_scales_with_any_arithmetic_of_the_compiler(tmp_path, option):
     folder = tmp_path / "icd"
     folder.mkdir()
-    assert compare(harness.read(*odd.write(folder)), tmp_path, option, wide=300) > 100_000
+    assert (
+        compare(harness.read(*odd.write(folder)), tmp_path, option, wide=300) > 100_000
+    )
 
 
 def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
     """The number of comparisons; fails on any difference."""
-    scaled = [f for node in describe(icd).nodes for message in node.messages for f in message.fields if f.steps]
+    scaled = [
+        f
+        for node in describe(icd).nodes
+        for message in node.messages
+        for f in message.fields
+        if f.steps
+    ]
     harness.generate(icd, folder)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(harness.HERE), trim_blocks=True, lstrip_blocks=True)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(harness.HERE),
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     template = environment.get_template("physical.c.j2")
     nodes = [node.name for node in icd.nodes]
     source = folder / "physical.c"
-    source.write_text(template.render(nodes=nodes, fields=[row(field) for field in scaled]))
+    source.write_text(
+        template.render(nodes=nodes, fields=[row(field) for field in scaled])
+    )
     program = harness.compile(
         source, "-std=c99", "-O2", *options, "-fsanitize=undefined", "-fno-sanitize-recover=all",
         f"-I{folder}", output=folder / "physical",
@@ -58,10 +74,14 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
     alike = defaultdict(list)
     for number, one in enumerate(scaled):
         alike[one.steps, one.model.bits, one.storage].append(number)
-    with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+    with subprocess.Popen(
+        [program], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
         for numbers in alike.values():
             field = scaled[numbers[0]].model
-            process.stdin.write(struct.pack(f"<H{len(numbers)}H", len(numbers), *numbers))
+            process.stdin.write(
+                struct.pack(f"<H{len(numbers)}H", len(numbers), *numbers)
+            )
             for table in tables(field, wide):
                 process.stdin.write(table)
         out = process.communicate()[0].decode()
@@ -88,13 +108,21 @@ def row(field: FieldDescription) -> dict[str, object]:
 
 
 def _survives(field: NodePlace) -> bool:
-    """Whether doubles tell all physical values apart, so that the way back leads to the same raw value."""
-    ends = (field.scale.physical(raw) / field.scale.factor for raw in (field.raw_min, field.raw_max))
+    """Whether doubles tell all physical values apart, so that the way back leads to the
+    same raw value.
+    """
+    ends = (
+        field.scale.physical(raw) / field.scale.factor
+        for raw in (field.raw_min, field.raw_max)
+    )
     return max(map(abs, ends)) < 2**52
 
 
 def tables(field: NodePlace, wide: int):
-    """What the test program compares with, as bytes; ``wide`` values of a field of more than 16 bits."""
+    """What the test program compares with, as bytes.
+
+    ``wide`` values of a field of more than 16 bits.
+    """
     source = random.Random(f"{field.scale}{field.bits}")
     raws = raw_values(field, wide, source)
     q = lcm(field.scale.factor.denominator, field.scale.offset.denominator)
@@ -104,23 +132,42 @@ def tables(field: NodePlace, wide: int):
         assert codec.physical_double(field, raw) == (raw * p + c) / q
     yield table(words(raws), doubles.tobytes())
     values = physical_values(field, wide // 10, source)
-    yield table(array("d", values).tobytes(), words([set_by_codec(field, value) for value in values]))
-    per = next((per for per in (1000, 10**6) if (per * p) % q == (per * c) % q == 0), None)
+    yield table(
+        array("d", values).tobytes(),
+        words([set_by_codec(field, value) for value in values]),
+    )
+    per = next(
+        (per for per in (1000, 10**6) if (per * p) % q == (per * c) % q == 0), None
+    )
     whole = [(raw * p + c) * per // q for raw in raws] if per else []
     if not per or not all(-(2**63) <= value < 2**63 for value in whole):
         yield table(b"", b"")
         yield table(b"", b"")
         return
     yield table(words(raws), words(whole))
-    small = all(-(2**31) <= field.scale.physical(end) * per < 2**31 for end in storage_ends(field))
+    small = all(
+        -(2**31) <= field.scale.physical(end) * per < 2**31
+        for end in storage_ends(field)
+    )
     low, high = (-(2**31), 2**31 - 1) if small else (-(2**63), 2**63 - 1)
-    numbers = [value for value in whole_values(field, per, wide // 10, source) if low <= value <= high]
-    yield table(words(numbers), words([set_by_codec(field, Fraction(value, per)) for value in numbers]))
+    numbers = [
+        value
+        for value in whole_values(field, per, wide // 10, source)
+        if low <= value <= high
+    ]
+    yield table(
+        words(numbers),
+        words([set_by_codec(field, Fraction(value, per)) for value in numbers]),
+    )
 
 
 def storage_ends(field: NodePlace) -> tuple[int, int]:
     bits = next(b for b in (8, 16, 32, 64) if field.bits <= b)
-    return (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if field.is_signed else (0, (1 << bits) - 1)
+    return (
+        (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+        if field.is_signed
+        else (0, (1 << bits) - 1)
+    )
 
 
 def table(keys: bytes, values: bytes) -> bytes:
@@ -141,30 +188,78 @@ def set_by_codec(field: NodePlace, value: float | Fraction) -> int:
 def raw_values(field: NodePlace, wide: int, source: random.Random) -> list[int]:
     if field.bits <= 16:
         return list(range(field.raw_min, field.raw_max + 1))
-    near = [field.raw_min, field.raw_min + 1, -1, 0, 1, field.raw_max - 1, field.raw_max]
+    near = [
+        field.raw_min,
+        field.raw_min + 1,
+        -1,
+        0,
+        1,
+        field.raw_max - 1,
+        field.raw_max,
+    ]
     near = [raw for raw in near if field.raw_min <= raw <= field.raw_max]
-    small = [source.getrandbits(source.randint(1, field.bits)) + field.raw_min for _ in range(wide // 2)]
-    return near + small + [source.randint(field.raw_min, field.raw_max) for _ in range(wide // 2)]
+    small = [
+        source.getrandbits(source.randint(1, field.bits)) + field.raw_min
+        for _ in range(wide // 2)
+    ]
+    return (
+        near
+        + small
+        + [source.randint(field.raw_min, field.raw_max) for _ in range(wide // 2)]
+    )
 
 
 def physical_values(field: NodePlace, count: int, source: random.Random) -> list[float]:
     """Doubles at and beside ties, at and beyond the limits, and the strangest ones."""
-    values = [math.nan, -math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, -5e-324, 2.2e-308, 1.7e308, -1.7e308]
-    values += [2.0**exponent * sign for exponent in range(-70, 130, 3) for sign in (1, -1)]
-    raws = [field.raw_min, field.raw_max] * 3 + [source.randint(field.raw_min, field.raw_max) for _ in range(count)]
+    values = [
+        math.nan,
+        -math.nan,
+        math.inf,
+        -math.inf,
+        0.0,
+        -0.0,
+        5e-324,
+        -5e-324,
+        2.2e-308,
+        1.7e308,
+        -1.7e308,
+    ]
+    values += [
+        2.0**exponent * sign for exponent in range(-70, 130, 3) for sign in (1, -1)
+    ]
+    raws = [field.raw_min, field.raw_max] * 3 + [
+        source.randint(field.raw_min, field.raw_max) for _ in range(count)
+    ]
     for raw in raws:
-        for part in (Fraction(1, 2), Fraction(-1, 2), Fraction(0), Fraction(source.randint(-99, 99), 100)):
+        for part in (
+            Fraction(1, 2),
+            Fraction(-1, 2),
+            Fraction(0),
+            Fraction(source.randint(-99, 99), 100),
+        ):
             exact = field.scale.physical(raw + part)
             nearest = exact.numerator / exact.denominator
-            values += [nearest, math.nextafter(nearest, math.inf), math.nextafter(nearest, -math.inf)]
+            values += [
+                nearest,
+                math.nextafter(nearest, math.inf),
+                math.nextafter(nearest, -math.inf),
+            ]
     return values
 
 
-def whole_values(field: NodePlace, per: int, count: int, source: random.Random) -> list[int]:
+def whole_values(
+    field: NodePlace, per: int, count: int, source: random.Random
+) -> list[int]:
     values = [0, 1, -1, 2**31 - 1, -(2**31), 2**63 - 1, -(2**63)]
-    raws = [field.raw_min, field.raw_max] * 3 + [source.randint(field.raw_min, field.raw_max) for _ in range(count)]
+    raws = [field.raw_min, field.raw_max] * 3 + [
+        source.randint(field.raw_min, field.raw_max) for _ in range(count)
+    ]
     for raw in raws:
-        for part in (Fraction(1, 2), Fraction(-1, 2), Fraction(source.randint(-99, 99), 100)):
+        for part in (
+            Fraction(1, 2),
+            Fraction(-1, 2),
+            Fraction(source.randint(-99, 99), 100),
+        ):
             middle = math.floor(field.scale.physical(raw + part) * per)
             values += [middle - 1, middle, middle + 1]
     return values

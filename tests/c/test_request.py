@@ -23,12 +23,19 @@ FRAME = bytes.fromhex("1f1f0a00ff7f")  # full of escape bytes
 def program(tmp_path_factory):
     folder = tmp_path_factory.mktemp("request")
     headers = harness.generate(harness.shipped(), folder)
-    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", *harness.WARNINGS, *harness.SANITIZERS)
+    flags = (
+        "-std=c99",
+        "-D_POSIX_C_SOURCE=200809L",
+        *harness.WARNINGS,
+        *harness.SANITIZERS,
+    )
     return harness.compile(EXAMPLE, *flags, f"-I{headers}", output=folder / "request")
 
 
 class Node(threading.Thread):
-    """Serves one connection: answers every request for telemetry but the first ``silent`` ones."""
+    """Serves one connection: answers every request for telemetry but the first
+    ``silent`` ones.
+    """
 
     def __init__(self, silent: int) -> None:
         super().__init__(daemon=True)
@@ -46,7 +53,9 @@ class Node(threading.Thread):
                 for event in decoder.feed(data):
                     self.asked.append(event.message)
                     if len(self.asked) > self.silent:
-                        line = b"noise\x1f" + uart.encode(known.framing, event.message + FRAME)
+                        line = b"noise\x1f" + uart.encode(
+                            known.framing, event.message + FRAME
+                        )
                         for byte in line:  # a byte at a time
                             connection.sendall(bytes((byte,)))
 
@@ -56,7 +65,9 @@ def run(program, node: Node) -> subprocess.CompletedProcess:
 
 
 def ask(program, port: int | str) -> subprocess.CompletedProcess:
-    return subprocess.run([program, str(port)], capture_output=True, text=True, timeout=60)
+    return subprocess.run(
+        [program, str(port)], capture_output=True, text=True, timeout=60
+    )
 
 
 @pytest.mark.parametrize("silent", [0, 1])
@@ -69,7 +80,11 @@ def test_the_example_asks_until_it_is_answered(program, silent):
 
 def test_the_example_gives_up_when_nobody_answers(program):
     done = run(program, Node(99))
-    assert (done.returncode, done.stdout, done.stderr) == (1, "", "no telemetry, attempts: 4\n")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        1,
+        "",
+        "no telemetry, attempts: 4\n",
+    )
 
 
 def test_the_guide_shows_the_example():
@@ -78,7 +93,15 @@ def test_the_guide_shows_the_example():
 
 
 def test_the_example_talks_to_the_simulator(program):
-    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "Estimated Attitude Angles", "roll=12.5") as (place, _):
+    with simulator(
+        "--node",
+        "cubeacp",
+        "--tcp",
+        "0",
+        "--set",
+        "Estimated Attitude Angles",
+        "roll=12.5",
+    ) as (place, _):
         done = ask(program, urlsplit(place).port)
     assert (done.returncode, done.stdout, done.stderr) == (0, "roll 12.50 deg\n", "")
 
@@ -87,4 +110,8 @@ def test_the_example_says_that_nobody_listens(program):
     with socket.create_server(("127.0.0.1", 0)) as server:
         unused = server.getsockname()[1]
     done = ask(program, unused)
-    assert (done.returncode, done.stdout, done.stderr) == (1, "", "cannot connect: Connection refused\n")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        1,
+        "",
+        "cannot connect: Connection refused\n",
+    )

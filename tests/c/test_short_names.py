@@ -1,4 +1,6 @@
-"""Names that C99 does not tell apart are shortened in C, so that strict compilers and linkers take them; others stay."""
+"""Names that C99 does not tell apart are shortened in C, so that strict compilers and
+linkers take them; others stay.
+"""
 
 from __future__ import annotations
 
@@ -29,15 +31,27 @@ messages:
 
 
 def test_only_names_that_begin_alike_are_shortened_each_to_one_of_its_own():
-    texts = ["a" * 70 + "_x", "a" * 70 + "_y", "B" * 70 + "_X", "B" * 70 + "_Y", "c" * 90, "short"]
+    texts = [
+        "a" * 70 + "_x",
+        "a" * 70 + "_y",
+        "B" * 70 + "_X",
+        "B" * 70 + "_Y",
+        "c" * 90,
+        "short",
+    ]
     short = short_names(Identifier("C", text, "", None) for text in texts)
     assert set(short) == set(texts[:4])
-    assert len({text[:SIGNIFICANT] for text in short.values()}) == 4 and max(map(len, short.values())) <= SIGNIFICANT
+    assert (
+        len({text[:SIGNIFICANT] for text in short.values()}) == 4
+        and max(map(len, short.values())) <= SIGNIFICANT
+    )
     assert all(one.isupper() == text.isupper() for text, one in short.items())
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
-def test_generated_c_with_long_names_has_no_two_names_that_begin_alike_and_passes_its_self_test(tmp_path):
+def test_generated_c_with_long_names_has_no_two_names_that_begin_alike_and_passes_its_self_test(
+    tmp_path,
+):
     import sys
 
     (tmp_path / "engine.yaml").write_text(ICD)
@@ -55,11 +69,25 @@ def test_generated_c_with_long_names_has_no_two_names_that_begin_alike_and_passe
         result = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
         assert result.returncode == 0, result.stdout + result.stderr
     text = "".join(path.read_text() for path in (tmp_path / "c").rglob("*.h"))
-    names = set(re.findall(r"\b[A-Za-z_]\w*", re.sub(r"/\*.*?\*/|#include.*", "", text, flags=re.DOTALL | re.NOFLAG)))
+    names = set(
+        re.findall(
+            r"\b[A-Za-z_]\w*",
+            re.sub(r"/\*.*?\*/|#include.*", "", text, flags=re.DOTALL | re.NOFLAG),
+        )
+    )
     assert len({name[:SIGNIFICANT] for name in names}) == len(names)
     assert "engine_status_speed" in text or "speed;" in text
     sources = [str(path) for path in (tmp_path / "c-selftest").rglob("*.c")]
     includes = [f"-I{tmp_path / 'c'}", f"-I{tmp_path / 'c-selftest'}"]
-    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-c", *includes, *sources]
+    command = [
+        "gcc",
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-c",
+        *includes,
+        *sources,
+    ]
     result = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert result.returncode == 0, result.stderr[:2000]

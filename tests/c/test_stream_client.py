@@ -1,4 +1,6 @@
-"""Typed client of a framed link: the C of docs/reference/wire-framing.md is compiled and run, and each event is read."""
+"""Typed client of a framed link: the C of docs/reference/wire-framing.md is compiled
+and run, and each event is read.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ def run(folder, text, *icds):
     source.write_text(text)
     for compiler in ("gcc", "clang"):
         flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
-        program = harness.compile(source, *flags, compiler=compiler, output=folder / "program")
+        program = harness.compile(
+            source, *flags, compiler=compiler, output=folder / "program"
+        )
         done = subprocess.run([program], capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
 
@@ -106,7 +110,11 @@ int main(void)
 
 
 def test_the_documented_sender_counts_what_it_sends(tmp_path):
-    run(tmp_path, SENDING % "\n    ".join(shown("autopilot_sender_t sender;")), EXAMPLES / "mavlink2.yaml")
+    run(
+        tmp_path,
+        SENDING % "\n    ".join(shown("autopilot_sender_t sender;")),
+        EXAMPLES / "mavlink2.yaml",
+    )
 
 
 SHARED = r"""
@@ -222,5 +230,8 @@ def both(tmp_path_factory):
 def test_only_what_the_node_takes_and_can_be_asked_compiles(both, tmp_path, call):
     source = tmp_path / "call.c"
     source.write_text(CALL % call)
-    done = subprocess.run(["gcc", "-std=c99", "-Werror", "-fsyntax-only", f"-I{both}", source], capture_output=True)
+    done = subprocess.run(
+        ["gcc", "-std=c99", "-Werror", "-fsyntax-only", f"-I{both}", source],
+        capture_output=True,
+    )
     assert done.returncode == CALLS[call], done.stderr

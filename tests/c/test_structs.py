@@ -1,4 +1,6 @@
-"""Structs in C: types of their own, which messages hold, with accessors that serve every message."""
+"""Structs in C: types of their own, which messages hold, with accessors that serve
+every message.
+"""
 
 from __future__ import annotations
 
@@ -159,7 +161,9 @@ int main(void)
 """
 
 
-def test_structs_of_a_frame_are_read_one_by_one_where_its_message_is_too_large(tmp_path):
+def test_structs_of_a_frame_are_read_one_by_one_where_its_message_is_too_large(
+    tmp_path,
+):
     (tmp_path / "demo.yaml").write_text(OPEN, encoding="utf-8")
     folder = harness.generate(harness.read(tmp_path / "demo.yaml"), tmp_path / "c")
     source = folder / "user.c"
@@ -167,7 +171,9 @@ def test_structs_of_a_frame_are_read_one_by_one_where_its_message_is_too_large(t
     options = (*harness.WARNINGS, *harness.SANITIZERS, f"-I{folder}")
     program = harness.compile(source, "-std=c99", *options, output=folder / "user")
     done = subprocess.run([program], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, f"{5 * 16} {4 * 256}"), done.stderr[:2000]
+    assert (done.returncode, done.stdout) == (0, f"{5 * 16} {4 * 256}"), done.stderr[
+        :2000
+    ]
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang", "g++"])
@@ -180,7 +186,15 @@ def test_a_struct_is_a_value_of_its_own_wherever_it_stands(compiler, tmp_path):
     standard = "c++17" if compiler == "g++" else "c99"
     where = f"-I{folder}"
     program = harness.compile(
-        source, f"-std={standard}", *options, *harness.SANITIZERS, where, compiler=compiler, output=folder / "user"
+        source,
+        f"-std={standard}",
+        *options,
+        *harness.SANITIZERS,
+        where,
+        compiler=compiler,
+        output=folder / "user",
     )
     done = subprocess.run([program], capture_output=True, text=True)
-    assert done.returncode == 0, f"line {done.returncode} of the program: {done.stderr[:2000]}"
+    assert (
+        done.returncode == 0
+    ), f"line {done.returncode} of the program: {done.stderr[:2000]}"

@@ -1,4 +1,6 @@
-"""A client of a node takes the messages of that node: those of another do not compile, or are refused at once."""
+"""A client of a node takes the messages of that node: those of another do not compile,
+or are refused at once.
+"""
 
 from __future__ import annotations
 
@@ -53,21 +55,34 @@ OTHERS = {
 def compiled(headers, folder, body, compiler, standard):
     source = folder / "call.c"
     source.write_text(CALL % body)
-    flags = [f"-std={standard}", "-Werror", "-fsyntax-only", f"-I{headers}", *(["-xc++"] if "++" in compiler else [])]
+    flags = [
+        f"-std={standard}",
+        "-Werror",
+        "-fsyntax-only",
+        f"-I{headers}",
+        *(["-xc++"] if "++" in compiler else []),
+    ]
     return subprocess.run([compiler, *flags, source], capture_output=True, text=True)
 
 
 @pytest.mark.parametrize(("compiler", "standard"), COMPILERS)
-def test_messages_of_the_node_and_of_those_that_it_includes_compile(headers, tmp_path, compiler, standard):
+def test_messages_of_the_node_and_of_those_that_it_includes_compile(
+    headers, tmp_path, compiler, standard
+):
     assert compiled(headers, tmp_path, OWN.strip(), compiler, standard).stderr == ""
 
 
 @pytest.mark.parametrize(("compiler", "standard"), COMPILERS)
 @pytest.mark.parametrize("what", OTHERS)
-def test_a_message_of_another_node_does_not_compile(headers, tmp_path, what, compiler, standard):
+def test_a_message_of_another_node_does_not_compile(
+    headers, tmp_path, what, compiler, standard
+):
     done = compiled(headers, tmp_path, OTHERS[what], compiler, standard)
     assert done.returncode != 0
-    assert re.search("incompatible|cannot convert|no matching function|implicit|undeclared|not declared", done.stderr)
+    assert re.search(
+        "incompatible|cannot convert|no matching function|implicit|undeclared|not declared",
+        done.stderr,
+    )
 
 
 RECEIVE = r"""
@@ -136,7 +151,9 @@ int main(void)
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_a_frame_is_received_as_the_message_of_the_node_that_sent_it_only(headers, tmp_path, compiler):
+def test_a_frame_is_received_as_the_message_of_the_node_that_sent_it_only(
+    headers, tmp_path, compiler
+):
     run(headers, tmp_path, RECEIVE, compiler)
 
 
@@ -159,7 +176,9 @@ int main(void)
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_a_client_on_can_is_told_its_address_when_it_begins(headers, tmp_path, compiler):
+def test_a_client_on_can_is_told_its_address_when_it_begins(
+    headers, tmp_path, compiler
+):
     run(headers, tmp_path, CAN, compiler)
 
 
@@ -167,6 +186,8 @@ def run(headers, folder, text, compiler):
     source = folder / "program.c"
     source.write_text(text)
     flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
-    program = harness.compile(source, *flags, compiler=compiler, output=folder / "program")
+    program = harness.compile(
+        source, *flags, compiler=compiler, output=folder / "program"
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")

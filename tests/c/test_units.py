@@ -1,4 +1,6 @@
-"""Programs of several translation units: the wire layer and the links are there once, or in each unit for itself."""
+"""Programs of several translation units: the wire layer and the links are there once,
+or in each unit for itself.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,9 @@ def objects(folder, sources, compiler, standard, *options):
         command = [*options, *harness.WARNINGS, f"-std={standard}", "-c", f"-I{folder}"]
         if compiler.endswith("++"):
             command += ["-xc++"]
-        made.append(harness.compile(folder / source, *command, compiler=compiler, output=target))
+        made.append(
+            harness.compile(folder / source, *command, compiler=compiler, output=target)
+        )
     return made
 
 
@@ -68,25 +72,55 @@ def symbols(path, kinds):
 
 def undefined(path):
     """The symbols that an object has from elsewhere."""
-    done = subprocess.run(["nm", "-u", path], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["nm", "-u", path], capture_output=True, text=True, check=True
+    )
     return {line.split()[-1] for line in done.stdout.splitlines()}
 
 
-@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
-def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(folder, compiler, standard):
-    units = objects(folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1", "-DICDGEN_SHARED")
-    layer = objects(folder, SHARED, "gcc", "c99", "-O1", "-Wmissing-prototypes")  # as C, whoever uses it
+@pytest.mark.parametrize(
+    ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
+)
+def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(
+    folder, compiler, standard
+):
+    units = objects(
+        folder,
+        ["first.c", "second.c", "main.c"],
+        compiler,
+        standard,
+        "-O1",
+        "-DICDGEN_SHARED",
+    )
+    layer = objects(
+        folder, SHARED, "gcc", "c99", "-O1", "-Wmissing-prototypes"
+    )  # as C, whoever uses it
     linker = {"g++": "g++"}.get(compiler, compiler)
     subprocess.run([linker, *units, *layer, "-o", folder / "shared"], check=True)
     subprocess.run([folder / "shared"], check=True)
-    assert symbols(units[0], "tT") == set() and symbols(units[0], "U") >= {"icd_client_uart", "icd_client_output"}
+    assert symbols(units[0], "tT") == set() and symbols(units[0], "U") >= {
+        "icd_client_uart",
+        "icd_client_output",
+    }
     assert "icd_client_start" in symbols(layer[0], "T")
-    assert undefined(layer[0]) <= {"memcpy", "memset", "memmove", "memcmp", "strlen"}  # nothing is allocated
+    assert undefined(layer[0]) <= {
+        "memcpy",
+        "memset",
+        "memmove",
+        "memcmp",
+        "strlen",
+    }  # nothing is allocated
 
 
-@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
-def test_units_that_have_all_for_themselves_need_no_other_source(folder, compiler, standard):
-    units = objects(folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1")
+@pytest.mark.parametrize(
+    ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
+)
+def test_units_that_have_all_for_themselves_need_no_other_source(
+    folder, compiler, standard
+):
+    units = objects(
+        folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1"
+    )
     subprocess.run([compiler, *units, "-o", folder / "alone"], check=True)
     subprocess.run([folder / "alone"], check=True)
     assert symbols(units[0], "U") == set()
@@ -114,28 +148,58 @@ int main(void)
 
 
 def linked(folder, bus, *options):
-    """The symbols of a program that begins a client on one bus, as the linker leaves them."""
-    (folder / "client.c").write_text(CLIENT.format(bus=bus, address="1, " if bus == "can" else ""))
-    flags = ["-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-DICDGEN_SHARED", *options]
+    """The symbols of a program that begins a client on one bus, as the linker leaves
+    them.
+    """
+    (folder / "client.c").write_text(
+        CLIENT.format(bus=bus, address="1, " if bus == "can" else "")
+    )
+    flags = [
+        "-std=c99",
+        "-Os",
+        "-ffunction-sections",
+        "-fdata-sections",
+        "-DICDGEN_SHARED",
+        *options,
+    ]
     made = [
-        harness.compile(folder / name, *flags, *harness.WARNINGS, "-c", f"-I{folder}", output=folder / f"{place}.o")
+        harness.compile(
+            folder / name,
+            *flags,
+            *harness.WARNINGS,
+            "-c",
+            f"-I{folder}",
+            output=folder / f"{place}.o",
+        )
         for place, name in enumerate(("client.c", "icdgen_wire.c", "cubeacp/link.c"))
     ]
-    subprocess.run(["gcc", *made, "-Wl,--gc-sections", "-o", folder / "client"], check=True)
+    subprocess.run(
+        ["gcc", *made, "-Wl,--gc-sections", "-o", folder / "client"], check=True
+    )
     subprocess.run([folder / "client"], check=True)
-    lines = subprocess.run(["nm", folder / "client"], capture_output=True, text=True, check=True).stdout.splitlines()
+    lines = subprocess.run(
+        ["nm", folder / "client"], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     return {line.split()[-1] for line in lines}
 
 
 def test_a_program_has_nothing_of_the_buses_that_it_does_not_begin(folder):
     uart, can = linked(folder, "uart"), linked(folder, "can")
-    assert "icd_uart_decoder_init" in uart and "icd_can_split" not in uart and "icd_can_joiner_init" not in uart
+    assert (
+        "icd_uart_decoder_init" in uart
+        and "icd_can_split" not in uart
+        and "icd_can_joiner_init" not in uart
+    )
     assert "icd_can_split" in can and "icd_uart_decoder_init" not in can
 
 
 def test_a_program_without_tables_of_checksums_has_none(folder):
     def with_tables(*options):
-        return {name for name in linked(folder, "uart", *options) if "_table" in name and name.startswith("crc")}
+        return {
+            name
+            for name in linked(folder, "uart", *options)
+            if "_table" in name and name.startswith("crc")
+        }
 
     assert with_tables() and not with_tables("-DICDGEN_NO_TABLES")
 
@@ -144,22 +208,41 @@ CHOSEN = ("-DCUBEACP_CHOSEN", "-DCUBEACP_WITH_IDENTIFICATION")
 
 
 def test_a_program_may_choose_the_messages_of_its_tables(folder):
-    """Others do not compile; those that the wire layer asks for itself are there nevertheless."""
+    """Others do not compile.
+
+    Those that the wire layer asks for itself are there nevertheless.
+    """
     rows = []
-    for options in ((), CHOSEN, (*CHOSEN, "-DICDGEN_NO_FILES"), (*CHOSEN, "-DICDGEN_NO_FILES", "-DICDGEN_NO_LOGS")):
+    for options in (
+        (),
+        CHOSEN,
+        (*CHOSEN, "-DICDGEN_NO_FILES"),
+        (*CHOSEN, "-DICDGEN_NO_FILES", "-DICDGEN_NO_LOGS"),
+    ):
         linked(folder, "uart", *options)  # the program runs
-        done = subprocess.run(["nm", "-S", folder / "client"], capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            ["nm", "-S", folder / "client"], capture_output=True, text=True, check=True
+        )
         sizes = {
             line.split()[3].partition(".")[0]: int(line.split()[1], 16)
             for line in done.stdout.splitlines()
             if len(line.split()) == 4
         }
-        ends = sizes["telecommands"] // 4 - 1, sizes["telemetry"] // 4 - 1  # the last one is none
+        ends = (
+            sizes["telecommands"] // 4 - 1,
+            sizes["telemetry"] // 4 - 1,
+        )  # the last one is none
         rows.append((*ends, "download" in sizes, "log_bits" in sizes))
     link = links_of(describe(harness.shipped()))["cubeacp"]
     needed = [one.name for one in (*link.always_needed, *link.in_procedures)]
-    few = [sum(sent.message.name in needed for sent in sents) for sents in (link.telecommands, link.telemetry)]
-    own = [sum(sent.message in link.always_needed for sent in sents) for sents in (link.telecommands, link.telemetry)]
+    few = [
+        sum(sent.message.name in needed for sent in sents)
+        for sents in (link.telecommands, link.telemetry)
+    ]
+    own = [
+        sum(sent.message in link.always_needed for sent in sents)
+        for sents in (link.telecommands, link.telemetry)
+    ]
     assert own == [0, 2] and few > own
     assert rows == [
         (len(link.telecommands), len(link.telemetry), True, True),
@@ -171,11 +254,23 @@ def test_a_program_may_choose_the_messages_of_its_tables(folder):
         linked(folder, "uart", "-DCUBEACP_CHOSEN")
 
 
-@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
-@pytest.mark.parametrize("shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"])
+@pytest.mark.parametrize(
+    ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
+)
+@pytest.mark.parametrize(
+    "shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"]
+)
 def test_chosen_messages_compile_without_a_warning(folder, compiler, standard, shared):
-    options = (*CHOSEN, "-DBOOTLOADER_CHOSEN", "-DICDGEN_NO_FILES", "-DICDGEN_NO_LOGS", *shared)
-    objects(folder, ["first.c", *(SHARED if shared else ())], compiler, standard, *options)
+    options = (
+        *CHOSEN,
+        "-DBOOTLOADER_CHOSEN",
+        "-DICDGEN_NO_FILES",
+        "-DICDGEN_NO_LOGS",
+        *shared,
+    )
+    objects(
+        folder, ["first.c", *(SHARED if shared else ())], compiler, standard, *options
+    )
 
 
 def test_what_is_left_out_is_unsupported(folder):

@@ -1,4 +1,6 @@
-"""The wire layer of the generated C: on the golden vectors, on random requests, in odd circumstances, and alone in a firmware."""
+"""The wire layer of the generated C: on the golden vectors, on random requests, in odd
+circumstances, and alone in a firmware.
+"""
 
 from __future__ import annotations
 
@@ -72,7 +74,10 @@ def test_changed_requests_are_answered_like_the_reference(icd, vectors, testee):
 
 def test_streams_packets_and_scripts_that_nobody_thought_of(icd, testee):
     asked = list(wire_random.requests(icd, 60))
-    assert differences([(request, ops.answer(icd, request)) for request in asked], testee) == []
+    assert (
+        differences([(request, ops.answer(icd, request)) for request in asked], testee)
+        == []
+    )
 
 
 def agree(icd, vectors, testee, count=3000):
@@ -88,7 +93,10 @@ def agree(icd, vectors, testee, count=3000):
 
 def differences(asked, testee):
     answers = testee.ask([json.dumps(request).encode() for request, _ in asked])
-    found = ((request, difference(good, answer)) for (request, good), answer in zip(asked, answers, strict=True))
+    found = (
+        (request, difference(good, answer))
+        for (request, good), answer in zip(asked, answers, strict=True)
+    )
     return [(request, what) for request, what in found if what]
 
 
@@ -96,9 +104,13 @@ def differences(asked, testee):
 @given(data=st.data())
 def test_events_do_not_depend_on_how_the_stream_was_cut(testee, data):
     framing = st.sampled_from([0x1F, 0x7F, 0xFF])
-    stream = bytes(data.draw(st.lists(st.one_of(framing, st.integers(0, 255)), max_size=80)))
+    stream = bytes(
+        data.draw(st.lists(st.one_of(framing, st.integers(0, 255)), max_size=80))
+    )
     cuts = sorted(data.draw(st.lists(st.integers(0, len(stream)), max_size=6)))
-    pieces = [stream[a:b].hex() for a, b in zip([0, *cuts], [*cuts, len(stream)], strict=True)]
+    pieces = [
+        stream[a:b].hex() for a, b in zip([0, *cuts], [*cuts, len(stream)], strict=True)
+    ]
     whole = ask(testee, op="uart_events", chunks=[stream.hex()])
     assert whole["ok"] and ask(testee, op="uart_events", chunks=pieces) == whole
 
@@ -107,21 +119,34 @@ def test_noise_of_a_megabyte_before_a_frame_costs_nothing_but_that_noise(testee)
     noise = random.Random(3).randbytes(1_000_000).replace(b"\x1f", b"\x1e")
     stream = noise + bytes.fromhex("1f7f1f1f1f1f1f1fffaa1fff")
     answer = ask(testee, op="uart_events", chunks=[stream.hex()])
-    assert answer["events"] == [{"event": "message", "kind": "other", "bytes": "1f1f1fffaa"}]
+    assert answer["events"] == [
+        {"event": "message", "kind": "other", "bytes": "1f1f1fffaa"}
+    ]
     assert answer["discarded"] == len(noise) and answer["pending"] == 0
 
 
 def test_a_telecommand_whose_id_is_the_escape_byte_survives(testee):
     for message in ("1f00", "1f1f1fff", "00" + "1f" * 40):
         line = ask(testee, op="uart_encode", bytes=message)["bytes"]
-        assert ask(testee, op="uart_decode", bytes=line) == {"ok": True, "frames": [message]}
+        assert ask(testee, op="uart_decode", bytes=line) == {
+            "ok": True,
+            "frames": [message],
+        }
 
 
 def test_time_may_wrap(testee):
     begin = (1 << 32) - 40
-    script = [{"at": begin, "telemetry": 128}, {"at": begin + 39}, {"at": 59}, {"at": 60}, {"at": 160}]
+    script = [
+        {"at": begin, "telemetry": 128},
+        {"at": begin + 39},
+        {"at": 59},
+        {"at": 60},
+        {"at": 160},
+    ]
     given_ = {"reply_timeout": 100, "retries": 1, "poll_interval": 1, "poll_timeout": 1}
-    steps = ask(testee, op="client", bus="uart", settings=given_, script=script)["steps"]
+    steps = ask(testee, op="client", bus="uart", settings=given_, script=script)[
+        "steps"
+    ]
     assert [step["deadline"] for step in steps] == [60, 60, 60, 160, None]
     assert [len(step["out"]) for step in steps] == [1, 0, 0, 1, 0]
     assert steps[-1]["events"] == [{"event": "timeout", "id": 128, "attempts": 2}]
@@ -131,9 +156,15 @@ def test_a_node_without_a_protocol_has_no_link(demo, tmp_path, headers):
     made = harness.generate(harness.read(demo), tmp_path)
     assert not list(made.rglob("icdgen_wire.*")) and not list(made.rglob("link.*"))
     assert (headers / "icdgen_wire.h").is_file()
-    protocols = {node.name for node in harness.shipped().nodes if harness.shipped().protocol_of(node)}
+    protocols = {
+        node.name
+        for node in harness.shipped().nodes
+        if harness.shipped().protocol_of(node)
+    }
     assert (
-        {path.parent.name for path in headers.rglob("link.h")} == protocols < {n.name for n in harness.shipped().nodes}
+        {path.parent.name for path in headers.rglob("link.h")}
+        == protocols
+        < {n.name for n in harness.shipped().nodes}
     )
 
 
@@ -143,12 +174,19 @@ def test_every_assumption_stands_with_its_reason_where_its_value_is(headers):
         if not icd.protocol_of(node):
             continue
         text = re.sub(r"\s+(?:\* )?", " ", (headers / node.name / "link.c").read_text())
-        # What switches logs on is a message like any other: the layer has no part in it.
+        # What switches logs on is a message like any other: the layer has no part in
+        # it.
         elsewhere = ("message ", "unsolicited_log.configured_by")
-        assumed = [a for a in facts.of(icd, node).assumptions if not a.section.startswith(elsewhere)]
+        assumed = [
+            a
+            for a in facts.of(icd, node).assumptions
+            if not a.section.startswith(elsewhere)
+        ]
         assert assumed
         for assumption in assumed:
-            assert f"Assumed {assumption.key}: {' '.join(assumption.why.split())}" in text, assumption
+            assert (
+                f"Assumed {assumption.key}: {' '.join(assumption.why.split())}" in text
+            ), assumption
 
 
 def test_nothing_is_called_but_functions_that_move_memory(headers, tmp_path):
@@ -160,13 +198,24 @@ def test_nothing_is_called_but_functions_that_move_memory(headers, tmp_path):
     source.write_text(
         "".join(f'#include "{node}.h"\n' for node in nodes)
         + "typedef void any(void);\nany *const used[] = {"
-        + ", ".join(f"(any *){name}" for name in [*names, *(f"{node}_link" for node in nodes)])
+        + ", ".join(
+            f"(any *){name}" for name in [*names, *(f"{node}_link" for node in nodes)]
+        )
         + "};\n"
     )
-    harness.compile(source, "-std=c99", "-O2", "-c", f"-I{headers}", output=tmp_path / "all.o")
-    done = subprocess.run(["nm", "-u", tmp_path / "all.o"], capture_output=True, text=True, check=True)
+    harness.compile(
+        source, "-std=c99", "-O2", "-c", f"-I{headers}", output=tmp_path / "all.o"
+    )
+    done = subprocess.run(
+        ["nm", "-u", tmp_path / "all.o"], capture_output=True, text=True, check=True
+    )
     called = {line.split()[-1] for line in done.stdout.splitlines()}
-    assert called - {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"} <= {"memcpy", "memset", "memcmp", "memmove"}
+    assert called - {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"} <= {
+        "memcpy",
+        "memset",
+        "memcmp",
+        "memmove",
+    }
 
 
 PROGRAM = """
@@ -198,6 +247,9 @@ def test_checksums_are_the_same_with_tables_and_without(headers, tmp_path, optio
     known = facts.of(icd, icd.node("cubeacp"))
     data = b"123456789 and so on\0"
     expected = [
-        (crc.compute(known.checksum.crc, data[:n]), crc.compute(known.crc16, data[:n])) for n in range(len(data))
+        (crc.compute(known.checksum.crc, data[:n]), crc.compute(known.crc16, data[:n]))
+        for n in range(len(data))
     ]
-    assert [tuple(map(int, line.split())) for line in done.stdout.splitlines()] == expected
+    assert [
+        tuple(map(int, line.split())) for line in done.stdout.splitlines()
+    ] == expected

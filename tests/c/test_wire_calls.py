@@ -72,13 +72,28 @@ int main(void)
 """
 
 
-def test_a_transfer_that_outlasts_its_request_is_not_that_of_the_request_which_its_time_out_began(headers, tmp_path):
+def test_a_transfer_that_outlasts_its_request_is_not_that_of_the_request_which_its_time_out_began(
+    headers, tmp_path
+):
     source = tmp_path / "late.c"
     source.write_text(LATE)
-    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "late")
+    program = harness.compile(
+        source,
+        "-std=c99",
+        *harness.SANITIZERS,
+        f"-I{headers}",
+        output=tmp_path / "late",
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.split("\n")[:-1] == ["timeout 146", "stray 0", "done 147", "timeout 146", "stray 0", "done 1"]
+    assert done.stdout.split("\n")[:-1] == [
+        "timeout 146",
+        "stray 0",
+        "done 147",
+        "timeout 146",
+        "stray 0",
+        "done 1",
+    ]
 
 
 CANCEL = r"""
@@ -122,19 +137,34 @@ int main(void)
 def test_a_request_that_is_cancelled_is_not_in_the_way_of_the_next(headers, tmp_path):
     source = tmp_path / "cancel.c"
     source.write_text(CANCEL)
-    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "cancel")
+    program = harness.compile(
+        source,
+        "-std=c99",
+        *harness.SANITIZERS,
+        f"-I{headers}",
+        output=tmp_path / "cancel",
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
 
 
 def calls_of(source, headers, folder) -> dict[str, set[str]]:
     """The functions and what each calls, as gcc sees it without any inlining."""
-    flags = ("-std=c99", "-O0", "-c", "-fkeep-static-functions", "-fkeep-inline-functions", "-fcallgraph-info")
+    flags = (
+        "-std=c99",
+        "-O0",
+        "-c",
+        "-fkeep-static-functions",
+        "-fkeep-inline-functions",
+        "-fcallgraph-info",
+    )
     harness.compile(source, *flags, f"-I{headers}", output=folder / "graph.o")
     (graph,) = folder.glob("*.ci")
     text = graph.read_text()
     calls: dict[str, set[str]] = {}
-    for caller, callee in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
+    for caller, callee in re.findall(
+        r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text
+    ):
         calls.setdefault(caller.split(":")[-1], set()).add(callee.split(":")[-1])
     return calls
 
@@ -142,10 +172,14 @@ def calls_of(source, headers, folder) -> dict[str, set[str]]:
 def test_no_function_calls_itself_by_whatever_way(headers, tmp_path):
     """So the depth of the stack is known: what firmware demands."""
     source = tmp_path / "all.c"
-    source.write_text("".join(f'#include "{path.name}"\n' for path in sorted(headers.glob("*.h"))))
+    source.write_text(
+        "".join(f'#include "{path.name}"\n' for path in sorted(headers.glob("*.h")))
+    )
     calls = calls_of(source, headers, tmp_path)
     assert "icd_client_tick" in calls["icd_client_received"] and len(calls) > 300
-    list(graphlib.TopologicalSorter(calls).static_order())  # CycleError names the functions
+    list(
+        graphlib.TopologicalSorter(calls).static_order()
+    )  # CycleError names the functions
 
 
 def test_recursion_would_be_noticed(tmp_path):
@@ -154,4 +188,8 @@ def test_recursion_would_be_noticed(tmp_path):
         "static void b(int n);\nstatic void a(int n) { if (n) b(n - 1); }\nstatic void b(int n) { a(n); }\n"
     )
     with pytest.raises(graphlib.CycleError):
-        list(graphlib.TopologicalSorter(calls_of(source, tmp_path, tmp_path)).static_order())
+        list(
+            graphlib.TopologicalSorter(
+                calls_of(source, tmp_path, tmp_path)
+            ).static_order()
+        )

@@ -1,4 +1,6 @@
-"""A node need not describe every part of a protocol: what its ICD has is in its link, and nothing else."""
+"""A node need not describe every part of a protocol: what its ICD has is in its link,
+and nothing else.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,15 @@ PARTS = {
     "uart": ["framing", "acknowledge"],
     "i2c": ["polled"],
     "can": ["can"],
-    "file_transfer": ["hole_map", "files", "list", "download", "upload", "erase", "format"],
+    "file_transfer": [
+        "hole_map",
+        "files",
+        "list",
+        "download",
+        "upload",
+        "erase",
+        "format",
+    ],
     "crc16": ["crc16"],
     "index_file": ["index"],
     "msdos_time": ["time"],
@@ -42,24 +52,46 @@ MEMBERS = sorted(member for members in PARTS.values() for member in members)
 
 @pytest.fixture(scope="module")
 def icd() -> Icd:
-    """Nodes with the messages of both programs: with all that either has of a protocol, without each section, with each alone."""
+    """Nodes with the messages of both programs: with all that either has of a protocol,
+    without each section, with each alone.
+    """
     shipped = harness.shipped()
     acp, bootloader = shipped.node("cubeacp"), shipped.node("bootloader")
-    whole = copy.deepcopy({**shipped.protocol_of(bootloader), **shipped.protocol_of(acp)})
+    whole = copy.deepcopy(
+        {**shipped.protocol_of(bootloader), **shipped.protocol_of(acp)}
+    )
     del whole["file_transfer"]["upload"]["nodes"]  # any of these nodes can
     protocols = {"whole": whole}
     for section in whole:
-        protocols[f"without_{section}"] = {name: part for name, part in whole.items() if name != section}
+        protocols[f"without_{section}"] = {
+            name: part for name, part in whole.items() if name != section
+        }
         protocols[f"only_{section}"] = {section: whole[section]}
     taken = {id for message in bootloader.messages for id in message.ids}
-    names = {message.identifier for message in bootloader.messages}  # both call a message State: here by its whole name
+    names = {
+        message.identifier for message in bootloader.messages
+    }  # both call a message State: here by its whole name
     left = (message for message in acp.messages if not taken & set(message.ids))
-    left = (dataclasses.replace(m, identifier=m.name) if m.identifier in names else m for m in left)
+    left = (
+        dataclasses.replace(m, identifier=m.name) if m.identifier in names else m
+        for m in left
+    )
     acp = dataclasses.replace(acp, messages=tuple(left))
-    bases = [dataclasses.replace(node, protocol={}) for node in (*shipped.included(acp), bootloader, acp)]
+    bases = [
+        dataclasses.replace(node, protocol={})
+        for node in (*shipped.included(acp), bootloader, acp)
+    ]
     includes = tuple(node.name for node in bases)
     variant = dataclasses.replace(acp, messages=(), enums=(), includes=includes)
-    return Icd((*bases, *(dataclasses.replace(variant, name=n, protocol=p) for n, p in protocols.items())))
+    return Icd(
+        (
+            *bases,
+            *(
+                dataclasses.replace(variant, name=n, protocol=p)
+                for n, p in protocols.items()
+            ),
+        )
+    )
 
 
 @pytest.fixture(scope="module")
@@ -72,8 +104,12 @@ def headers(icd, tmp_path_factory):
     return harness.generate(icd, tmp_path_factory.mktemp("headers"))
 
 
-@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
-def test_every_choice_of_sections_compiles_without_a_warning(icd, headers, compiler, standard):
+@pytest.mark.parametrize(
+    ("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")]
+)
+def test_every_choice_of_sections_compiles_without_a_warning(
+    icd, headers, compiler, standard
+):
     harness.compile_all(icd, headers, compiler, standard, "-fsyntax-only")
 
 
@@ -83,14 +119,19 @@ def test_the_sections_of_the_icd_are_those_of_the_link(nodes, headers, tmp_path)
         "#include <stdio.h>\n"
         + "".join(f'#include "{node.name}/link.h"\n' for node in nodes)
         + "static void tell(const char *name, const icd_link_t *link)\n{\n    fputs(name, stdout);\n"
-        + "".join(f'    if (link->{member} != NULL) fputs(" {member}", stdout);\n' for member in MEMBERS)
+        + "".join(
+            f'    if (link->{member} != NULL) fputs(" {member}", stdout);\n'
+            for member in MEMBERS
+        )
         + '    puts(link->i2c_address >= 0 ? " at an address" : "");\n}\nint main(void)\n{\n'
         + "".join(f'    tell("{node.name}", {node.name}_link());\n' for node in nodes)
         + "    return 0;\n}\n"
     )
     flags = ("-std=c99", *harness.WARNINGS, f"-I{headers}")
     program = harness.compile(source, *flags, output=tmp_path / "parts")
-    told = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
+    told = subprocess.run(
+        [program], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     assert told == [" ".join([node.name, *parts(node.protocol)]) for node in nodes]
 
 
@@ -144,21 +185,38 @@ int main(void)
 """
 
 
-def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(nodes, headers, tmp_path):
+def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(
+    nodes, headers, tmp_path
+):
     source = tmp_path / "clients.c"
     includes = "\n".join(f'#include "{node.name}/link.h"' for node in nodes)
-    source.write_text(CLIENTS.format(includes=includes, links=", ".join(f"{node.name}_link" for node in nodes)))
+    source.write_text(
+        CLIENTS.format(
+            includes=includes, links=", ".join(f"{node.name}_link" for node in nodes)
+        )
+    )
     flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
     program = harness.compile(source, *flags, output=tmp_path / "clients")
-    told = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
+    told = subprocess.run(
+        [program], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     ok, length, unsupported = "00", "14", "44"  # of the client and of the request
-    buses = [["uart" in node.protocol, "i2c" in node.protocol, "can" in node.protocol] for node in nodes]
-    assert told == [" ".join(["", *(ok if bus else unsupported for bus in three), length]) for three in buses]
+    buses = [
+        ["uart" in node.protocol, "i2c" in node.protocol, "can" in node.protocol]
+        for node in nodes
+    ]
+    assert told == [
+        " ".join(["", *(ok if bus else unsupported for bus in three), length])
+        for three in buses
+    ]
 
 
 def parts(protocol: dict) -> list[str]:
     """What the program above tells of a link for this protocol."""
-    logs = {"telemetry_log", "unsolicited_log"}  # which nobody can read without the mask
+    logs = {
+        "telemetry_log",
+        "unsolicited_log",
+    }  # which nobody can read without the mask
     sections = protocol.keys() - (logs if "log_mask" not in protocol else set())
     found = sorted(member for section in sections for member in PARTS[section])
     return [*found, *(["at an address"] if "i2c" in protocol else [])]

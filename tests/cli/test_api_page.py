@@ -20,7 +20,15 @@ def made(tmp_path_factory) -> Path:
     """What is generated from the ICD of the page."""
     folder = tmp_path_factory.mktemp("api")
     languages = [word for name in api_page.LANGUAGES for word in ("--lang", name)]
-    command = [sys.executable, "-m", "icdgen", *languages, "--out", folder, api_page.FOLDER / "imu.yaml"]
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        *languages,
+        "--out",
+        folder,
+        api_page.FOLDER / "imu.yaml",
+    ]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return folder
@@ -33,24 +41,42 @@ def test_the_page_is_what_the_programs_say():
 @pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99")])
 def test_its_c_does_what_it_says(made, compiler, standard, tmp_path):
     source = shutil.copy(api_page.FOLDER / "imu.c", tmp_path)
-    options = (f"-std={standard}", *harness.WARNINGS, *harness.SANITIZERS, f"-I{made / 'c'}")
-    program = harness.compile(source, *options, compiler=compiler, output=tmp_path / "imu")
+    options = (
+        f"-std={standard}",
+        *harness.WARNINGS,
+        *harness.SANITIZERS,
+        f"-I{made / 'c'}",
+    )
+    program = harness.compile(
+        source, *options, compiler=compiler, output=tmp_path / "imu"
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     assert done.returncode == 0, f"line {done.returncode}: {done.stderr[:2000]}"
 
 
 def test_its_python_does_what_it_says_and_is_typed(made, tmp_path):
-    program, package = shutil.copy(api_page.FOLDER / "imu.py", tmp_path), str(made / "python")
-    environment = {**os.environ, "PYTHONPATH": package, "MYPYPATH": package, "PYTHONDONTWRITEBYTECODE": "1"}
+    program, package = shutil.copy(api_page.FOLDER / "imu.py", tmp_path), str(
+        made / "python"
+    )
+    environment = {
+        **os.environ,
+        "PYTHONPATH": package,
+        "MYPYPATH": package,
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
     for command in ([], ["-m", "mypy", "--strict"]):
         command = [sys.executable, *command, program]
-        done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=tmp_path)
+        done = subprocess.run(
+            command, capture_output=True, text=True, env=environment, cwd=tmp_path
+        )
         assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_its_rust_does_what_it_says(made, tmp_path):
     tools = Toolchain("default")
-    library = tools.library(made / "rust" / "src" / "lib.rs", "0", "--cfg", 'feature="std"')
+    library = tools.library(
+        made / "rust" / "src" / "lib.rs", "0", "--cfg", 'feature="std"'
+    )
     program = tools.program(api_page.FOLDER / "imu.rs", library, tmp_path / "imu")
     done = subprocess.run([program], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -68,10 +94,17 @@ def test_its_rust_does_what_it_says(made, tmp_path):
             "key: single, does: it, or:",
             "[single]",
         ),
-        ("rows.yaml", "- {key: flag, does: read a flag}\n", "", "['flag'], of which rows.yaml knows nothing"),
+        (
+            "rows.yaml",
+            "- {key: flag, does: read a flag}\n",
+            "",
+            "['flag'], of which rows.yaml knows nothing",
+        ),
     ],
 )
-def test_a_row_that_a_language_lacks_is_not_passed_over(file, old, new, words, tmp_path, monkeypatch):
+def test_a_row_that_a_language_lacks_is_not_passed_over(
+    file, old, new, words, tmp_path, monkeypatch
+):
     shutil.copytree(api_page.FOLDER, tmp_path / "api")
     monkeypatch.setattr(api_page, "FOLDER", tmp_path / "api")
     text = (tmp_path / "api" / file).read_text("utf-8")

@@ -1,4 +1,6 @@
-"""The plug-in of docs/guides/add-a-language.md does what the page says, installed as a user would install it."""
+"""The plug-in of docs/guides/add-a-language.md does what the page says, installed as a
+user would install it.
+"""
 
 from __future__ import annotations
 
@@ -15,18 +17,34 @@ import pytest
 from tests.conftest import DEMO, ROOT
 
 PAGE = ROOT / "docs" / "guides" / "add-a-language.md"
-_FILE = re.compile(r"^```\w+\n(?:#|--|\{#) (?P<path>\S+)[^\n]*\n(?P<text>.*?)^```\n", re.MULTILINE | re.DOTALL)
+_FILE = re.compile(
+    r"^```\w+\n(?:#|--|\{#) (?P<path>\S+)[^\n]*\n(?P<text>.*?)^```\n",
+    re.MULTILINE | re.DOTALL,
+)
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("lua")
-    files = {found["path"]: found["text"] for found in _FILE.finditer(PAGE.read_text("utf-8"))}
+    files = {
+        found["path"]: found["text"]
+        for found in _FILE.finditer(PAGE.read_text("utf-8"))
+    }
     assert len(files) == 4 and sum(text.count("\n") for text in files.values()) < 100
     for path, text in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text)
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder / "site", folder]
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-deps",
+        "--target",
+        folder / "site",
+        folder,
+    ]
     subprocess.run(command, check=True)
     return folder / "site"
 
@@ -36,10 +54,17 @@ def icdgen(installed, tmp_path):
     """Runs icdgen where the plug-in is installed; the site may be another."""
     (tmp_path / "demo.yaml").write_text(DEMO)
 
-    def run(*arguments: str, site: Path = installed) -> subprocess.CompletedProcess[str]:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(site), str(ROOT / "codegen")])}
+    def run(
+        *arguments: str, site: Path = installed
+    ) -> subprocess.CompletedProcess[str]:
+        environment = {
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join([str(site), str(ROOT / "codegen")]),
+        }
         command = [sys.executable, "-m", "icdgen", *arguments]
-        result = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+        result = subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
         assert "Traceback" not in result.stderr
         return result
 
@@ -53,21 +78,36 @@ def test_it_generates_from_its_own_templates_and_runtime(icdgen, tmp_path):
         "    estimated_roll = { ids = { 146 }, length = 3 },\n    set_roll = { ids = { 20 }, length = 2 },\n}\n"
         "demo.name_of = registry.name_of(demo)\nreturn demo\n"
     )
-    assert (tmp_path / "out" / "registry.lua").read_text().startswith("local registry = {}\n")
-    assert icdgen("--lang", "lua", "--out", "out", "--check", "demo.yaml").returncode == 0
+    assert (
+        (tmp_path / "out" / "registry.lua")
+        .read_text()
+        .startswith("local registry = {}\n")
+    )
+    assert (
+        icdgen("--lang", "lua", "--out", "out", "--check", "demo.yaml").returncode == 0
+    )
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
     [
         ("End", "message `End` becomes `end`, a reserved word in lua"),
-        ("Name Of", "message `Name Of` and the function `name_of` both become `name_of` in lua"),
+        (
+            "Name Of",
+            "message `Name Of` and the function `name_of` both become `name_of` in lua",
+        ),
     ],
 )
-def test_its_names_are_held_to_the_rules_where_it_is_generated(icdgen, tmp_path, name, words):
+def test_its_names_are_held_to_the_rules_where_it_is_generated(
+    icdgen, tmp_path, name, words
+):
     (tmp_path / "demo.yaml").write_text(DEMO.replace("name: Set Roll", f"name: {name}"))
     result = icdgen("--lang", "lua", "--out", "out", "demo.yaml")
-    assert result.returncode == 1 and words in result.stderr and "demo.yaml:" in result.stderr
+    assert (
+        result.returncode == 1
+        and words in result.stderr
+        and "demo.yaml:" in result.stderr
+    )
     assert not (tmp_path / "out").exists()
     assert icdgen("check", "demo.yaml").returncode == 0
     (tmp_path / "icdgen.toml").write_text('lang = ["lua"]\n')
@@ -78,7 +118,12 @@ def test_its_files_can_be_replaced(icdgen, tmp_path):
     (tmp_path / "own" / "lua").mkdir(parents=True)
     (tmp_path / "own" / "lua" / "node.lua.j2").write_text("-- {{ node.model.title }}\n")
     (tmp_path / "own" / "lua" / "registry.lua").write_text("-- ours\n")
-    assert icdgen("--lang", "lua", "--out", "out", "--templates", "own", "demo.yaml").returncode == 0
+    assert (
+        icdgen(
+            "--lang", "lua", "--out", "out", "--templates", "own", "demo.yaml"
+        ).returncode
+        == 0
+    )
     assert (tmp_path / "out" / "demo.lua").read_text() == "-- Demo\n"
     assert (tmp_path / "out" / "registry.lua").read_text() == "-- ours\n"
 
@@ -90,7 +135,10 @@ def changed(installed, tmp_path):
     def change(old: str, new: str) -> Path:
         site = tmp_path / "site"
         shutil.copytree(installed, site, ignore=shutil.ignore_patterns("__pycache__"))
-        for path in (site / "icdgen_lua" / "__init__.py", next(site.glob("*.dist-info/entry_points.txt"))):
+        for path in (
+            site / "icdgen_lua" / "__init__.py",
+            next(site.glob("*.dist-info/entry_points.txt")),
+        ):
             path.write_text(path.read_text().replace(old, new))
         return site
 
@@ -99,17 +147,30 @@ def changed(installed, tmp_path):
 
 @pytest.mark.parametrize("place", ["for file in render.runtime_files():", "scope = "])
 def test_its_crash_is_a_clear_error(icdgen, changed, tmp_path, place):
-    site = changed(place, f"1 / 0; {place}" if place == "scope = " else f"1 / 0\n        {place}")
+    site = changed(
+        place, f"1 / 0; {place}" if place == "scope = " else f"1 / 0\n        {place}"
+    )
     result = icdgen("--lang", "lua", "--out", "out", "demo.yaml", site=site)
     assert result.returncode == 2 and "failed: ZeroDivisionError" in result.stderr
-    assert "the backend `lua` of icdgen-lua" in result.stderr and "icdgen_lua" in result.stderr
+    assert (
+        "the backend `lua` of icdgen-lua" in result.stderr
+        and "icdgen_lua" in result.stderr
+    )
     assert not (tmp_path / "out").exists()
 
 
 def test_its_entry_point_must_have_its_name(icdgen, changed):
-    result = icdgen("--lang", "luna", "demo.yaml", site=changed("lua = icdgen_lua", "luna = icdgen_lua"))
+    result = icdgen(
+        "--lang",
+        "luna",
+        "demo.yaml",
+        site=changed("lua = icdgen_lua", "luna = icdgen_lua"),
+    )
     assert result.returncode == 2
-    assert "`luna = icdgen_lua:LuaBackend` of icdgen-lua leads to a backend called `lua`" in result.stderr
+    assert (
+        "`luna = icdgen_lua:LuaBackend` of icdgen-lua leads to a backend called `lua`"
+        in result.stderr
+    )
 
 
 def test_two_packages_of_one_name_are_refused(icdgen, changed):
@@ -128,9 +189,12 @@ def test_two_packages_of_one_name_are_refused(icdgen, changed):
 
 def test_help_lists_it_beside_ours_and_no_testee(icdgen, tmp_path):
     for arguments in (["--help"], ["generate", "--help"]):
-        there = "".join(icdgen(*arguments).stdout.split())  # lines are broken behind hyphens, too
+        there = "".join(
+            icdgen(*arguments).stdout.split()
+        )  # lines are broken behind hyphens, too
         assert (
-            "c,python,rust,vectors,c-selftest,html,assurance,xtce,xlsx,csv,andofotherpackageslua(icdgen-lua)." in there
+            "c,python,rust,vectors,c-selftest,html,assurance,xtce,xlsx,csv,andofotherpackageslua(icdgen-lua)."
+            in there
         )
         assert "csv." in " ".join(icdgen(*arguments, site=tmp_path).stdout.split())
 
@@ -138,6 +202,10 @@ def test_help_lists_it_beside_ours_and_no_testee(icdgen, tmp_path):
 def test_its_names_stand_in_the_trace_of_the_assurance_pack(icdgen, tmp_path):
     result = icdgen("--lang", "assurance", "--out", "pack", "demo.yaml")
     assert result.returncode == 0, result.stderr
-    head, *rows = csv.reader((tmp_path / "pack" / "trace.csv").read_text("utf-8").splitlines())
-    message = next(row for row in rows if row[0] == "message" and row[3] == "Estimated Roll")
+    head, *rows = csv.reader(
+        (tmp_path / "pack" / "trace.csv").read_text("utf-8").splitlines()
+    )
+    message = next(
+        row for row in rows if row[0] == "message" and row[3] == "Estimated Roll"
+    )
     assert message[head.index("lua")] == "estimated_roll (fields of the module demo)"

@@ -1,4 +1,6 @@
-"""Nothing is taken from a cache that others may have written, and nothing that lies in one is ever run."""
+"""Nothing is taken from a cache that others may have written, and nothing that lies in
+one is ever run.
+"""
 
 from __future__ import annotations
 
@@ -34,11 +36,17 @@ def generated(demo, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
 
     def go() -> dict[str, bytes]:
-        monkeypatch.setattr("sys.argv", ["icdgen", "--lang", "c", "--out", "out", str(demo)])
+        monkeypatch.setattr(
+            "sys.argv", ["icdgen", "--lang", "c", "--out", "out", str(demo)]
+        )
         with pytest.raises(SystemExit) as end:
             __main__.main()
         assert not end.value.code and capsys.readouterr().err == ""
-        return {str(path): path.read_bytes() for path in Path("out").rglob("*") if path.is_file()}
+        return {
+            str(path): path.read_bytes()
+            for path in Path("out").rglob("*")
+            if path.is_file()
+        }
 
     return go
 
@@ -46,9 +54,22 @@ def generated(demo, tmp_path, monkeypatch, capsys):
 def harmful(mark: Path) -> list[bytes]:
     code = compile(f"open({str(mark)!r}, 'w')", "planted", "exec")
     pickled = pickle.dumps(_Runs(mark), protocol=5)
-    magic = b"j2" + pickle.dumps(5, 2) + pickle.dumps((sys.version_info[0] << 24) | sys.version_info[1], 2)
-    template = magic + pickle.dumps("0" * 40, 2) + marshal.dumps(code)  # as jinja2 keeps compiled templates
-    return [pickled, pickle.dumps((_Runs(mark), {}), protocol=5), marshal.dumps(code), template, b"", b"\0" * 100]
+    magic = (
+        b"j2"
+        + pickle.dumps(5, 2)
+        + pickle.dumps((sys.version_info[0] << 24) | sys.version_info[1], 2)
+    )
+    template = (
+        magic + pickle.dumps("0" * 40, 2) + marshal.dumps(code)
+    )  # as jinja2 keeps compiled templates
+    return [
+        pickled,
+        pickle.dumps((_Runs(mark), {}), protocol=5),
+        marshal.dumps(code),
+        template,
+        b"",
+        b"\0" * 100,
+    ]
 
 
 def test_nothing_that_is_planted_runs(generated, tmp_path):

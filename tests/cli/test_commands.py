@@ -1,4 +1,6 @@
-"""``check``, ``rule``, ``fmt``, ``show``, ``decode`` and ``encode`` from the outside: output, exit status, errors."""
+"""``check``, ``rule``, ``fmt``, ``show``, ``decode`` and ``encode`` from the outside:
+output, exit status, errors.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ class TestCheck:
     @pytest.mark.parametrize("form", ["json", "sarif"])
     def test_json_forms_are_json(self, icdgen, demo, form):
         demo.write_text(DEMO.replace("length: 3", "length: 2"))
-        assert "ICD020" in json.dumps(json.loads(icdgen("check", "--format", form, demo).out))
+        assert "ICD020" in json.dumps(
+            json.loads(icdgen("check", "--format", form, demo).out)
+        )
 
     def test_github_annotations_name_file_line_and_column(self, icdgen, demo):
         demo.write_text(DEMO.replace("length: 3", "length: 2"))
@@ -65,7 +69,9 @@ class TestFmt:
 
     def test_it_reports_what_it_did(self, icdgen, demo):
         demo.write_text(DEMO.replace("bits: 4,  name", "bits: 4, name"))
-        assert "1 file not in the canonical layout" in icdgen("fmt", "--check", demo).out
+        assert (
+            "1 file not in the canonical layout" in icdgen("fmt", "--check", demo).out
+        )
         assert "1 file formatted" in icdgen("fmt", demo).out
         assert "1 file unchanged" in icdgen("fmt", demo).out
 
@@ -101,23 +107,40 @@ class TestDecode:
 
     def test_json_for_programs(self, icdgen, demo):
         data = json.loads(
-            icdgen("decode", "demo", "Estimated Roll", "0x2E,0xFB,0x0D", "--icd", demo, "--format", "json").out
+            icdgen(
+                "decode",
+                "demo",
+                "Estimated Roll",
+                "0x2E,0xFB,0x0D",
+                "--icd",
+                demo,
+                "--format",
+                "json",
+            ).out
         )
         assert [field["raw"] for field in data["fields"]] == [-1234, 13]
 
-    @pytest.mark.parametrize("name", ["Estimated Roll", "estimated roll", "estimated_roll"])
+    @pytest.mark.parametrize(
+        "name", ["Estimated Roll", "estimated roll", "estimated_roll"]
+    )
     def test_the_only_node_need_not_be_named(self, icdgen, demo, name):
         named = icdgen("decode", "demo", "Estimated Roll", "2efb 01", "--icd", demo).out
         assert icdgen("decode", name, "2efb 01", "--icd", demo).out == named
         assert icdgen("decode", name, "2e", "fb", "01", "--icd", demo).out == named
-        assert "`Estimated Roll`" in icdgen("decode", "Estimatd Roll", "2efb 01", "--icd", demo).err
+        assert (
+            "`Estimated Roll`"
+            in icdgen("decode", "Estimatd Roll", "2efb 01", "--icd", demo).err
+        )
 
-    def test_a_frame_from_a_file_hex_or_binary_and_from_standard_input(self, icdgen, demo, tmp_path, monkeypatch):
+    def test_a_frame_from_a_file_hex_or_binary_and_from_standard_input(
+        self, icdgen, demo, tmp_path, monkeypatch
+    ):
         (tmp_path / "frame.hex").write_text("2e fb\n01\n")
         (tmp_path / "frame.bin").write_bytes(b"\x2e\xfb\x01")
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"2efb01")))
         outs = {
-            icdgen("decode", "demo", "146", frame, "--icd", demo).out for frame in ("@frame.hex", "@frame.bin", "-")
+            icdgen("decode", "demo", "146", frame, "--icd", demo).out
+            for frame in ("@frame.hex", "@frame.bin", "-")
         }
         assert len(outs) == 1
 
@@ -132,47 +155,90 @@ class TestDecode:
             (["demo", "99", "2efb01"], "demo has no message `99`"),
             (["demo", "9", "2e", "fb"], "demo has no message `9`"),
             (["demo", "146"], "there is no frame for Estimated Roll of demo"),
-            (["demo", "Estimated Roll"], "there is no frame for Estimated Roll of demo"),
+            (
+                ["demo", "Estimated Roll"],
+                "there is no frame for Estimated Roll of demo",
+            ),
             (["demo", "Estimatd Roll?"], "demo has no message `Estimatd Roll?`"),
             (["demo", "147", "2e", "fb"], "demo has no message `147`"),
         ],
     )
     def test_a_mistake_is_said_in_words(self, icdgen, demo, arguments, words):
         result = icdgen("decode", *arguments, "--icd", demo)
-        assert result.status == 2 and words in result.err and "Traceback" not in result.err
+        assert (
+            result.status == 2 and words in result.err and "Traceback" not in result.err
+        )
 
     def test_a_frame_need_not_be_one_word_and_finds_its_message(self, icdgen, demo):
         outs = {
             icdgen("decode", *arguments, "--icd", demo).out
-            for arguments in (["demo", "146", "2e", "fb", "01"], ["demo", "146", "2efb01"], ["demo", "0x2efb01"])
+            for arguments in (
+                ["demo", "146", "2e", "fb", "01"],
+                ["demo", "146", "2efb01"],
+                ["demo", "0x2efb01"],
+            )
         }
-        assert all("-12.34" in out for out in outs) and any("found by its length" in out for out in outs)
+        assert all("-12.34" in out for out in outs) and any(
+            "found by its length" in out for out in outs
+        )
 
     def test_the_only_node_need_not_be_named_before_an_id(self, icdgen, demo):
         named = icdgen("decode", "demo", "146", "2efb 01", "--icd", demo).out
         assert icdgen("decode", "146", "2efb 01", "--icd", demo).out == named
-        assert "has 3 bytes, 2 given" in icdgen("decode", "146", "2efb", "--icd", demo).err
+        assert (
+            "has 3 bytes, 2 given" in icdgen("decode", "146", "2efb", "--icd", demo).err
+        )
 
     def test_a_frame_in_words_of_decimal_digits_is_no_id(self, icdgen, demo):
-        assert "22 33 01" in icdgen("decode", "demo", "22", "33", "01", "--icd", demo).out
-        assert "1122 3344" not in icdgen("decode", "demo", "1122", "3344", "--icd", demo).err
-        assert "read as decimal numbers" in icdgen("decode", "demo", "146", "46", "251", "1", "--icd", demo).out
+        assert (
+            "22 33 01" in icdgen("decode", "demo", "22", "33", "01", "--icd", demo).out
+        )
+        assert (
+            "1122 3344"
+            not in icdgen("decode", "demo", "1122", "3344", "--icd", demo).err
+        )
+        assert (
+            "read as decimal numbers"
+            in icdgen("decode", "demo", "146", "46", "251", "1", "--icd", demo).out
+        )
 
-    def test_a_number_that_may_be_a_byte_and_is_no_id_is_said_to_be_taken_for_a_byte(self, icdgen, demo):
+    def test_a_number_that_may_be_a_byte_and_is_no_id_is_said_to_be_taken_for_a_byte(
+        self, icdgen, demo
+    ):
         out = icdgen("decode", "demo", "21", "fb", "01", "--icd", demo).out
-        assert "21 fb 01" in out and "demo has no message 21: it is taken for the first byte of the frame" in out
-        assert "taken for" not in icdgen("decode", "demo", "2e", "fb", "01", "--icd", demo).out
+        assert (
+            "21 fb 01" in out
+            and "demo has no message 21: it is taken for the first byte of the frame"
+            in out
+        )
+        assert (
+            "taken for"
+            not in icdgen("decode", "demo", "2e", "fb", "01", "--icd", demo).out
+        )
 
-    def test_a_file_needs_no_sign_and_holds_any_number_of_frames(self, icdgen, demo, tmp_path):
+    def test_a_file_needs_no_sign_and_holds_any_number_of_frames(
+        self, icdgen, demo, tmp_path
+    ):
         (tmp_path / "frames.txt").write_text("92 2efb01\n92 000000\n")
-        found = json.loads(icdgen("decode", "demo", "frames.txt", "--icd", demo, "--format", "json").out)
+        found = json.loads(
+            icdgen(
+                "decode", "demo", "frames.txt", "--icd", demo, "--format", "json"
+            ).out
+        )
         assert [one["fields"][0]["raw"] for one in found] == [-1234, 0]
         assert [one["direction"] for one in found] == ["telemetry", "telemetry"]
 
     def test_csv_has_a_line_a_field(self, icdgen, demo):
-        lines = icdgen("decode", "demo", "146", "2efb01", "--icd", demo, "--format", "csv").out.splitlines()
-        assert lines[0].startswith("frame,node,message,direction,id,field,raw,value,unit")
-        assert lines[1].startswith("0,demo,Estimated Roll,telemetry,,") and "-1234,-12.34,deg" in lines[1]
+        lines = icdgen(
+            "decode", "demo", "146", "2efb01", "--icd", demo, "--format", "csv"
+        ).out.splitlines()
+        assert lines[0].startswith(
+            "frame,node,message,direction,id,field,raw,value,unit"
+        )
+        assert (
+            lines[1].startswith("0,demo,Estimated Roll,telemetry,,")
+            and "-1234,-12.34,deg" in lines[1]
+        )
 
     def test_a_wrong_constant_is_an_exit_status(self, icdgen, demo):
         demo.write_text(DEMO.replace("messages:\n", CONSTANT))
@@ -189,7 +255,9 @@ class TestDecode:
             (["-", "demo"], "no node"),
         ],
     )
-    def test_what_is_no_frame_is_said(self, icdgen, demo, arguments, words, monkeypatch):
+    def test_what_is_no_frame_is_said(
+        self, icdgen, demo, arguments, words, monkeypatch
+    ):
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
         result = icdgen("decode", *arguments, "--icd", demo)
         assert result.status == 2 and result.err.startswith("icdgen: error:"), result
@@ -197,10 +265,18 @@ class TestDecode:
 
 class TestEncode:
     def test_physical_values_by_short_names(self, icdgen, demo):
-        assert "2e fb" in icdgen("encode", "demo", "Set Roll", "roll=-12.34", "--icd", demo).out
+        assert (
+            "2e fb"
+            in icdgen("encode", "demo", "Set Roll", "roll=-12.34", "--icd", demo).out
+        )
 
     def test_raw_values(self, icdgen, demo):
-        assert "2e fb" in icdgen("encode", "demo", "20", "Roll Angle=-1234", "--raw", "--icd", demo).out
+        assert (
+            "2e fb"
+            in icdgen(
+                "encode", "demo", "20", "Roll Angle=-1234", "--raw", "--icd", demo
+            ).out
+        )
 
     def test_what_does_not_fit_is_refused(self, icdgen, demo):
         result = icdgen("encode", "demo", "20", "roll=400", "--icd", demo)
@@ -221,12 +297,19 @@ class TestShow:
 
     @pytest.mark.parametrize("item", ["Set Roll", "146", "Mode"])
     def test_the_only_node_need_not_be_named(self, icdgen, demo, item):
-        assert icdgen("show", item, "--icd", demo).out == icdgen("show", "demo", item, "--icd", demo).out
+        assert (
+            icdgen("show", item, "--icd", demo).out
+            == icdgen("show", "demo", item, "--icd", demo).out
+        )
 
 
 def test_an_icd_with_findings_stops_every_command_with_1(icdgen, demo):
     demo.write_text(DEMO.replace("length: 3", "length: 2"))
-    for command in (["show"], ["decode", "demo", "146", "00"], ["encode", "demo", "20"]):
+    for command in (
+        ["show"],
+        ["decode", "demo", "146", "00"],
+        ["encode", "demo", "20"],
+    ):
         result = icdgen(*command, "--icd", demo)
         assert result.status == 1 and "ICD020" in result.err
 

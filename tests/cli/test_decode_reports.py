@@ -1,4 +1,6 @@
-"""`icdgen decode` leaves out nothing without a word: what it cannot decode is reported, and the exit status says so."""
+"""`icdgen decode` leaves out nothing without a word: what it cannot decode is reported,
+and the exit status says so.
+"""
 
 from __future__ import annotations
 
@@ -31,11 +33,15 @@ def train(tmp_path):
 def test_a_command_cut_short_is_an_error(icdgen, motor):
     told = icdgen("decode", "--icd", motor, "A5 5A 03 02 01 86")
     assert told.status == 2 and told.out == ""
-    assert "`Set Speed` (telecommand 3) is cut off: 6 bytes came, 7 are needed" in told.err
+    assert (
+        "`Set Speed` (telecommand 3) is cut off: 6 bytes came, 7 are needed" in told.err
+    )
 
 
 @pytest.mark.parametrize("form", ["text", "json", "csv"])
-def test_packets_that_cannot_be_decoded_are_reported_in_every_format_with_exit_status_1(icdgen, motor, form):
+def test_packets_that_cannot_be_decoded_are_reported_in_every_format_with_exit_status_1(
+    icdgen, motor, form
+):
     unknown, damaged = "a55a090009", POWER[:-2] + "ff"
     told = icdgen("decode", "--icd", motor, "--format", form, SPEED + unknown + damaged)
     assert told.status == 1
@@ -46,7 +52,9 @@ def test_packets_that_cannot_be_decoded_are_reported_in_every_format_with_exit_s
 
 
 def test_csv_reports_identifiers_that_no_message_has_and_wrong_lengths(icdgen, train):
-    told = icdgen("decode", "--icd", train, "--format", "csv", CANDUMP + "\n(1.0) can0 100#01")
+    told = icdgen(
+        "decode", "--icd", train, "--format", "csv", CANDUMP + "\n(1.0) can0 100#01"
+    )
     assert told.status == 1
     assert "no message of train has the CAN identifier 0x7FF (1 CAN packet)" in told.err
     assert "`Drive` (telemetry 256) has 8 bytes, 1 given" in told.err
@@ -54,19 +62,29 @@ def test_csv_reports_identifiers_that_no_message_has_and_wrong_lengths(icdgen, t
 
 def test_times_of_candump_are_in_every_format(icdgen, train):
     log = "\n".join(line for line in CANDUMP.splitlines() if "7FF" not in line)
-    assert "time 1600000000.250000\ntrain: Drive" in icdgen("decode", "--icd", train, log).out
+    assert (
+        "time 1600000000.250000\ntrain: Drive"
+        in icdgen("decode", "--icd", train, log).out
+    )
     found = json.loads(icdgen("decode", "--icd", train, "--format", "json", log).out)
     assert [one["time"] for one in found] == ["1600000000.250000", "1600000002.000000"]
-    rows = csv.DictReader(icdgen("decode", "--icd", train, "--format", "csv", log).out.splitlines())
+    rows = csv.DictReader(
+        icdgen("decode", "--icd", train, "--format", "csv", log).out.splitlines()
+    )
     assert [row["time"] for row in rows] == ["1600000000.250000", "1600000002.000000"]
 
 
 def test_ids_of_two_bytes_are_written_as_the_protocol_writes_them(icdgen):
     frame = "B5 62 01 61 04 00 01 00 00 00 67 A0"
     told = icdgen("decode", "--icd", LINKS / "ubx.yaml", frame)
-    assert "`End of Epoch` (telemetry 01 61) has a wrong checksum: it is 67 A0, expected 67 CB" in told.err
+    assert (
+        "`End of Epoch` (telemetry 01 61) has a wrong checksum: it is 67 A0, expected 67 CB"
+        in told.err
+    )
     told = icdgen("decode", "--icd", LINKS / "ubx.yaml", frame.replace("A0", "CB"))
     assert "receiver: End of Epoch (telemetry 01 61), 4 bytes" in told.out
     assert "envelope with id 01 61 removed" in told.out
-    named = icdgen("decode", "--icd", LINKS / "ubx.yaml", "receiver", "01 61", "01 00 00 00")
+    named = icdgen(
+        "decode", "--icd", LINKS / "ubx.yaml", "receiver", "01 61", "01 00 00 00"
+    )
     assert "receiver: End of Epoch (telemetry 01 61), 4 bytes" in named.out

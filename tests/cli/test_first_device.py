@@ -18,13 +18,20 @@ from icdgen.recognize import recognize
 from tests.conftest import ROOT
 
 
-def test_the_first_icd_is_clean_formatted_and_generates_every_language(icdgen, tmp_path):
+def test_the_first_icd_is_clean_formatted_and_generates_every_language(
+    icdgen, tmp_path
+):
     result = icdgen("init", "battery")
     assert result.status == 0 and "icd/battery.yaml written" in result.out
     checked = icdgen("check")
     assert checked.status == 0 and "no findings" in checked.out, checked.out
     assert icdgen("fmt", "--check").status == 0
-    assert icdgen(*"--lang c --lang python --lang rust --lang vectors --lang html".split()).status == 0
+    assert (
+        icdgen(
+            *"--lang c --lang python --lang rust --lang vectors --lang html".split()
+        ).status
+        == 0
+    )
     assert (tmp_path / "generated" / "c" / "battery.h").is_file()
 
 
@@ -46,7 +53,9 @@ def test_nothing_that_waits_to_be_filled_in_reaches_what_is_generated(icdgen, tm
         ("sim", "--node", "CubeACP"),
     ],
 )
-def test_a_shipped_node_is_said_to_be_none_of_the_project_and_how_it_is_reached(icdgen, arguments):
+def test_a_shipped_node_is_said_to_be_none_of_the_project_and_how_it_is_reached(
+    icdgen, arguments
+):
     icdgen("init", "battery")
     result = icdgen(*arguments)
     assert result.status == 2 and "icdgen.toml does not name it" in result.err, result
@@ -60,7 +69,11 @@ def test_a_shipped_node_is_said_to_be_none_of_the_project_and_how_it_is_reached(
 def test_the_first_device_answers_in_the_simulator(icdgen, tmp_path):
     icdgen("init", "battery")
     simulator = subprocess.Popen(
-        [sys.executable, "-m", "icdgen", "sim"], cwd=tmp_path, stdout=subprocess.PIPE, text=True, env=os.environ
+        [sys.executable, "-m", "icdgen", "sim"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=os.environ,
     )
     try:
         path = simulator.stdout.readline().split()[-1]
@@ -77,8 +90,16 @@ def test_its_frames_are_recognized(icdgen, tmp_path):
     icdgen("init", "battery")
     from icdgen.loading import load
 
-    (one,) = recognize(load([tmp_path / "icd"]).icd, "10 02 81 01 03 10 10 27 88 13 10 03")
-    assert [row.text for row in one.frame.rows] == ["Normal", "true", "true", "100", "5000"]
+    (one,) = recognize(
+        load([tmp_path / "icd"]).icd, "10 02 81 01 03 10 10 27 88 13 10 03"
+    )
+    assert [row.text for row in one.frame.rows] == [
+        "Normal",
+        "true",
+        "true",
+        "100",
+        "5000",
+    ]
 
 
 def test_nothing_that_is_there_is_touched(icdgen, tmp_path):
@@ -92,9 +113,12 @@ def test_nothing_that_is_there_is_touched(icdgen, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "proposal"), [("My Battery", "my_battery"), ("3cell", "cell"), ("../x", "x"), ("", "battery")]
+    ("name", "proposal"),
+    [("My Battery", "my_battery"), ("3cell", "cell"), ("../x", "x"), ("", "battery")],
 )
-def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(icdgen, tmp_path, name, proposal):
+def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(
+    icdgen, tmp_path, name, proposal
+):
     result = icdgen("init", name)
     assert result.status == 2 and f"icdgen init {proposal}`" in result.err
     assert list(tmp_path.iterdir()) == []
@@ -110,7 +134,11 @@ def test_a_name_that_no_node_can_have_is_answered_with_one_that_can(icdgen, tmp_
 )
 def test_a_mistyped_command_is_answered_with_the_one_meant(icdgen, word, answer):
     result = icdgen(word)
-    assert result.status == 2 and f"`{word}` is neither a command nor a file" in result.err and answer in result.err
+    assert (
+        result.status == 2
+        and f"`{word}` is neither a command nor a file" in result.err
+        and answer in result.err
+    )
 
 
 def test_a_folder_named_like_a_slip_is_still_an_icd(icdgen, tmp_path):
@@ -155,16 +183,24 @@ messages:
 
 
 @pytest.mark.parametrize("origin", ["cubeacp", "bootloader", "common"])
-def test_a_device_in_the_style_of_another_is_clean_and_formatted(icdgen, tmp_path, origin):
+def test_a_device_in_the_style_of_another_is_clean_and_formatted(
+    icdgen, tmp_path, origin
+):
     result = icdgen("init", "pump", "--from", origin)
     assert result.status == 0, result.err
     checked = icdgen("check")
     assert checked.status == 0 and "no findings" in checked.out, checked.out
     assert icdgen("fmt", "--check").status == 0
     text = (tmp_path / "icd" / "pump.yaml").read_text()
-    assert f"# how messages travel, as {origin} has it" in text and "# `at`: offset in bits" in text
+    assert (
+        f"# how messages travel, as {origin} has it" in text
+        and "# `at`: offset in bits" in text
+    )
     assert "escape: 0x1F" in text and "CAN" not in text.partition("messages:")[2]
-    assert "table:" not in text.partition("protocol:")[2] and "No time is given" not in text
+    assert (
+        "table:" not in text.partition("protocol:")[2]
+        and "No time is given" not in text
+    )
     assert icdgen(*"--lang c --lang python --lang rust".split()).status == 0
 
 
@@ -175,7 +211,13 @@ def test_orders_ids_units_and_names_are_those_of_the_style(icdgen, tmp_path):
     shown = json.loads(icdgen("show", "--format", "json").out)["nodes"][0]
     assert (shown["byte_order"], shown["bit_order"]) == ("big", "msb0")
     ids = {m["name"]: m.get("id") for m in shown["messages"]}
-    assert ids == {"Identification": 32, "Status": 33, "Set Mode": 10, "Reset": 11, "Limits": None}
+    assert ids == {
+        "Identification": 32,
+        "Status": 33,
+        "Set Mode": 10,
+        "Reset": 11,
+        "Limits": None,
+    }
     text = (tmp_path / "icd" / "pump.yaml").read_text()
     assert "0x1F" in text and "clicks" in text
     assert "boot" not in text
@@ -186,7 +228,9 @@ def test_one_of_your_own_is_a_style_and_speaks_the_same_way(icdgen, tmp_path):
     assert icdgen("init", "pump", "--from", "battery").status == 0
     assert "no findings" in icdgen("check").out
     assert icdgen("decode", "pump", "10 02 81 01 03 10 10 27 88 13 10 03").status == 0
-    assert icdgen("init", "valve", "--from", "cubeacp").status == 0  # those shipped are there, too
+    assert (
+        icdgen("init", "valve", "--from", "cubeacp").status == 0
+    )  # those shipped are there, too
 
 
 @pytest.mark.parametrize(
@@ -197,7 +241,9 @@ def test_one_of_your_own_is_a_style_and_speaks_the_same_way(icdgen, tmp_path):
         ("", "there is no node"),
     ],
 )
-def test_a_style_that_there_is_not_is_said_and_nothing_is_written(icdgen, tmp_path, origin, answer):
+def test_a_style_that_there_is_not_is_said_and_nothing_is_written(
+    icdgen, tmp_path, origin, answer
+):
     result = icdgen("init", "pump", "--from", origin)
     assert result.status == 2 and answer in result.err
     assert list(tmp_path.iterdir()) == []
@@ -208,10 +254,17 @@ def test_who_forgets_to_name_an_icd_is_told_whose_nodes_there_are(icdgen, tmp_pa
     (tmp_path / "icd" / "battery.yaml").write_text(BIG)
     result = icdgen("show", "battery")
     assert result.status == 2
-    assert "cubewheel, which come with icdgen; name yours with --icd, or in icdgen.toml" in result.err
+    assert (
+        "cubewheel, which come with icdgen; name yours with --icd, or in icdgen.toml"
+        in result.err
+    )
 
 
-@pytest.mark.parametrize("file", sorted((ROOT / "examples" / "links").glob("*.yaml")), ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    "file",
+    sorted((ROOT / "examples" / "links").glob("*.yaml")),
+    ids=lambda file: file.stem,
+)
 def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path, file):
     origin = load([file]).icd.nodes[0]
     result = icdgen("init", "pump", "--from", origin.name, "--icd", file)
@@ -219,19 +272,27 @@ def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path
     checked = icdgen("check")
     assert checked.status == 0 and "no findings" in checked.out, checked.out
     pump = load([tmp_path / "icd" / "pump.yaml"]).icd.nodes[0]
-    assert pump.protocol["stream"].keys() == origin.protocol["stream"].keys() - {"replies"}
+    assert pump.protocol["stream"].keys() == origin.protocol["stream"].keys() - {
+        "replies"
+    }
     assert pump.protocol["stream"]["header"] == origin.protocol["stream"]["header"]
 
 
-def test_editors_find_the_schema_that_is_written_beside_the_first_device(icdgen, tmp_path):
+def test_editors_find_the_schema_that_is_written_beside_the_first_device(
+    icdgen, tmp_path
+):
     icdgen("init", "battery")
     schema = icdgen("schema").out
     for name in ("icd/battery.yaml", "icd/errata/battery.yaml"):
         path = tmp_path / name
-        named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", path.read_text())[1]
+        named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", path.read_text())[
+            1
+        ]
         assert (path.parent / named).read_text() == schema
         jsonschema.validate(yaml.safe_load(path.read_text()), json.loads(schema))
-    wrong = yaml.safe_load((tmp_path / "icd" / "battery.yaml").read_text()) | {"mesages": []}
+    wrong = yaml.safe_load((tmp_path / "icd" / "battery.yaml").read_text()) | {
+        "mesages": []
+    }
     assert not jsonschema.Draft202012Validator(json.loads(schema)).is_valid(wrong)
 
 
@@ -239,14 +300,31 @@ def test_the_copy_of_the_schema_is_kept_by_init_and_renewed_by_schema(icdgen, tm
     icdgen("init", "battery")
     copy = tmp_path / "icd" / "icdgen.schema.json"
     copy.write_text("{}")
-    assert "icdgen.schema.json" not in icdgen("init", "pump").out and copy.read_text() == "{}"
-    assert icdgen("schema", "--out", "icd/icdgen.schema.json").out == "icd/icdgen.schema.json written\n"
+    assert (
+        "icdgen.schema.json" not in icdgen("init", "pump").out
+        and copy.read_text() == "{}"
+    )
+    assert (
+        icdgen("schema", "--out", "icd/icdgen.schema.json").out
+        == "icd/icdgen.schema.json written\n"
+    )
     assert copy.read_text() == icdgen("schema").out
 
 
-@pytest.mark.parametrize(("name", "package"), [("battery", "battery"), ("match", "match_icd"), ("json", "json_icd")])
-def test_the_packages_of_a_first_device_are_called_like_it(icdgen, tmp_path, name, package):
+@pytest.mark.parametrize(
+    ("name", "package"),
+    [("battery", "battery"), ("match", "match_icd"), ("json", "json_icd")],
+)
+def test_the_packages_of_a_first_device_are_called_like_it(
+    icdgen, tmp_path, name, package
+):
     icdgen("init", name)
-    assert icdgen("check").err == "" or name == "match"  # no Rust module can have that name
+    assert (
+        icdgen("check").err == "" or name == "match"
+    )  # no Rust module can have that name
     config = tomllib.loads((tmp_path / "icdgen.toml").read_text())
-    assert (config["name"], config["python"]["package"], config["rust"]["crate"]) == (name, package, package)
+    assert (config["name"], config["python"]["package"], config["rust"]["crate"]) == (
+        name,
+        package,
+        package,
+    )

@@ -14,11 +14,15 @@ from tests.conftest import DEMO, ROOT
 
 def tree(folder: Path) -> dict[str, tuple[bytes, int]]:
     return {
-        str(p.relative_to(folder)): (p.read_bytes(), p.stat().st_mtime_ns) for p in folder.rglob("*") if p.is_file()
+        str(p.relative_to(folder)): (p.read_bytes(), p.stat().st_mtime_ns)
+        for p in folder.rglob("*")
+        if p.is_file()
     }
 
 
-def test_one_language_goes_straight_into_the_folder_several_into_one_each(icdgen, demo, tmp_path):
+def test_one_language_goes_straight_into_the_folder_several_into_one_each(
+    icdgen, demo, tmp_path
+):
     assert icdgen("--lang", "c", "--out", "one", demo).status == 0
     assert (tmp_path / "one" / "demo.h").is_file()
     assert icdgen("--lang", "c", "--lang", "python", "--out", "two", demo).status == 0
@@ -39,7 +43,9 @@ def test_the_second_run_touches_no_file_and_says_so(icdgen, demo, tmp_path):
     assert tree(tmp_path / "out") == before
 
 
-def test_deleting_one_field_changes_only_the_files_that_mention_it(icdgen, demo, tmp_path):
+def test_deleting_one_field_changes_only_the_files_that_mention_it(
+    icdgen, demo, tmp_path
+):
     icdgen("--lang", "c", "--out", "out", demo)
     before = tree(tmp_path / "out")
     line = "      - {at: 16, bits: 4,  name: Mode,       type: enum, enum: Mode}\n"
@@ -57,7 +63,11 @@ def test_an_icd_with_a_finding_generates_nothing(icdgen, demo, tmp_path):
     demo.write_text(DEMO.replace("length: 3", "length: 2"))
     result = icdgen("--lang", "c", "--out", "out", demo)
     assert result.status == 1
-    assert "ICD020" in result.err and f"{demo.relative_to(tmp_path)}:" in result.err.replace(str(tmp_path) + "/", "")
+    assert (
+        "ICD020" in result.err
+        and f"{demo.relative_to(tmp_path)}:"
+        in result.err.replace(str(tmp_path) + "/", "")
+    )
     assert not (tmp_path / "out").exists()
 
 
@@ -87,7 +97,9 @@ def test_a_dependency_file_names_outputs_and_all_inputs(icdgen, demo, tmp_path):
 
 
 def test_icdgen_toml_says_what_to_generate(icdgen, demo, tmp_path):
-    (tmp_path / "icdgen.toml").write_text('icds = ["icd/demo.yaml"]\nlang = ["c"]\nout = "gen"\n')
+    (tmp_path / "icdgen.toml").write_text(
+        'icds = ["icd/demo.yaml"]\nlang = ["c"]\nout = "gen"\n'
+    )
     assert icdgen().status == 0
     assert (tmp_path / "gen" / "c" / "demo.h").is_file()
 
@@ -108,7 +120,9 @@ def test_without_icds_the_shipped_ones_are_meant(icdgen, tmp_path):
         (["--lang", "c", "--templates", "nowhere"], "there is no folder nowhere"),
     ],
 )
-def test_misuse_is_status_2_with_a_remedy_and_leaves_nothing(icdgen, tmp_path, arguments, words):
+def test_misuse_is_status_2_with_a_remedy_and_leaves_nothing(
+    icdgen, tmp_path, arguments, words
+):
     result = icdgen(*arguments)
     assert result.status == 2
     assert words in result.err
@@ -122,9 +136,15 @@ def test_a_missing_icd_is_a_finding(icdgen):
     assert "|" not in result.err  # there is no line to show
 
 
-@pytest.mark.parametrize("arguments", [("check",), ("--lang", "c"), ("show",), ("fmt",)])
-def test_a_missing_icd_of_the_configuration_is_found_where_it_is_named(icdgen, tmp_path, arguments):
-    (tmp_path / "icdgen.toml").write_text('out = "gen"\nicds = [\n    "./icd/nowhere.yaml",\n]\n')
+@pytest.mark.parametrize(
+    "arguments", [("check",), ("--lang", "c"), ("show",), ("fmt",)]
+)
+def test_a_missing_icd_of_the_configuration_is_found_where_it_is_named(
+    icdgen, tmp_path, arguments
+):
+    (tmp_path / "icdgen.toml").write_text(
+        'out = "gen"\nicds = [\n    "./icd/nowhere.yaml",\n]\n'
+    )
     result = icdgen(*arguments)
     assert result.status == 1
     assert (result.out + result.err).splitlines()[:5] == [
@@ -136,7 +156,9 @@ def test_a_missing_icd_of_the_configuration_is_found_where_it_is_named(icdgen, t
     ]
 
 
-def test_a_missing_icd_that_is_asked_for_is_not_laid_upon_the_configuration(icdgen, demo, tmp_path):
+def test_a_missing_icd_that_is_asked_for_is_not_laid_upon_the_configuration(
+    icdgen, demo, tmp_path
+):
     (tmp_path / "icdgen.toml").write_text('icds = ["icd/demo.yaml"]\n')
     assert "nowhere.yaml:1:1" in icdgen("check", "nowhere.yaml").out
 
@@ -145,7 +167,9 @@ def test_single_templates_can_be_replaced(icdgen, demo, tmp_path):
     own = tmp_path / "mine" / "c"
     own.mkdir(parents=True)
     (own / "node.h.j2").write_text("/* our own node header */\n")
-    assert icdgen("--lang", "c", "--out", "out", "--templates", "mine", demo).status == 0
+    assert (
+        icdgen("--lang", "c", "--out", "out", "--templates", "mine", demo).status == 0
+    )
     assert (tmp_path / "out" / "demo.h").read_text() == "/* our own node header */\n"
     assert (tmp_path / "out" / "icdgen.h").is_file()
 
@@ -159,11 +183,15 @@ def test_single_templates_can_be_replaced(icdgen, demo, tmp_path):
         ("rust", "src/support/scale.rs", "src/support/scale.rs"),
     ],
 )
-def test_single_files_of_the_runtime_can_be_replaced(icdgen, demo, tmp_path, lang, file, out):
+def test_single_files_of_the_runtime_can_be_replaced(
+    icdgen, demo, tmp_path, lang, file, out
+):
     own = tmp_path / "mine" / lang / file
     own.parent.mkdir(parents=True)
     own.write_text("our own code\n")
-    assert icdgen("--lang", lang, "--out", "out", "--templates", "mine", demo).status == 0
+    assert (
+        icdgen("--lang", lang, "--out", "out", "--templates", "mine", demo).status == 0
+    )
     text = (tmp_path / "out" / out).read_text()
     assert "Generated by icdgen" in text.splitlines()[0] and "our own code\n" in text
 
@@ -171,7 +199,11 @@ def test_single_files_of_the_runtime_can_be_replaced(icdgen, demo, tmp_path, lan
 def test_a_replaced_file_of_the_runtime_must_be_text(icdgen, demo, tmp_path):
     (tmp_path / "icdgen.h").write_bytes(b"\xff")
     result = icdgen("--lang", "c", "--out", "out", "--templates", ".", demo)
-    assert result.status == 2 and "icdgen.h: 'utf-8' codec" in result.err and "correct the file" in result.err
+    assert (
+        result.status == 2
+        and "icdgen.h: 'utf-8' codec" in result.err
+        and "correct the file" in result.err
+    )
     assert not (tmp_path / "out").exists()
 
 
@@ -179,7 +211,10 @@ def test_a_replaced_file_of_the_runtime_must_be_text(icdgen, demo, tmp_path):
     ("text", "words"),
     [
         ("line\n{% if %}\n", "node.h.j2:2: Expected an expression"),
-        ("line\n{{ nothing_of_that_name }}\n", "node.h.j2:2: 'nothing_of_that_name' is undefined"),
+        (
+            "line\n{{ nothing_of_that_name }}\n",
+            "node.h.j2:2: 'nothing_of_that_name' is undefined",
+        ),
     ],
 )
 def test_a_bad_template_is_named_with_its_line(icdgen, demo, tmp_path, text, words):
@@ -212,11 +247,29 @@ def test_a_backend_of_another_package_is_found_by_its_entry_point(demo, tmp_path
     info = site / "icd_list-1.0.dist-info"
     info.mkdir(parents=True)
     (site / "icd_list.py").write_text(PLUGIN)
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: icd-list\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[icdgen.backends]\nlist = icd_list:ListBackend\n")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(site), str(ROOT / "codegen")])}
-    command = [sys.executable, "-m", "icdgen", "--lang", "list", "--out", "out", str(demo)]
-    subprocess.run(command, cwd=tmp_path, env=environment, check=True, capture_output=True)
+    (info / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: icd-list\nVersion: 1.0\n"
+    )
+    (info / "entry_points.txt").write_text(
+        "[icdgen.backends]\nlist = icd_list:ListBackend\n"
+    )
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(site), str(ROOT / "codegen")]),
+    }
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        "--lang",
+        "list",
+        "--out",
+        "out",
+        str(demo),
+    ]
+    subprocess.run(
+        command, cwd=tmp_path, env=environment, check=True, capture_output=True
+    )
     assert (tmp_path / "out" / "demo.txt").read_text() == "Estimated Roll\nSet Roll\n"
 
 
@@ -225,8 +278,22 @@ class TestStart:
 
     def run(self, demo, tmp_path, *more):
         environment = {**os.environ, "PYTHONPATH": str(ROOT / "codegen")}
-        command = [sys.executable, "-X", "importtime", "-m", "icdgen", "--lang", "c", "--out", "out", *more, str(demo)]
-        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+        command = [
+            sys.executable,
+            "-X",
+            "importtime",
+            "-m",
+            "icdgen",
+            "--lang",
+            "c",
+            "--out",
+            "out",
+            *more,
+            str(demo),
+        ]
+        return subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
 
     def test_a_run_with_nothing_to_do_imports_nothing_heavy(self, demo, tmp_path):
         assert self.run(demo, tmp_path).returncode == 0
@@ -236,7 +303,9 @@ class TestStart:
             line.rsplit("|", 1)[-1].strip() for line in again.stderr.splitlines()
         }
 
-    @pytest.mark.parametrize("what", ["icd", "output", "overlay", "missing output", "stale output"])
+    @pytest.mark.parametrize(
+        "what", ["icd", "output", "overlay", "missing output", "stale output"]
+    )
     def test_whatever_changes_it_runs_again(self, demo, tmp_path, what):
         self.run(demo, tmp_path)
         out = tmp_path / "out"

@@ -29,21 +29,32 @@ def disk(tmp_path):
 @pytest.mark.parametrize("language", ["c", "python", "rust", "html"])
 def test_every_language_and_the_site_say_it(icdgen, tmp_path, disk, language):
     assert icdgen("--lang", language, "--out", "out", "disk.yaml").status == 0
-    texts = [path.read_text() for path in (tmp_path / "out").rglob("*") if path.suffix in (".h", ".py", ".rs", ".html")]
+    texts = [
+        path.read_text()
+        for path in (tmp_path / "out").rglob("*")
+        if path.suffix in (".h", ".py", ".rs", ".html")
+    ]
     assert any(WORDS in " ".join(text.split()) for text in texts)
 
 
 def test_show_says_it_and_hands_it_on_to_programs_and_the_diff(icdgen, tmp_path, disk):
-    assert f"Dangerous: {WORDS}" in icdgen("show", "--icd", "disk.yaml", "disk", "Erase").out
+    assert (
+        f"Dangerous: {WORDS}"
+        in icdgen("show", "--icd", "disk.yaml", "disk", "Erase").out
+    )
     shown = icdgen("show", "--icd", "disk.yaml", "--format", "json").out
     assert json.loads(shown)["nodes"][0]["messages"][0]["hazard"] == WORDS
     (tmp_path / "shown.json").write_text(shown)
     assert "DIF" not in icdgen("diff", "shown.json", "disk.yaml").out
     (tmp_path / "disk.yaml").write_text(DEVICE.replace(f"    hazard: {WORDS}\n", ""))
-    assert "the hazard of `Erase` is gone" in icdgen("diff", "shown.json", "disk.yaml").out
+    assert (
+        "the hazard of `Erase` is gone" in icdgen("diff", "shown.json", "disk.yaml").out
+    )
 
 
 def test_the_second_run_knows_it_too(icdgen, disk):
     """The model that is remembered holds it."""
     for _ in range(2):
-        assert icdgen("show", "--icd", "disk.yaml", "disk", "Erase").out.count(WORDS) == 1
+        assert (
+            icdgen("show", "--icd", "disk.yaml", "disk", "Erase").out.count(WORDS) == 1
+        )

@@ -1,4 +1,6 @@
-"""The help: `icdgen` alone prints it, commands are in groups, and each has an example that its options accept."""
+"""The help: `icdgen` alone prints it, commands are in groups, and each has an example
+that its options accept.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +14,13 @@ from icdgen.cli import icdgen as group
 COMMANDS = group.list_commands(click.Context(group))
 
 
-def test_icdgen_alone_prints_the_help_and_fails_where_nothing_is_to_be_generated(icdgen):
+def test_icdgen_alone_prints_the_help_and_fails_where_nothing_is_to_be_generated(
+    icdgen,
+):
     result = icdgen()
-    assert result.status == 2 and result.out == icdgen("--help").out and result.err == ""
+    assert (
+        result.status == 2 and result.out == icdgen("--help").out and result.err == ""
+    )
 
 
 def test_icdgen_alone_generates_what_the_configuration_names(icdgen, demo, tmp_path):
@@ -24,7 +30,10 @@ def test_icdgen_alone_generates_what_the_configuration_names(icdgen, demo, tmp_p
 
 def test_commands_are_grouped_and_each_is_in_one_group(icdgen):
     text = icdgen("--help").out
-    sections = [text.index(f"\n{title}:\n") for title in ("Describe a device", "Generate", "Talk to a device")]
+    sections = [
+        text.index(f"\n{title}:\n")
+        for title in ("Describe a device", "Generate", "Talk to a device")
+    ]
     assert sections == sorted(sections)
     assert [name for name in COMMANDS if text.count(f"\n  {name} ") != 1] == []
 

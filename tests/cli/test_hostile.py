@@ -1,4 +1,6 @@
-"""What an impatient or a hostile user does to the command line ends in words and a status, never in a traceback."""
+"""What an impatient or a hostile user does to the command line ends in words and a
+status, never in a traceback.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ from tests.conftest import DEMO, ROOT
 
 @pytest.fixture
 def shell(tmp_path):
-    """``shell("icdgen check x.yaml >/dev/full")``: status, output and errors, run by bash in ``tmp_path``."""
+    """``shell("icdgen check x.yaml >/dev/full")``: status, output and errors, run by
+    bash in ``tmp_path``.
+    """
     (tmp_path / "bin").mkdir()
     command = tmp_path / "bin" / "icdgen"
     command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m icdgen "$@"\n')
@@ -22,8 +26,12 @@ def shell(tmp_path):
 
     def run(line: str, **more: str) -> subprocess.CompletedProcess:
         path = os.pathsep.join([str(command.parent), os.environ["PATH"]])
-        environment = os.environ | {"PYTHONPATH": str(ROOT / "codegen"), "PATH": path} | more
-        environment.pop("PYTHONUNBUFFERED", None)  # a broken output shows later, and more often, with a buffer
+        environment = (
+            os.environ | {"PYTHONPATH": str(ROOT / "codegen"), "PATH": path} | more
+        )
+        environment.pop(
+            "PYTHONUNBUFFERED", None
+        )  # a broken output shows later, and more often, with a buffer
         result = subprocess.run(
             ["bash", "-c", line],
             cwd=tmp_path,
@@ -33,71 +41,115 @@ def shell(tmp_path):
             errors="replace",
             timeout=60,
         )
-        assert "Traceback" not in result.stderr and "Exception ignored" not in result.stderr
+        assert (
+            "Traceback" not in result.stderr
+            and "Exception ignored" not in result.stderr
+        )
         return result
 
     return run
 
 
 class TestInput:
-    @pytest.mark.parametrize("command", [["check"], ["--lang", "c"], ["fmt"], ["show", "--icd"]])
+    @pytest.mark.parametrize(
+        "command", [["check"], ["--lang", "c"], ["fmt"], ["show", "--icd"]]
+    )
     def test_what_cannot_be_read_is_a_finding(self, icdgen, tmp_path, command):
         (tmp_path / "loop").symlink_to("loop")
         for name in ("nowhere.yaml", "loop", "x" * 5000):
             result = icdgen(*command, name)
-            assert result.status == 1 and "error[ICD001]: cannot read the file" in result.out + result.err
+            assert (
+                result.status == 1
+                and "error[ICD001]: cannot read the file" in result.out + result.err
+            )
 
     @pytest.mark.parametrize("command", [["check"], ["fmt"]])
     def test_a_device_without_end_ends(self, icdgen, command):
         result = icdgen(*command, "/dev/zero")
-        assert result.status == 1 and "more than the 4,000,000 bytes" in result.out + result.err
+        assert (
+            result.status == 1
+            and "more than the 4,000,000 bytes" in result.out + result.err
+        )
 
     def test_a_frame_without_end_ends(self, icdgen, demo):
         result = icdgen("decode", "demo", "146", "@/dev/zero", "--icd", demo)
         assert result.status == 2 and "holds more than 1,000,000 bytes" in result.err
 
-    @pytest.mark.parametrize("command", [["check"], ["fmt"], ["--lang", "c", "--out", "out"]])
+    @pytest.mark.parametrize(
+        "command", [["check"], ["fmt"], ["--lang", "c", "--out", "out"]]
+    )
     def test_a_folder_without_icds_is_a_mistake(self, icdgen, tmp_path, command):
         (tmp_path / "empty").mkdir()
         result = icdgen(*command, "empty")
         text = result.out + result.err
-        assert result.status in (1, 2) and ("no file *.yaml" in text or "empty has no ICD" in text)
+        assert result.status in (1, 2) and (
+            "no file *.yaml" in text or "empty has no ICD" in text
+        )
 
-    def test_a_folder_without_icds_does_not_empty_the_output(self, icdgen, demo, tmp_path):
+    def test_a_folder_without_icds_does_not_empty_the_output(
+        self, icdgen, demo, tmp_path
+    ):
         icdgen("--lang", "c", "--out", "out", demo)
         (tmp_path / "empty").mkdir()
         assert icdgen("--lang", "c", "--out", "out", "empty").status == 1
         assert (tmp_path / "out" / "demo.h").is_file()
 
     @pytest.mark.parametrize(
-        "arguments", [["check", ""], ["--lang", "c", ""], ["--lang", "c", "--out", ""], ["show", "--icd", ""]]
+        "arguments",
+        [
+            ["check", ""],
+            ["--lang", "c", ""],
+            ["--lang", "c", "--out", ""],
+            ["show", "--icd", ""],
+        ],
     )
     def test_an_empty_path_is_not_the_current_folder(self, icdgen, tmp_path, arguments):
         result = icdgen(*arguments)
-        assert result.status == 2 and "the path is empty" in result.err and "--help" in result.err
+        assert (
+            result.status == 2
+            and "the path is empty" in result.err
+            and "--help" in result.err
+        )
         assert list(tmp_path.iterdir()) == []
 
     def test_an_icd_through_a_pipe_is_read_once_and_never_remembered(self, shell, demo):
         line = f"cat {demo} | icdgen --lang c --out out /dev/stdin"
         assert shell(line).returncode == 0
-        other = f"sed 's/Roll Angle/Pitch/' {demo} | icdgen --lang c --out out /dev/stdin"
+        other = (
+            f"sed 's/Roll Angle/Pitch/' {demo} | icdgen --lang c --out out /dev/stdin"
+        )
         assert shell(other).returncode == 0
         assert shell("grep -ri pitch out").stdout
 
     def test_a_number_of_five_thousand_digits_is_no_message(self, icdgen, demo):
         result = icdgen("decode", "demo", "9" * 5000, "00", "--icd", demo)
-        assert result.status == 2 and "no message of demo has the id" in result.err and len(result.err) < 2000
+        assert (
+            result.status == 2
+            and "no message of demo has the id" in result.err
+            and len(result.err) < 2000
+        )
 
     def test_a_value_that_is_wrong_comes_with_a_remedy(self, icdgen, demo):
-        assert "help: `icdgen show demo 'Set Roll'`" in icdgen("encode", "demo", "20", "roll=nan", "--icd", demo).err
-        assert "help: `icdgen show demo 'Estimated Roll'`" in icdgen("decode", "demo", "146", "00", "--icd", demo).err
+        assert (
+            "help: `icdgen show demo 'Set Roll'`"
+            in icdgen("encode", "demo", "20", "roll=nan", "--icd", demo).err
+        )
+        assert (
+            "help: `icdgen show demo 'Estimated Roll'`"
+            in icdgen("decode", "demo", "146", "00", "--icd", demo).err
+        )
 
 
 class TestOutput:
-    @pytest.mark.parametrize("command", ["check", "show", "--lang c", "--help", "--version", "rule"])
+    @pytest.mark.parametrize(
+        "command", ["check", "show", "--lang c", "--help", "--version", "rule"]
+    )
     def test_a_full_disk_behind_the_output(self, shell, command):
         result = shell(f"icdgen {command} >/dev/full")
-        assert result.returncode == 2 and "the output cannot be written: No space left on device" in result.stderr
+        assert (
+            result.returncode == 2
+            and "the output cannot be written: No space left on device" in result.stderr
+        )
 
     def test_a_full_disk_when_there_is_nothing_to_do(self, shell, demo):
         shell(f"icdgen --lang c {demo}")
@@ -114,14 +166,25 @@ class TestOutput:
         assert shell("icdgen check >&-").returncode == 0
         assert shell("icdgen show cubeacp 146 >&-").returncode == 0
         assert shell("icdgen check nowhere.yaml >&- 2>&-").returncode == 1
-        assert "standard input is closed" in shell("icdgen decode cubeacp 146 - <&-").stderr
+        assert (
+            "standard input is closed"
+            in shell("icdgen decode cubeacp 146 - <&-").stderr
+        )
 
     def test_quiet_is_quiet_when_there_is_nothing_to_do_too(self, shell, demo):
-        assert [shell(f"icdgen -q --lang c {demo}").stdout for _ in range(2)] == ["", ""]
+        assert [shell(f"icdgen -q --lang c {demo}").stdout for _ in range(2)] == [
+            "",
+            "",
+        ]
 
     def test_names_cannot_act_upon_a_terminal(self, icdgen, demo, tmp_path):
         encode = ["encode", "demo", "20", "\x9bx=1", "--icd", demo]
-        for arguments in (["rule", "\x1b[31m"], ["show", "\x1b[2J"], ["--lang", "\u202ec"], encode):
+        for arguments in (
+            ["rule", "\x1b[31m"],
+            ["show", "\x1b[2J"],
+            ["--lang", "\u202ec"],
+            encode,
+        ):
             err = icdgen(*arguments).err
             assert not set(err) & set("\x1b\u202e\x9b")
             assert "\\x1b" in err or "\\u202e" in err or "\\x9b" in err
@@ -134,7 +197,9 @@ class TestOutput:
         result = shell(line, PYTHONIOENCODING="ascii")
         assert result.returncode == 0 and "Gr\\u00f6\\u00dfe" in result.stdout
         for encoding in ("ascii", "latin-1", "cp1252"):
-            result = shell(f"icdgen show demo 146 --icd {demo}", PYTHONIOENCODING=encoding)
+            result = shell(
+                f"icdgen show demo 146 --icd {demo}", PYTHONIOENCODING=encoding
+            )
             assert result.returncode == 0 and "deg" in result.stdout
 
     def test_a_file_name_that_is_no_text(self, shell):
@@ -151,7 +216,10 @@ class TestSurroundings:
     def test_a_current_folder_that_is_gone(self, shell):
         for command in ("check", "--lang c", "show"):
             result = shell(f"mkdir gone; cd gone; rmdir ../gone; icdgen {command}")
-            assert result.returncode == 2 and "the current folder is no longer there" in result.stderr
+            assert (
+                result.returncode == 2
+                and "the current folder is no longer there" in result.stderr
+            )
 
     def test_a_home_that_is_not_there_is_not_made(self, shell, demo, tmp_path):
         line = f"unset ICDGEN_CACHE XDG_CACHE_HOME; HOME={tmp_path}/nobody icdgen --lang c --out out {demo}"
@@ -160,26 +228,38 @@ class TestSurroundings:
 
     @pytest.mark.parametrize("place", ["/dev/null", "demo.h"])
     def test_a_cache_that_cannot_be_used_is_no_cache(self, shell, demo, place):
-        result = shell(f"touch demo.h; ICDGEN_CACHE={place} icdgen --lang c --out out {demo}")
+        result = shell(
+            f"touch demo.h; ICDGEN_CACHE={place} icdgen --lang c --out out {demo}"
+        )
         assert result.returncode == 0 and "files written" in result.stdout
 
 
 class TestFilesOfOthers:
-    def test_a_dependency_file_replaces_no_device_no_input_and_no_output(self, icdgen, demo, tmp_path):
+    def test_a_dependency_file_replaces_no_device_no_input_and_no_output(
+        self, icdgen, demo, tmp_path
+    ):
         icdgen("--lang", "c", "--out", "out", demo)
         fifo = tmp_path / "fifo"
         os.mkfifo(fifo)
         for target in (fifo, demo, tmp_path / "out" / "demo.h", tmp_path / "out"):
             before = target.lstat()
-            assert icdgen("--lang", "c", "--out", "out", "--depfile", target, demo).status == 2
+            assert (
+                icdgen("--lang", "c", "--out", "out", "--depfile", target, demo).status
+                == 2
+            )
             assert target.lstat().st_ino == before.st_ino
         assert demo.read_text() == DEMO
 
-    def test_what_is_no_file_in_the_place_of_an_output_is_left(self, icdgen, demo, tmp_path):
+    def test_what_is_no_file_in_the_place_of_an_output_is_left(
+        self, icdgen, demo, tmp_path
+    ):
         (tmp_path / "out").mkdir()
         os.mkfifo(tmp_path / "out" / "demo.h")
         result = icdgen("--lang", "c", "--out", "out", demo)
-        assert result.status == 2 and "demo.h is in the way: it is not a file" in result.err
+        assert (
+            result.status == 2
+            and "demo.h is in the way: it is not a file" in result.err
+        )
 
     def test_fmt_keeps_the_mode_and_follows_links(self, icdgen, demo, tmp_path):
         demo.write_text(DEMO.replace("bits: 4,  name", "bits: 4, name"))
@@ -200,12 +280,23 @@ class TestConfig:
 
 
 @pytest.mark.parametrize(
-    "text", ["{{ 1 // 0 }}", '{% include "node.h.j2" %}', '{{ "\\ud800" }}', "{{ ''.join(3) }}", b"\xff"]
+    "text",
+    [
+        "{{ 1 // 0 }}",
+        '{% include "node.h.j2" %}',
+        '{{ "\\ud800" }}',
+        "{{ ''.join(3) }}",
+        b"\xff",
+    ],
 )
 def test_whatever_a_template_does_wrong_is_said(icdgen, demo, tmp_path, text):
     own = tmp_path / "mine"
     own.mkdir()
     (own / "node.h.j2").write_bytes(text if isinstance(text, bytes) else text.encode())
     result = icdgen("--lang", "c", "--out", "out", "--templates", "mine", demo)
-    assert result.status == 2 and re.search(r"(node|demo)\.h", result.err) and "correct the template" in result.err
+    assert (
+        result.status == 2
+        and re.search(r"(node|demo)\.h", result.err)
+        and "correct the template" in result.err
+    )
     assert not (tmp_path / "out").exists()

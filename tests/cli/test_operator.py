@@ -1,4 +1,6 @@
-"""Talking to a device: what is dangerous is asked about, a node that is alone needs no name, a lost line comes back."""
+"""Talking to a device: what is dangerous is asked about, a node that is alone needs no
+name, a lost line comes back.
+"""
 
 from __future__ import annotations
 
@@ -29,11 +31,19 @@ def place():
 FORMAT = ("send", "cubeacp", "Format SD card")
 
 
-def test_what_is_dangerous_is_shown_with_its_magic_number_and_sent_after_a_yes(icdgen, place, monkeypatch):
+def test_what_is_dangerous_is_shown_with_its_magic_number_and_sent_after_a_yes(
+    icdgen, place, monkeypatch
+):
     monkeypatch.setattr(sys, "stdin", Keyboard("y\n"))
     result = icdgen(*FORMAT, "--port", place)
-    assert result.status == 0 and "Format SD card with Magic Number 90 (0x5A): acknowledged" in result.out
-    assert "is dangerous: All files on the SD card are lost." in result.err and "Send it? [y/N]" in result.err
+    assert (
+        result.status == 0
+        and "Format SD card with Magic Number 90 (0x5A): acknowledged" in result.out
+    )
+    assert (
+        "is dangerous: All files on the SD card are lost." in result.err
+        and "Send it? [y/N]" in result.err
+    )
     assert "\n5a\n" in result.err
 
 
@@ -41,20 +51,35 @@ def test_what_is_dangerous_is_shown_with_its_magic_number_and_sent_after_a_yes(i
 def test_without_a_yes_nothing_is_sent(icdgen, monkeypatch, answer):
     monkeypatch.setattr(sys, "stdin", Keyboard(answer))
     result = icdgen(*FORMAT, "--port", "tcp://127.0.0.1:1")  # which is not opened
-    assert result.status == 1 and "Format SD card: not sent" in result.err and "cannot connect" not in result.err
+    assert (
+        result.status == 1
+        and "Format SD card: not sent" in result.err
+        and "cannot connect" not in result.err
+    )
 
 
 def test_a_script_must_say_yes(icdgen, place, monkeypatch):
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     refused = icdgen(*FORMAT, "--port", "tcp://127.0.0.1:1")
-    assert refused.status == 2 and "is dangerous" in refused.err and "--yes" in refused.err
+    assert (
+        refused.status == 2 and "is dangerous" in refused.err and "--yes" in refused.err
+    )
     assert icdgen(*FORMAT, "--yes", "--port", place).status == 0
 
 
 def test_a_wrong_magic_number_is_no_promise_of_a_restart(icdgen, place):
-    result = icdgen("send", "cubeacp", "Reset", "magic=1", "--raw", "--yes", "--port", place)
-    assert "with Magic number 1" in result.out and "need not restart" in result.out and "90 (0x5A)" in result.out
-    assert "the device restarts" in icdgen("send", "cubeacp", "Reset", "--yes", "--port", place).out
+    result = icdgen(
+        "send", "cubeacp", "Reset", "magic=1", "--raw", "--yes", "--port", place
+    )
+    assert (
+        "with Magic number 1" in result.out
+        and "need not restart" in result.out
+        and "90 (0x5A)" in result.out
+    )
+    assert (
+        "the device restarts"
+        in icdgen("send", "cubeacp", "Reset", "--yes", "--port", place).out
+    )
 
 
 def test_a_node_that_is_alone_needs_no_name(icdgen):
@@ -62,9 +87,14 @@ def test_a_node_that_is_alone_needs_no_name(icdgen):
     with simulator("--icd", "icd", "--tcp", "0") as (place, _):
         sent = icdgen("send", "Set Mode", "mode=Test", "--port", place)
         assert (sent.status, sent.out) == (0, "Set Mode: acknowledged\n")
-        assert "Temperature" in icdgen("monitor", "Status", "--port", place, "--once").out
+        assert (
+            "Temperature" in icdgen("monitor", "Status", "--port", place, "--once").out
+        )
         assert "Device type" in icdgen("monitor", "--port", place, "--once").out
-        assert "Temperature" in icdgen("monitor", "battery", "Status", "--port", place, "--once").out
+        assert (
+            "Temperature"
+            in icdgen("monitor", "battery", "Status", "--port", place, "--once").out
+        )
     assert "\n02\n" in icdgen("encode", "Set Mode", "mode=Test").out
 
 
@@ -85,7 +115,9 @@ def test_what_is_not_said_or_misspelt_is_asked_for(icdgen, words, answer):
 
 @pytest.mark.parametrize("seconds", ["nan", "inf", "-1", "1e300"])
 def test_a_time_that_is_none_is_refused(icdgen, seconds):
-    result = icdgen("monitor", "cubeacp", "--port", "tcp://127.0.0.1:1", f"--every={seconds}")
+    result = icdgen(
+        "monitor", "cubeacp", "--port", "tcp://127.0.0.1:1", f"--every={seconds}"
+    )
     assert result.status == 2 and "--every" in result.err
 
 
@@ -114,10 +146,15 @@ def test_the_monitor_takes_up_a_line_that_was_lost():
             assert "Estimated Roll Angle" in watching.stdout.readline()
             first.kill()
             first.wait()
-            assert "closed" in (lost := watching.stderr.readline()) and "trying again" in lost
+            assert (
+                "closed" in (lost := watching.stderr.readline())
+                and "trying again" in lost
+            )
             time.sleep(0.5)  # some attempts that fail
             port = place.rpartition(":")[2]
-            with simulator("--node", "cubeacp", "--tcp", port, "--set", "146", "roll=12.5"):
+            with simulator(
+                "--node", "cubeacp", "--tcp", port, "--set", "146", "roll=12.5"
+            ):
                 assert watching.stderr.readline() == "icdgen: the line is back\n"
                 while "12.5" not in (line := watching.stdout.readline()):
                     assert line, "it ended"
@@ -128,9 +165,22 @@ def test_the_monitor_takes_up_a_line_that_was_lost():
 
 def test_a_lost_line_ends_a_counted_monitor_with_no_answer_and_the_last_values():
     with simulator("--node", "cubeacp", "--tcp", "0") as (place, first):
-        command = ["monitor", "cubeacp", "146", "-p", place, "--every", "0.2", "--count", "4"]
+        command = [
+            "monitor",
+            "cubeacp",
+            "146",
+            "-p",
+            place,
+            "--every",
+            "0.2",
+            "--count",
+            "4",
+        ]
         watching = subprocess.Popen(
-            [sys.executable, "-m", "icdgen", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [sys.executable, "-m", "icdgen", *command],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
         )
         assert "message" in watching.stdout.readline()
         first.kill()
@@ -154,6 +204,19 @@ def test_several_values_are_set_at_once_as_encode_takes_them(icdgen):
         "longitude=11.6",
     )
     with simulator("--tcp", "0", *words, "--node", "cubeacp") as (place, _):
-        shown = icdgen("monitor", "cubeacp", "146", "150", "-p", place, "--once", "--format", "json").out
-    angles, position = ([one["value"] for one in json.loads(line)["fields"]] for line in shown.splitlines())
+        shown = icdgen(
+            "monitor",
+            "cubeacp",
+            "146",
+            "150",
+            "-p",
+            place,
+            "--once",
+            "--format",
+            "json",
+        ).out
+    angles, position = (
+        [one["value"] for one in json.loads(line)["fields"]]
+        for line in shown.splitlines()
+    )
     assert (angles, position) == ([1.5, -2.25, 0.0], [48.1, 11.6, 0.0])

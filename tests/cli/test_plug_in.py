@@ -1,4 +1,7 @@
-"""A backend of another package that breaks is named, with its entry point; nobody sees a traceback."""
+"""A backend of another package that breaks is named, with its entry point.
+
+Nobody sees a traceback.
+"""
 
 from __future__ import annotations
 
@@ -30,16 +33,37 @@ def run(folder: Path, demo: Path, source: str) -> subprocess.CompletedProcess[st
     (folder / "other_backend.py").write_text(source)
     info = folder / "icdgen_other-1.0.dist-info"
     info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: icdgen-other\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[icdgen.backends]\nother = other_backend:Backend\n")
-    command = [sys.executable, "-m", "icdgen", "--lang", "other", "--out", str(folder / "out"), str(demo)]
+    (info / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: icdgen-other\nVersion: 1.0\n"
+    )
+    (info / "entry_points.txt").write_text(
+        "[icdgen.backends]\nother = other_backend:Backend\n"
+    )
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        "--lang",
+        "other",
+        "--out",
+        str(folder / "out"),
+        str(demo),
+    ]
     return subprocess.run(
-        command, env={**os.environ, "PYTHONPATH": str(folder)}, cwd=folder, capture_output=True, text=True
+        command,
+        env={**os.environ, "PYTHONPATH": str(folder)},
+        cwd=folder,
+        capture_output=True,
+        text=True,
     )
 
 
 def test_a_backend_of_another_package_generates(tmp_path, demo):
-    result = run(tmp_path, demo, BACKEND.format(statement="yield PurePosixPath('a/b.txt'), icd.nodes[0].name"))
+    result = run(
+        tmp_path,
+        demo,
+        BACKEND.format(statement="yield PurePosixPath('a/b.txt'), icd.nodes[0].name"),
+    )
     assert (result.returncode, result.stderr) == (0, "")
     assert (tmp_path / "out/a/b.txt").read_text() == "demo"
 
@@ -53,18 +77,25 @@ def test_a_backend_of_another_package_generates(tmp_path, demo):
         ("render('absent.j2')", ""),
     ],
 )
-def test_a_backend_that_breaks_is_named_and_nothing_is_written(tmp_path, demo, statement, said):
+def test_a_backend_that_breaks_is_named_and_nothing_is_written(
+    tmp_path, demo, statement, said
+):
     result = run(tmp_path, demo, BACKEND.format(statement=statement))
     assert result.returncode == 2
     assert "Traceback" not in result.stderr
     assert said in result.stderr
     if said:
-        assert "the backend `other` of icdgen-other (entry point `other_backend:Backend`)" in result.stderr
+        assert (
+            "the backend `other` of icdgen-other (entry point `other_backend:Backend`)"
+            in result.stderr
+        )
         assert "report it to its makers" in result.stderr
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("source", ["import no_such_module\n", "class Backend:\n    pass\n", "Backend = 1\n"])
+@pytest.mark.parametrize(
+    "source", ["import no_such_module\n", "class Backend:\n    pass\n", "Backend = 1\n"]
+)
 def test_a_backend_that_cannot_be_loaded_is_named(tmp_path, demo, source):
     result = run(tmp_path, demo, source)
     assert result.returncode == 2

@@ -28,11 +28,16 @@ COMMANDS = {
 
 
 def on_terminal(arguments: list[str], folder, delay: float) -> tuple[int, str]:
-    """Run with standard error on a terminal; return the exit status and what the terminal gets."""
+    """Run with standard error on a terminal.
+
+    Return the exit status and what the terminal gets.
+    """
     pty = pytest.importorskip("pty")
     reading, terminal = pty.openpty()
     command = [sys.executable, "-c", RUN.format(delay), *arguments]
-    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=terminal)
+    process = subprocess.Popen(
+        command, cwd=folder, stdout=subprocess.DEVNULL, stderr=terminal
+    )
     os.close(terminal)
     received = b""
     try:
@@ -49,7 +54,9 @@ def bars(monkeypatch) -> list:
     """The bars that are made."""
     made = []
     kind = progress._Bar
-    monkeypatch.setattr(progress, "_Bar", lambda *given: made.append(kind(*given)) or made[-1])
+    monkeypatch.setattr(
+        progress, "_Bar", lambda *given: made.append(kind(*given)) or made[-1]
+    )
     return made
 
 

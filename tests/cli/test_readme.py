@@ -57,7 +57,11 @@ def clone(tmp_path_factory) -> Path:
     """A copy of the files of this repository, without those that only tests use."""
     folder = tmp_path_factory.mktemp("clone")
     listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
+        ["git", "ls-files", "-co", "--exclude-standard", "-z"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
     ).stdout
     for name in filter(None, listed.split("\0")):
         if (ROOT / name).is_file() and not name.startswith(("generated/", "tests/")):
@@ -72,8 +76,14 @@ def free_port() -> str:
         return str(server.getsockname()[1])
 
 
-def test_every_command_runs_in_order_in_one_shell_and_prints_what_is_shown(clone, free_port, tmp_path):
-    typed = [step for step in steps(README.replace("4000", free_port)) if not step.command.startswith(SUITE)]
+def test_every_command_runs_in_order_in_one_shell_and_prints_what_is_shown(
+    clone, free_port, tmp_path
+):
+    typed = [
+        step
+        for step in steps(README.replace("4000", free_port))
+        if not step.command.startswith(SUITE)
+    ]
     ran = subprocess.run(
         ["bash", "-c", script([step.command for step in typed])],
         cwd=clone,
@@ -83,17 +93,30 @@ def test_every_command_runs_in_order_in_one_shell_and_prints_what_is_shown(clone
         timeout=600,
     )
     outputs = re.split(rf"^{MARK} \d+\n", ran.stdout, flags=re.MULTILINE)[1:]
-    assert ran.returncode == 0, f"{typed[len(outputs) - 1].command}\n{ran.stdout}\n{ran.stderr}"
+    assert (
+        ran.returncode == 0
+    ), f"{typed[len(outputs) - 1].command}\n{ran.stdout}\n{ran.stderr}"
     assert len(outputs) == len(typed) + 1 and len(typed) > 10
-    missing = [step for step, output in zip(typed, outputs, strict=False) if step.shown not in output]
+    missing = [
+        step
+        for step, output in zip(typed, outputs, strict=False)
+        if step.shown not in output
+    ]
     assert missing == [], ran.stdout
 
 
 def _environment(home: Path) -> dict[str, str]:
-    """Environment of a user with an empty home, without the virtual environment in which the tests run."""
+    """Environment of a user with an empty home, without the virtual environment in
+    which the tests run.
+    """
     own = Path(sys.prefix) / "bin"
-    path = os.pathsep.join(part for part in os.environ["PATH"].split(os.pathsep) if Path(part) != own)
-    tools = {name.upper() + "_HOME": str(Path.home() / f".{name}") for name in ("cargo", "rustup")}
+    path = os.pathsep.join(
+        part for part in os.environ["PATH"].split(os.pathsep) if Path(part) != own
+    )
+    tools = {
+        name.upper() + "_HOME": str(Path.home() / f".{name}")
+        for name in ("cargo", "rustup")
+    }
     return {**tools, **os.environ, "HOME": str(home), "PATH": path}
 
 
@@ -101,7 +124,12 @@ def _environment(home: Path) -> dict[str, str]:
 def battery(tmp_path_factory) -> Path:
     """The ICD with which the README begins."""
     folder = tmp_path_factory.mktemp("battery")
-    subprocess.run([sys.executable, "-m", "icdgen", "init", "battery"], cwd=folder, check=True, capture_output=True)
+    subprocess.run(
+        [sys.executable, "-m", "icdgen", "init", "battery"],
+        cwd=folder,
+        check=True,
+        capture_output=True,
+    )
     return folder / "icd" / "battery.yaml"
 
 
@@ -119,7 +147,9 @@ def test_the_c_shown_reads_the_message(battery, tmp_path):
     source = tmp_path / "program.c"
     include, _, body = snippet("c").partition("\n")
     source.write_text(C % (include, body))
-    program = c.compile(source, "-std=c99", *c.WARNINGS, f"-I{headers}", output=tmp_path / "program")
+    program = c.compile(
+        source, "-std=c99", *c.WARNINGS, f"-I{headers}", output=tmp_path / "program"
+    )
     assert subprocess.run([program], capture_output=True, text=True).stdout == "21.50\n"
 
 
@@ -136,5 +166,7 @@ def test_the_rust_shown_reads_the_message(battery, tmp_path):
     toolchain = Toolchain("default")
     source = tmp_path / "program.rs"
     source.write_text(RUST % snippet("rust").replace("use battery::", "use icd::"))
-    program = toolchain.program(source, toolchain.library(library, "0", *STD), tmp_path / "program")
+    program = toolchain.program(
+        source, toolchain.library(library, "0", *STD), tmp_path / "program"
+    )
     assert subprocess.run([program], capture_output=True, text=True).stdout == "21.5\n"

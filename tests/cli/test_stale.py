@@ -1,4 +1,6 @@
-"""A run that is skipped must be one that would change nothing: whatever it rests on is looked at, as it was when it was read."""
+"""A run that is skipped must be one that would change nothing: whatever it rests on is
+looked at, as it was when it was read.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ def test_a_template_behind_a_link(run, demo, tmp_path):
 
 
 def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
-    head = "icdgen: 1\nnode: {name: %s, title: T, byte_order: little, bit_order: lsb0}\n"
+    head = (
+        "icdgen: 1\nnode: {name: %s, title: T, byte_order: little, bit_order: lsb0}\n"
+    )
     (tmp_path / "a.yaml").write_text(head % "aaa")
     (tmp_path / "b.yaml").write_text(head % "bbb")
     (tmp_path / "top.yaml").write_text(head % "top" + "include: [a.yaml, link.yaml]\n")
@@ -49,7 +53,10 @@ def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
         link.unlink(missing_ok=True)
         link.symlink_to(target)
         run("--lang", "c", "--out", "out", "top.yaml")
-        assert {p.name for p in (tmp_path / "out").glob("*.h")} == outputs | {"top.h", "icdgen.h"}
+        assert {p.name for p in (tmp_path / "out").glob("*.h")} == outputs | {
+            "top.h",
+            "icdgen.h",
+        }
 
 
 def test_an_icd_that_changes_while_it_is_worked_on(run, demo, tmp_path, monkeypatch):
@@ -66,7 +73,11 @@ def test_an_icd_that_changes_while_it_is_worked_on(run, demo, tmp_path, monkeypa
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
     assert (
-        model_cache.load_checked([demo], languages=("c",)).icd.nodes[0].messages[0].fields[0].name
+        model_cache.load_checked([demo], languages=("c",))
+        .icd.nodes[0]
+        .messages[0]
+        .fields[0]
+        .name
         == "Changed Meanwhile"
     )
 
@@ -89,8 +100,15 @@ def test_an_erratum_of_a_renamed_node_counts(run, demo, tmp_path):
 def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
     run("--lang", "c", "--out", "out", demo)
     good = {p: p.read_bytes() for p in (tmp_path / "out").rglob("*") if p.is_file()}
-    kept = [path for top, _, names in os.walk(cache.folder()) for path in (os.path.join(top, name) for name in names)]
-    assert {os.path.basename(os.path.dirname(path)) for path in kept} == {"models", "runs"}
+    kept = [
+        path
+        for top, _, names in os.walk(cache.folder())
+        for path in (os.path.join(top, name) for name in names)
+    ]
+    assert {os.path.basename(os.path.dirname(path)) for path in kept} == {
+        "models",
+        "runs",
+    }
     for path in kept:
         with open(path, "r+b") as file:
             data = bytearray(file.read())

@@ -1,4 +1,6 @@
-"""Drives the generated code of every language with the same requests and compares it with the reference codec."""
+"""Drives the generated code of every language with the same requests and compares it
+with the reference codec.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Generates and builds testees; what was built from the same sources by the same tools is taken from the cache."""
+"""Generates and builds testees.
+
+What was built from the same sources by the same tools is taken from the cache.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,10 @@ from pathlib import Path
 from icdgen import backends
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from tests.conformance import ROOT, testees  # noqa: F401  (it registers the testees' backends)
+from tests.conformance import (
+    ROOT,
+    testees,  # noqa: F401
+)
 from tests.conformance.front.plan import plan
 from tests.conformance.languages import TESTEE, Language, version
 
@@ -45,10 +51,15 @@ def kept(folder: Path) -> Iterator[Path]:
 
 
 def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]:
-    """The command line that starts the language's testee for these ICDs. Raises `BuildError`."""
+    """The command line that starts the language's testee for these ICDs.
+
+    Raises `BuildError`.
+    """
     files = generated(language, icd)
     known = json.dumps(plan(icd)).encode()
-    folder = (folder or cache_folder()) / f"{language.name}-{_key(language, {**files, 'plan.json': known})}"
+    folder = (
+        folder or cache_folder()
+    ) / f"{language.name}-{_key(language, {**files, 'plan.json': known})}"
     done = folder / "command.json"
     with kept(folder):
         if not done.exists():
@@ -71,7 +82,9 @@ def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]
 
 
 def generated(language: Language, icd: Icd) -> dict[str, bytes]:
-    """What the language's backends make of the ICDs: path, beginning with the backend's name -> content."""
+    """What the language's backends make of the ICDs: path, beginning with the backend's
+    name -> content.
+    """
     files = {}
     for name in language.backends:
         for path, text in backends.get(name).files(icd, renderer(name)):
@@ -84,11 +97,20 @@ def renderer(name: str) -> Renderer:
     return Renderer.of(backends.get(name))
 
 
-def execute(*command: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None) -> str:
+def execute(
+    *command: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None
+) -> str:
     """Runs a build step; its output. Raises `BuildError`."""
     words = [str(word) for word in command]
     environment = {**os.environ, **env} if env else None
-    done = subprocess.run(words, cwd=cwd, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    done = subprocess.run(
+        words,
+        cwd=cwd,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
     if done.returncode:
         raise BuildError(f"{' '.join(words)}\n{done.stdout[-8000:]}")
     return done.stdout

@@ -26,19 +26,34 @@ class Case(NamedTuple):
 
 
 def member_names(files: dict[str, dict]) -> dict[str, list[list]]:
-    """The members of each enumeration, by the name of the enumeration; nodes that include others know theirs."""
+    """The members of each enumeration, by the name of the enumeration.
+
+    Nodes that include others know theirs.
+    """
     return {e["name"]: e["members"] for data in files.values() for e in data["enums"]}
 
 
 def name_of(members: list[list], value: int) -> str | None:
-    """The name of a value: each member has a value and a name, and a range its last value."""
+    """The name of a value: each member has a value and a name, and a range its last
+    value.
+    """
     if value is None:
         return None  # of what is not there
-    return next((name for first, name, *last in members if first <= value <= (last or [first])[0]), None)
+    return next(
+        (
+            name
+            for first, name, *last in members
+            if first <= value <= (last or [first])[0]
+        ),
+        None,
+    )
 
 
 def _is_among(name: str, parts: Sequence[dict], raw: dict) -> bool:
-    """Whether an element of one of these parts is in a frame of these raw values; what is in no part is in every frame."""
+    """Whether an element of one of these parts is in a frame of these raw values.
+
+    What is in no part is in every frame.
+    """
     for one in parts:
         element = name.removeprefix(one["part"] + "[")
         if element != name:
@@ -50,7 +65,9 @@ def _is_among(name: str, parts: Sequence[dict], raw: dict) -> bool:
 
 
 class MessageCases:
-    """The cases of one message, as spoken by ``node`` (the one that declares it or one that includes that)."""
+    """The cases of one message, as spoken by ``node`` (the one that declares it or one
+    that includes that).
+    """
 
     def __init__(
         self,
@@ -60,26 +77,51 @@ class MessageCases:
         never_set: list[str],
         shared: frozenset[str] = frozenset(),
     ) -> None:
-        """``shared``: the messages of the node that have no id of their own, and so go by their names, too."""
+        """``shared``: the messages of the node that have no id of their own, and so go
+        by their names, too.
+        """
         self.named = {"message": message["name"]} if message["name"] in shared else {}
-        self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
+        self.node, self.message, self.enums, self.never_set = (
+            node,
+            message,
+            enums,
+            never_set,
+        )
         self.fields: list[dict] = message["fields"]
         self.views = {field["name"] for field in self.fields if "view" in field}
-        self.scaled = [field for field in self.fields if field.keys() & {"factor", "coefficients", "points"}]
-        self.one_way = {field["name"] for field in self.scaled if "set" not in field}  # and views
+        self.scaled = [
+            field
+            for field in self.fields
+            if field.keys() & {"factor", "coefficients", "points"}
+        ]
+        self.one_way = {
+            field["name"] for field in self.scaled if "set" not in field
+        }  # and views
         self.texts = [field for field in self.fields if field["type"] == "text"]
         self.id = message.get("id", message.get("set_id"))
-        self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
+        self.fresh = {
+            field["name"]: shown(field, field["default"]) for field in self.fields
+        }
         self.tail: dict | None = message.get("tail")
-        self.parts: list[dict] = [*message.get("inner", ()), *([self.tail] if self.tail else ())]
+        self.parts: list[dict] = [
+            *message.get("inner", ()),
+            *([self.tail] if self.tail else ()),
+        ]
         self.full = dict(self.fresh)
         highest: dict[str, int] = {}
-        for one in (*self.parts, *(nested for part in self.parts for nested in part.get("nested", ()))):
+        for one in (
+            *self.parts,
+            *(nested for part in self.parts for nested in part.get("nested", ())),
+        ):
             high = one["most"] - one.get("plus", 0)
             highest[one["counter"]] = min(high, highest.get(one["counter"], high))
         self.full |= highest
-        self.conditional = {field["name"]: field["when"] for field in self.fields if "when" in field}
-        self.given = self.owned(self.full)  # what makes such a message, with all elements
+        self.conditional = {
+            field["name"]: field["when"] for field in self.fields if "when" in field
+        }
+        self.given = self.owned(
+            self.full
+        )  # what makes such a message, with all elements
 
     def all(self) -> Iterator[Case]:
         """Everything that the vectors of the message demand."""
@@ -96,12 +138,25 @@ class MessageCases:
         yield from self.set_views()
 
     def request(self, op: str, **more: object) -> dict:
-        return {"op": op, "node": self.node, "kind": self.message["kind"], "id": self.id, **self.named, **more}
+        return {
+            "op": op,
+            "node": self.node,
+            "kind": self.message["kind"],
+            "id": self.id,
+            **self.named,
+            **more,
+        }
 
     def frame(self, vector: dict) -> Iterator[Case]:
         """Decoding, and encoding from raw and from physical values."""
-        raw = {f["name"]: shown(f, value) for f, value in zip(self.fields, vector["raw"], strict=True)}
-        physical = {f["name"]: bits for f, bits in zip(self.scaled, vector.get("doubles", ()), strict=True)}
+        raw = {
+            f["name"]: shown(f, value)
+            for f, value in zip(self.fields, vector["raw"], strict=True)
+        }
+        physical = {
+            f["name"]: bits
+            for f, bits in zip(self.scaled, vector.get("doubles", ()), strict=True)
+        }
         for field, text in zip(self.texts, vector.get("texts", ()), strict=True):
             physical[field["name"]] = None if text is None else text.encode().hex()
         encoded = vector.get("encoded", vector["bytes"])
@@ -111,17 +166,35 @@ class MessageCases:
         yield Case(why, self.request("encode", raw=self.owned(raw)), answer)
         names = self.names(raw)
         if names:
-            yield Case(why, self.request("decode", bytes=vector["bytes"], names=True), {**answer, "names": names})
-        physical = {name: value for name, value in physical.items() if name not in self.one_way and value is not None}
-        physical = {name: value for name, value in physical.items() if self.is_sent(name, raw)}
-        if physical:
-            rest = {name: value for name, value in self.owned(raw).items() if name not in physical}
             yield Case(
-                why, self.request("encode", raw=rest, physical=physical), self.from_physical(raw, physical, answer)
+                why,
+                self.request("decode", bytes=vector["bytes"], names=True),
+                {**answer, "names": names},
+            )
+        physical = {
+            name: value
+            for name, value in physical.items()
+            if name not in self.one_way and value is not None
+        }
+        physical = {
+            name: value for name, value in physical.items() if self.is_sent(name, raw)
+        }
+        if physical:
+            rest = {
+                name: value
+                for name, value in self.owned(raw).items()
+                if name not in physical
+            }
+            yield Case(
+                why,
+                self.request("encode", raw=rest, physical=physical),
+                self.from_physical(raw, physical, answer),
             )
 
     def is_sent(self, name: str, raw: dict) -> bool:
-        """Whether a frame of these raw values has a field: elements of open parts beyond the count are 0, set or not."""
+        """Whether a frame of these raw values has a field: elements of open parts
+        beyond the count are 0, set or not.
+        """
         return _is_among(name, self.parts, raw)
 
     def owned(self, values: dict) -> dict:
@@ -130,26 +203,38 @@ class MessageCases:
 
     def seen(self, raw: dict) -> dict:
         """Raw values of which the views are not known."""
-        return {name: ... if name in self.views else value for name, value in raw.items()}
+        return {
+            name: ... if name in self.views else value for name, value in raw.items()
+        }
 
     def set_views(self) -> Iterator[Case]:
         """A view is no field that could be set."""
         for field in self.fields:
             if field["name"] in self.views:
                 request = self.request("encode", raw=self.fresh)
-                yield Case("a view set", request, {"ok": False, "error": "unknown-field", "field": ...})
+                yield Case(
+                    "a view set",
+                    request,
+                    {"ok": False, "error": "unknown-field", "field": ...},
+                )
                 return
 
     def names(self, raw: dict) -> dict[str, str | None]:
         """Name of each enum field's member."""
-        return {f["name"]: name_of(self.enums.get(f["enum"], []), raw[f["name"]]) for f in self.fields if "enum" in f}
+        return {
+            f["name"]: name_of(self.enums.get(f["enum"], []), raw[f["name"]])
+            for f in self.fields
+            if "enum" in f
+        }
 
     def there(self, field: dict) -> dict:
         """Values, but for views, of a message with all elements that has the field."""
         if "when" not in field:
             return self.given
         known = {one["name"]: one for one in self.fields}
-        found = self.given | {on: shown(known[on], values[0]) for on, values in field["when"].items()}
+        found = self.given | {
+            on: shown(known[on], values[0]) for on, values in field["when"].items()
+        }
         for name, when in self.conditional.items():
             is_there = all(found[on] in values for on, values in when.items())
             found[name] = zero(known[name]) if is_there else None
@@ -162,7 +247,9 @@ class MessageCases:
                 filled = physical[field["name"]].ljust(field["bits"] // 4, "0")
                 if filled != raw[field["name"]]:
                     raws = {**self.seen(answer["raw"]), field["name"]: filled}
-                    answer = {**answer, "raw": raws, "bytes": ...} | ({"physical": ...} if self.views else {})
+                    answer = {**answer, "raw": raws, "bytes": ...} | (
+                        {"physical": ...} if self.views else {}
+                    )
         for field in self.scaled:
             if field["name"] not in physical:
                 continue
@@ -189,20 +276,40 @@ class MessageCases:
             ],
         }
         for kind, id in routes[message["kind"]]:
-            yield Case(f"under {kind} {id}", {**first.request, "kind": kind, "id": id}, first.answer)
+            yield Case(
+                f"under {kind} {id}",
+                {**first.request, "kind": kind, "id": id},
+                first.answer,
+            )
 
     def refused_lengths(self) -> Iterator[Case]:
         """Frames that are too short or too long."""
         for actual in self.message["refused_lengths"]:
-            answer = {"ok": False, "error": "length", "expected": self.expected(actual), "actual": actual}
-            yield Case(f"{actual} bytes", self.request("decode", bytes="00" * actual), answer)
+            answer = {
+                "ok": False,
+                "error": "length",
+                "expected": self.expected(actual),
+                "actual": actual,
+            }
+            yield Case(
+                f"{actual} bytes", self.request("decode", bytes="00" * actual), answer
+            )
         for frame in self.message.get("refused_frames", ()):
             actual = len(frame) // 2
-            answer = {"ok": False, "error": "length", "expected": Maybe(Not(actual)), "actual": actual}
-            yield Case(f"miscounted: {frame}", self.request("decode", bytes=frame), answer)
+            answer = {
+                "ok": False,
+                "error": "length",
+                "expected": Maybe(Not(actual)),
+                "actual": actual,
+            }
+            yield Case(
+                f"miscounted: {frame}", self.request("decode", bytes=frame), answer
+            )
 
     def expected(self, actual: int) -> object:
-        """What a frame of no possible length should have had, which not every language tells if frames differ."""
+        """What a frame of no possible length should have had, which not every language
+        tells if frames differ.
+        """
         if "may_end_early" in self.message:
             return self.message["length"] if actual else Maybe(...)
         if self.tail is None:
@@ -217,10 +324,20 @@ class MessageCases:
 
     def constants(self) -> Case:
         """Ids, length, fresh values, special values."""
-        ids = [self.message[key] for key in ("id", "set_id", "get_id") if key in self.message]
-        special = {field["name"]: field["special"] for field in self.fields if "special" in field}
+        ids = [
+            self.message[key]
+            for key in ("id", "set_id", "get_id")
+            if key in self.message
+        ]
+        special = {
+            field["name"]: field["special"]
+            for field in self.fields
+            if "special" in field
+        }
         limits = {
-            f["name"]: {k: nearest_double(v) for k, v in f["limits"].items()} for f in self.fields if "limits" in f
+            f["name"]: {k: nearest_double(v) for k, v in f["limits"].items()}
+            for f in self.fields
+            if "limits" in f
         }
         answer = {
             "ok": True, "name": self.message["name"], "ids": ids, "length": self.message["length"], "default": self.fresh,
@@ -233,7 +350,11 @@ class MessageCases:
         name = field["name"]
         for value in field.get("unfit", ()):
             request = self.request("encode", raw={**self.there(field), name: value})
-            yield Case(f"{name} = {value}", request, {"ok": False, "error": "range", "field": name})
+            yield Case(
+                f"{name} = {value}",
+                request,
+                {"ok": False, "error": "range", "field": name},
+            )
 
     def settings(self, field: dict) -> Iterator[Case]:
         """Physical values set, exact ties and unfit ones among them."""
@@ -249,9 +370,14 @@ class MessageCases:
         for bits, raw in given:
             request = self.request("encode", raw=rest, physical={name: bits})
             full = {
-                key: raw if key == name else value for key, value in self.seen(self.full | given_all).items()
+                key: raw if key == name else value
+                for key, value in self.seen(self.full | given_all).items()
             }  # in the order of the fields
-            answer = refusal if raw is None else {"ok": True, "raw": full, "physical": ..., "bytes": ...}
+            answer = (
+                refusal
+                if raw is None
+                else {"ok": True, "raw": full, "physical": ..., "bytes": ...}
+            )
             yield Case(f"{name} set to {bits}", request, answer)
 
 
@@ -263,45 +389,94 @@ def node_cases(data: dict) -> Iterator[Case]:
         known = data["ids"][direction]
         for id, names in known.items():
             for name in names if isinstance(names, list) else ():
-                request = {"op": "constants", "node": node, "kind": direction, "id": int(id), "message": name}
-                yield Case(f"{direction} {id}, {name}", request, {"ok": True, "name": name, ...: ...})
+                request = {
+                    "op": "constants",
+                    "node": node,
+                    "kind": direction,
+                    "id": int(id),
+                    "message": name,
+                }
+                yield Case(
+                    f"{direction} {id}, {name}",
+                    request,
+                    {"ok": True, "name": name, ...: ...},
+                )
         for id in (*test_ids(map(int, known)), 65535, 65536, -1):
             if isinstance(known.get(str(id)), list):
                 request = {"op": "constants", "node": node, "kind": direction, "id": id}
-                yield Case(f"{direction} {id}, of several", request, {"ok": False, "error": "request"})
+                yield Case(
+                    f"{direction} {id}, of several",
+                    request,
+                    {"ok": False, "error": "request"},
+                )
             elif str(id) in known:
                 request = {"op": "constants", "node": node, "kind": direction, "id": id}
-                yield Case(f"{direction} {id}", request, {"ok": True, "name": known[str(id)], ...: ...})
+                yield Case(
+                    f"{direction} {id}",
+                    request,
+                    {"ok": True, "name": known[str(id)], ...: ...},
+                )
             else:
-                request = {"op": "decode", "node": node, "kind": direction, "id": id, "bytes": ""}
-                yield Case(f"{direction} {id}", request, {"ok": False, "error": "unknown-id"})
+                request = {
+                    "op": "decode",
+                    "node": node,
+                    "kind": direction,
+                    "id": id,
+                    "bytes": "",
+                }
+                yield Case(
+                    f"{direction} {id}", request, {"ok": False, "error": "unknown-id"}
+                )
     yield from shared_ids(data)
     yield from enum_cases(data)
 
 
 def shared_names(data: dict) -> frozenset[str]:
     """The messages that a node knows by ids which others have, too."""
-    known = (names for ids in data["ids"].values() for names in ids.values() if isinstance(names, list))
+    known = (
+        names
+        for ids in data["ids"].values()
+        for names in ids.values()
+        if isinstance(names, list)
+    )
     return frozenset(name for names in known for name in names)
 
 
 def shared_ids(data: dict) -> Iterator[Case]:
     """Which message each frame of an id is that several have."""
     for row in data.get("shared_ids", ()):
-        about = {"node": data["node"], "kind": row["direction"], "id": row["id"], "bytes": row["bytes"]}
+        about = {
+            "node": data["node"],
+            "kind": row["direction"],
+            "id": row["id"],
+            "bytes": row["bytes"],
+        }
         if row["message"] is not None:
             answer = {"ok": True, "message": row["message"], "bytes": ...}
         elif "expected" in row:
             actual = len(row["bytes"]) // 2
-            answer = {"ok": False, "error": "length", "expected": row["expected"], "actual": actual}
+            answer = {
+                "ok": False,
+                "error": "length",
+                "expected": row["expected"],
+                "actual": actual,
+            }
         else:
             answer = {"ok": False, "error": "unknown-id"}
-        yield Case(f"a frame of the shared {row['direction']} id {row['id']}", {"op": "decode", **about}, answer)
+        yield Case(
+            f"a frame of the shared {row['direction']} id {row['id']}",
+            {"op": "decode", **about},
+            answer,
+        )
 
 
 def node_itself(data: dict) -> Case:
     """Its constants."""
-    answer = {"ok": True, "node_type": data.get("node_type"), "interface_version": data.get("interface_version")}
+    answer = {
+        "ok": True,
+        "node_type": data.get("node_type"),
+        "interface_version": data.get("interface_version"),
+    }
     return Case("node", {"op": "node", "node": data["node"]}, answer)
 
 
@@ -309,12 +484,24 @@ def enum_cases(data: dict) -> Iterator[Case]:
     """The names of the members of the enumerations that a node declares."""
     node = data["node"]
     for enum in data["enums"]:
-        ends = [(first, last) for first, _, last in (one for one in enum["members"] if len(one) == 3)]
-        near = [value for first, last in ends for value in (first - 1, first + 1, last, last + 1) if value < 1 << 64]
+        ends = [
+            (first, last)
+            for first, _, last in (one for one in enum["members"] if len(one) == 3)
+        ]
+        near = [
+            value
+            for first, last in ends
+            for value in (first - 1, first + 1, last, last + 1)
+            if value < 1 << 64
+        ]
         values = [*(first for first, *_ in enum["members"]), *near]
         for value in [*values, enum["unknown"]]:
             request = {"op": "enum", "node": node, "enum": enum["name"], "value": value}
-            yield Case(f"{enum['name']} {value}", request, {"ok": True, "name": name_of(enum["members"], value)})
+            yield Case(
+                f"{enum['name']} {value}",
+                request,
+                {"ok": True, "name": name_of(enum["members"], value)},
+            )
 
 
 def shown(field: dict, value: object) -> object:
@@ -340,7 +527,9 @@ def nearest(field: dict, bits: str) -> int | str | None:
     value = Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])
     raw = round((value - Fraction(field["offset"])) / Fraction(field["factor"]))
     width, signed = field["bits"], field["type"] == "int"
-    low, high = (-(1 << width - 1), (1 << width - 1) - 1) if signed else (0, (1 << width) - 1)
+    low, high = (
+        (-(1 << width - 1), (1 << width - 1) - 1) if signed else (0, (1 << width) - 1)
+    )
     return raw if low <= raw <= high else None
 
 

@@ -20,7 +20,10 @@ class Not(NamedTuple):
 
 
 def difference(expected: dict, line: bytes | None) -> str | None:
-    """What is wrong with an answer; None if nothing is. ``...`` in ``expected`` stands for anything."""
+    """What is wrong with an answer; None if nothing is.
+
+    ``...`` in ``expected`` stands for anything.
+    """
     if line is None:
         return "no answer: the testee died or fell silent"
     try:
@@ -31,7 +34,9 @@ def difference(expected: dict, line: bytes | None) -> str | None:
         return f"not an object: {line[:200]!r}"
     if expected.get("ok") is False:
         answer.pop("detail", None)
-        if expected.get("field") != answer.get("field") and _is_array_of(answer.get("field"), expected.get("field")):
+        if expected.get("field") != answer.get("field") and _is_array_of(
+            answer.get("field"), expected.get("field")
+        ):
             expected = {
                 **expected,
                 "field": answer["field"],
@@ -52,12 +57,22 @@ def _difference(expected: object, actual: object, path: str) -> str | None:
     if expected is ...:
         return None
     if isinstance(expected, Not):
-        return f"{path}: {_short(actual)}, which it cannot be" if actual == expected.value else None
+        return (
+            f"{path}: {_short(actual)}, which it cannot be"
+            if actual == expected.value
+            else None
+        )
     if type(expected) is not type(actual):
         return f"{path or 'answer'}: {_short(actual)}, expected {_short(expected)}"
     if not isinstance(expected, dict):
-        return None if expected == actual else f"{path}: {_short(actual)}, expected {_short(expected)}"
-    if expected == actual and all(type(value) is type(actual[key]) for key, value in expected.items()):
+        return (
+            None
+            if expected == actual
+            else f"{path}: {_short(actual)}, expected {_short(expected)}"
+        )
+    if expected == actual and all(
+        type(value) is type(actual[key]) for key, value in expected.items()
+    ):
         if not any(isinstance(value, dict) for value in expected.values()):
             return None
     for key, value in expected.items():

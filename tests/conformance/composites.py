@@ -1,4 +1,6 @@
-"""Composite messages: an ICD with odd ones, and what their parts are by the reference codec."""
+"""Composite messages: an ICD with odd ones, and what their parts are by the reference
+codec.
+"""
 
 from __future__ import annotations
 
@@ -124,12 +126,23 @@ def cases(icd: Icd, count: int = 4) -> Iterator[Case]:
             for _ in range(count if message.contains else 0):
                 frame = random_bytes(message.length)
                 raw = codec.decode(node, message, frame)
-                values = {field.at: raw[field.name] for field in raw_fields_in(message.layout)}
+                values = {
+                    field.at: raw[field.name] for field in raw_fields_in(message.layout)
+                }
                 given: list[Given] = []
                 for one in message.contains:
                     part = known[one.message]
                     if raw_fields_in(part.layout):
                         index = sum(other.part is part for other in given)
-                        theirs = {field.name: values[one.at + field.at] for field in raw_fields_in(part.layout)}
-                        given.append(Given(part, index, codec.encode(icd.node(part.node), part, theirs)))
+                        theirs = {
+                            field.name: values[one.at + field.at]
+                            for field in raw_fields_in(part.layout)
+                        }
+                        given.append(
+                            Given(
+                                part,
+                                index,
+                                codec.encode(icd.node(part.node), part, theirs),
+                            )
+                        )
                 yield Case(message, frame, tuple(given))

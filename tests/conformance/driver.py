@@ -43,18 +43,24 @@ class InProcess:
 
 
 class Testee:
-    """A running testee. One that dies or falls silent is started again for the next requests."""
+    """A running testee.
+
+    One that dies or falls silent is started again for the next requests.
+    """
 
     __test__ = False  # not a test class
 
     def __init__(self, command: Sequence[str], timeout: float = 120.0) -> None:
         self.command, self.timeout = list(command), timeout
         self.process: subprocess.Popen[bytes] | None = None
-        self.errors = tempfile.TemporaryFile()  # noqa: SIM115  (it lives as long as the testee)
+        self.errors = tempfile.TemporaryFile()  # noqa: SIM115
         self.deaths = 0
 
     def ask(self, lines: Sequence[bytes]) -> list[bytes | None]:
-        """The answer to each line (without its newline); None for each that was not answered because the testee died."""
+        """The answer to each line (without its newline).
+
+        None for each that was not answered because the testee died.
+        """
         if self.process is None:
             self.process = subprocess.Popen(
                 self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, bufsize=1 << 18,
@@ -62,7 +68,9 @@ class Testee:
             )  # fmt: skip
         process = self.process
         assert process.stdin and process.stdout
-        writer = threading.Thread(target=self._write, args=(process, lines), daemon=True)
+        writer = threading.Thread(
+            target=self._write, args=(process, lines), daemon=True
+        )
         watchdog = threading.Timer(self.timeout, _kill, [process])
         watchdog.start()
         writer.start()

@@ -18,11 +18,18 @@ COMMITTED = ROOT / "generated" / "vectors"
 
 
 def icd_of(paths: list[Path] | None = None) -> Icd:
-    """The checked ICDs of ``paths``, by default those of the repository. Raises `ValueError` with what is wrong."""
+    """The checked ICDs of ``paths``, by default those of the repository.
+
+    Raises `ValueError` with what is wrong.
+    """
     loaded = load(paths or [SHIPPED])
     if not loaded.ok:
         raise ValueError(
-            "\n".join(f"{f.place}: {f.code} {f.message}" for f in loaded.findings if f.severity == "error")
+            "\n".join(
+                f"{f.place}: {f.code} {f.message}"
+                for f in loaded.findings
+                if f.severity == "error"
+            )
         )
     return loaded.icd
 
@@ -47,5 +54,8 @@ def vectors_of(icd: Icd) -> dict[str, dict]:
 
 def read_vectors(folder: Path) -> dict[str, dict]:
     """The content of each vector file of a folder, by node."""
-    found = (json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json")))
+    found = (
+        json.loads(path.read_text(encoding="utf-8"))
+        for path in sorted(folder.glob("*.json"))
+    )
     return {data["node"]: data for data in found if "icdgen_vectors" in data}

@@ -1,4 +1,6 @@
-"""Small ICDs of what the shipped ones do not have: other bit orders, odd widths, scaled 64-bit fields, odd names."""
+"""Small ICDs of what the shipped ones do not have: other bit orders, odd widths, scaled
+64-bit fields, odd names.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ def write(folder: Path) -> Path:
 
 
 def variable(folder: Path) -> list[Path]:
-    """Files of messages of variable length, shared ids and conditions: odd ones, and devices of others."""
+    """Files of messages of variable length, shared ids and conditions: odd ones, and
+    devices of others.
+    """
     write(folder)
     devices = ROOT / "examples" / "devices"
     return [

@@ -8,57 +8,122 @@ _PLUS = (0, 0, 0, 1, 2, -1, -4)  # what is added to what a field says
 
 
 @st.composite
-def open_end(draw, place: dict, fields: list[dict], elements: st.SearchStrategy, structs: list[dict]) -> dict:
-    """Elements or structs, bytes or text: as many as a field says, or as the frame ends. ``place``: where, and its names."""
+def open_end(
+    draw,
+    place: dict,
+    fields: list[dict],
+    elements: st.SearchStrategy,
+    structs: list[dict],
+) -> dict:
+    """Elements or structs, bytes or text: as many as a field says, or as the frame
+    ends.
+
+    ``place``: where, and its names.
+    """
     counters = [field for field in fields if _counts(field)]
     counter = draw(st.sampled_from([None, *counters]))
     if draw(st.integers(0, 3)) == 0:
         kind = draw(st.sampled_from(("bytes", "text")))
-        return place | {"type": kind} | _counted(draw, "size", counter, draw(st.integers(1, 20)))
+        return (
+            place
+            | {"type": kind}
+            | _counted(draw, "size", counter, draw(st.integers(1, 20)))
+        )
     if structs and draw(st.booleans()):
         element = {"struct": draw(st.sampled_from(structs))["name"]}
     else:
-        element = draw(elements.filter(lambda one: one["type"] != "bool" and one["bits"] % 8 == 0))
+        element = draw(
+            elements.filter(lambda one: one["type"] != "bool" and one["bits"] % 8 == 0)
+        )
     most = draw(st.integers(1, 2 if "struct" in element else 9))
     return place | element | _counted(draw, "count", counter, most)
 
 
 @st.composite
-def open_parts(draw, place: dict, fields: list[dict], elements: st.SearchStrategy, structs: list[dict]) -> list[dict]:
-    """One, or several behind each other, all but the last counted by fields. ``place``: of the first; its name is that of all."""
+def open_parts(
+    draw,
+    place: dict,
+    fields: list[dict],
+    elements: st.SearchStrategy,
+    structs: list[dict],
+) -> list[dict]:
+    """One, or several behind each other, all but the last counted by fields.
+
+    ``place``: of the first; its name is that of all.
+    """
     free = [one for one in fields if _counts(one)]
     found: list[dict] = []
-    for number in range(0 if draw(st.integers(0, 2)) else min(len(free), draw(st.integers(1, 2)))):
+    for number in range(
+        0 if draw(st.integers(0, 2)) else min(len(free), draw(st.integers(1, 2)))
+    ):
         one = open_end(_named(place, number, found), free, elements, structs)
         found.append(draw(one.filter(lambda part: _counter(part) != "rest")))
-        free = [one for one in free if one["name"] != _counter(found[-1])]  # a field counts one part
-    return [*found, draw(open_end(_named(place, 9, found) if found else place, free, elements, structs))]
+        free = [
+            one for one in free if one["name"] != _counter(found[-1])
+        ]  # a field counts one part
+    return [
+        *found,
+        draw(
+            open_end(
+                _named(place, 9, found) if found else place, free, elements, structs
+            )
+        ),
+    ]
 
 
 @st.composite
 def nested_end(
-    draw, length: int, names: list[dict], struct: dict, inner: list[dict], elements: st.SearchStrategy
+    draw,
+    length: int,
+    names: list[dict],
+    struct: dict,
+    inner: list[dict],
+    elements: st.SearchStrategy,
 ) -> tuple[list[dict], dict]:
-    """Counters behind ``length`` bytes, and an array of structs with arrays that one of them counts; and the struct.
+    """Counters behind ``length`` bytes, and an array of structs with arrays that one of
+    them counts; and the struct.
 
-    ``names`` are for both counters and the array, ``inner`` for the fields that come behind those of ``struct``.
+    ``names`` are for both counters and the array, ``inner`` for the fields that come
+    behind those of ``struct``.
     """
     count, inner_count, end = names
     counters = [
-        {"at": 8 * (length + index), "bits": 8, "type": "uint", **one} for index, one in enumerate((count, inner_count))
+        {"at": 8 * (length + index), "bits": 8, "type": "uint", **one}
+        for index, one in enumerate((count, inner_count))
     ]
     fields: list[dict] = []
     for name in inner:
-        element = draw(elements.filter(lambda one: one["type"] != "bool" and one["bits"] % 8 == 0 and one["bits"]))
+        element = draw(
+            elements.filter(
+                lambda one: one["type"] != "bool"
+                and one["bits"] % 8 == 0
+                and one["bits"]
+            )
+        )
         before = {"after": fields[-1]["name"]} if fields else {}
         there = (
-            _counted(draw, "count", counters[1], draw(st.integers(1, 4))) if not fields or draw(st.booleans()) else {}
+            _counted(draw, "count", counters[1], draw(st.integers(1, 4)))
+            if not fields or draw(st.booleans())
+            else {}
         )
-        fields.append({"at": 8 * struct["length"], **before, **name, **element, **there})
-    part = {"at": 8 * (length + 2), **end, "struct": struct["name"], **_counted(draw, "count", counters[0], 2)}
+        fields.append(
+            {"at": 8 * struct["length"], **before, **name, **element, **there}
+        )
+    part = {
+        "at": 8 * (length + 2),
+        **end,
+        "struct": struct["name"],
+        **_counted(draw, "count", counters[0], 2),
+    }
     # Several arrays have one counter: there must be a value that all can have.
     lows, highs = zip(
-        *((-plus, one["up_to"] - plus) for one in fields if "up_to" in one for plus in [_plus(one)]), strict=True
+        *(
+            (-plus, one["up_to"] - plus)
+            for one in fields
+            if "up_to" in one
+            for plus in [_plus(one)]
+        ),
+        strict=True,
     )
     if max(0, *lows) > min(highs):
         for one in fields[1:]:
@@ -81,7 +146,10 @@ def _counter(part: dict) -> str:
 
 def _named(place: dict, number: int, before: list[dict]) -> dict:
     """The place of another part; a number makes its name another."""
-    named = {key: f"{value} {number}" if key in ("name", "identifier") else value for key, value in place.items()}
+    named = {
+        key: f"{value} {number}" if key in ("name", "identifier") else value
+        for key, value in place.items()
+    }
     return named | ({"after": before[-1]["name"]} if before else {})
 
 
@@ -92,7 +160,11 @@ def _counted(draw, key: str, counter: dict | None, most: int) -> dict:
     plus = draw(st.sampled_from(_PLUS))
     largest = (1 << counter["bits"]) - 1
     plus = plus if largest + plus > 0 and plus <= most else 0
-    said = {"field": counter["name"], "plus": plus} if plus or draw(st.integers(0, 5)) == 0 else counter["name"]
+    said = (
+        {"field": counter["name"], "plus": plus}
+        if plus or draw(st.integers(0, 5)) == 0
+        else counter["name"]
+    )
     return {key: said, "up_to": min(most, largest + plus)}
 
 

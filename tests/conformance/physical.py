@@ -1,7 +1,9 @@
-"""``python -m tests.conformance.physical``: the physical value of every raw value of every scaled field, in every language.
+"""``python -m tests.conformance.physical``: the physical value of every raw value of
+every scaled field, in every language.
 
-All values of fields of up to 16 bits; of wider ones the extremes and a million random ones. Each double must be that of the
-reference codec to the last bit, and setting it must give the raw value back. Ends with status 0 if all of that holds.
+All values of fields of up to 16 bits; of wider ones the extremes and a million random
+ones. Each double must be that of the reference codec to the last bit, and setting it
+must give the raw value back. Ends with status 0 if all of that holds.
 """
 
 from __future__ import annotations
@@ -44,7 +46,9 @@ class Total:
 
 @dataclass(frozen=True)
 class Chunk:
-    """Raw values of one kind of field, as the sweep's request gives them, and what must come back."""
+    """Raw values of one kind of field, as the sweep's request gives them, and what must
+    come back.
+    """
 
     request: dict
     raw: tuple[int, ...]
@@ -66,26 +70,48 @@ def chunks(field: NodePlace, count: int, whole: int, near: int = 1000) -> list[C
 
 
 @cache
-def _chunks(scale, curve, type_: str, bits: int, count: int, whole: int, near: int) -> list[Chunk]:
+def _chunks(
+    scale, curve, type_: str, bits: int, count: int, whole: int, near: int
+) -> list[Chunk]:
     field = Scalar(name="any", at=0, bits=bits, type=type_, scale=scale, curve=curve)
     low, high = field.raw_min, field.raw_max
     if bits <= whole:
         return [_chunk(field, {"from": low, "to": high}, tuple(range(low, high + 1)))]
     source = random.Random(f"{scale or curve}/{type_}/{bits}")
-    edges = [raw for middle in (low, 0, high) for raw in range(middle - near, middle + near + 1) if low <= raw <= high]
+    edges = [
+        raw
+        for middle in (low, 0, high)
+        for raw in range(middle - near, middle + near + 1)
+        if low <= raw <= high
+    ]
     values = edges + [source.randint(low, high) for _ in range(count)]
-    values += [raw for shift in range(bits) for raw in (1 << shift, -(1 << shift)) if low <= raw <= high]
+    values += [
+        raw
+        for shift in range(bits)
+        for raw in (1 << shift, -(1 << shift))
+        if low <= raw <= high
+    ]
     parts = (tuple(values[at : at + CHUNK]) for at in range(0, len(values), CHUNK))
     return [_chunk(field, {"values": part}, part) for part in parts]
 
 
 def _chunk(field: NodePlace, request: dict, raw: tuple[int, ...]) -> Chunk:
     doubles = [codec.physical_double(field, one) for one in raw]
-    failures = sum(not comes_back(field, one, value) for one, value in zip(raw, doubles, strict=True))
+    failures = sum(
+        not comes_back(field, one, value)
+        for one, value in zip(raw, doubles, strict=True)
+    )
     return Chunk(request, raw, "".join(map(bits_of, doubles)), failures)
 
 
-def sweep(testee: Testee, total: Total, message: Message, field: NodePlace, chunk: Chunk, notes: list[str]) -> None:
+def sweep(
+    testee: Testee,
+    total: Total,
+    message: Message,
+    field: NodePlace,
+    chunk: Chunk,
+    notes: list[str],
+) -> None:
     """One request, compared."""
     about = {
         "node": message.node,
@@ -101,27 +127,36 @@ def sweep(testee: Testee, total: Total, message: Message, field: NodePlace, chun
     answer = json.loads(line) if line else {}
     total.values += len(chunk.raw)
     where = f"{message.node} {message.name!r} {field.name!r}"
-    if answer.get("ok") is not True or len(answer.get("physical", "")) != len(chunk.physical):
+    if answer.get("ok") is not True or len(answer.get("physical", "")) != len(
+        chunk.physical
+    ):
         total.differences += len(chunk.raw)
         notes.append(f"{where}: {str(answer)[:200]}")
         return
     if answer["physical"] != chunk.physical:
         for index, raw in enumerate(chunk.raw):
-            expected, found = (text[index * 16 : index * 16 + 16] for text in (chunk.physical, answer["physical"]))
+            expected, found = (
+                text[index * 16 : index * 16 + 16]
+                for text in (chunk.physical, answer["physical"])
+            )
             if expected != found:
                 total.differences += 1
                 notes.append(f"{where}: raw {raw} is {found}, not {expected}")
     total.not_back += answer["failures"]
     if answer["failures"] != chunk.failures:
         total.differences += abs(answer["failures"] - chunk.failures)
-        notes.append(f"{where}: {answer['failures']} values do not come back, expected {chunk.failures}")
+        notes.append(
+            f"{where}: {answer['failures']} values do not come back, expected {chunk.failures}"
+        )
 
 
-def run(names: list[str], icd: Icd, count: int, whole: int = 16, near: int = 1000) -> tuple[list[Total], list[str]]:
+def run(
+    names: list[str], icd: Icd, count: int, whole: int = 16, near: int = 1000
+) -> tuple[list[Total], list[str]]:
     """The totals, and the first differences in words. Raises `BuildError`.
 
-    Fields of up to ``whole`` bits are asked for all their values, wider ones for ``count`` random ones
-    and those ``near`` 0 and the ends of the range.
+    Fields of up to ``whole`` bits are asked for all their values, wider ones for
+    ``count`` random ones and those ``near`` 0 and the ends of the range.
     """
     languages = all_languages()
     totals, notes = [Total(name) for name in names], []
@@ -139,12 +174,21 @@ def run(names: list[str], icd: Icd, count: int, whole: int = 16, near: int = 100
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.conformance.physical", description=__doc__)
-    parser.add_argument("--lang", default="c,python,rust", help="comma-separated (default: %(default)s)")
-    parser.add_argument(
-        "--random", type=int, default=1_000_000, help="values of each wider field (default: %(default)s)"
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.conformance.physical", description=__doc__
     )
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--lang", default="c,python,rust", help="comma-separated (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--random",
+        type=int,
+        default=1_000_000,
+        help="values of each wider field (default: %(default)s)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     languages = all_languages()
     for name in options.lang.split(","):
@@ -153,15 +197,21 @@ def main(arguments: list[str] | None = None) -> int:
         if languages[name].missing():
             parser.error(f"{name} needs {', '.join(languages[name].missing())}")
     try:
-        totals, notes = run(options.lang.split(","), icd_of(options.icds), options.random)
+        totals, notes = run(
+            options.lang.split(","), icd_of(options.icds), options.random
+        )
     except (BuildError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
     for note in notes[:50]:
         print(note)
-    print(f"{'language':12}{'fields':>8}{'values':>14}{'differences':>14}{'not back':>10}{'seconds':>9}")
+    print(
+        f"{'language':12}{'fields':>8}{'values':>14}{'differences':>14}{'not back':>10}{'seconds':>9}"
+    )
     for t in totals:
-        print(f"{t.name:12}{t.fields:8,}{t.values:14,}{t.differences:14,}{t.not_back:10,}{t.seconds:9.1f}")
+        print(
+            f"{t.name:12}{t.fields:8,}{t.values:14,}{t.differences:14,}{t.not_back:10,}{t.seconds:9.1f}"
+        )
     return 1 if any(t.differences for t in totals) else 0
 
 

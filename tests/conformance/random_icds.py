@@ -1,4 +1,5 @@
-"""``python -m tests.conformance.random_icds --icds 200``: random valid ICDs, all languages, compared with the reference codec.
+"""``python -m tests.conformance.random_icds --icds 200``: random valid ICDs, all
+languages, compared with the reference codec.
 
 Ends with status 0 if every ICD builds in every language and no answer differs.
 """
@@ -24,21 +25,36 @@ from tests.conformance.wholes import with_wholes
 
 
 class Differs(AssertionError):
-    """A language does not agree with the reference codec; the message says where, and holds the ICDs."""
+    """A language does not agree with the reference codec.
+
+    The message says where, and holds the ICDs.
+    """
 
 
 def written(trees: dict[str, dict], folder: Path) -> Icd:
-    """The checked ICDs of the trees; identifiers and formulas that the rules refuse are replaced. Raises `Differs`."""
+    """The checked ICDs of the trees.
+
+    Identifiers and formulas that the rules refuse are replaced. Raises `Differs`.
+    """
     for name, tree in trees.items():
-        (folder / f"{name}.yaml").write_text(json.dumps(tree, ensure_ascii=False, indent=1), encoding="utf-8")
+        (folder / f"{name}.yaml").write_text(
+            json.dumps(tree, ensure_ascii=False, indent=1), encoding="utf-8"
+        )
     for attempt in range(5):
         loaded = load([folder])
         errors = [finding for finding in loaded.findings if finding.severity == "error"]
         if not errors:
             return loaded.icd
         for finding in errors:
-            _mend(Path(finding.place.file), finding.place.line, f"item {attempt} {finding.place.line}")
-    raise Differs("the strategy made an ICD that is not valid:\n" + "\n".join(map(str, loaded.findings)))
+            _mend(
+                Path(finding.place.file),
+                finding.place.line,
+                f"item {attempt} {finding.place.line}",
+            )
+    raise Differs(
+        "the strategy made an ICD that is not valid:\n"
+        + "\n".join(map(str, loaded.findings))
+    )
 
 
 def _mend(file: Path, number: int, name: str) -> None:
@@ -47,32 +63,56 @@ def _mend(file: Path, number: int, name: str) -> None:
     key, colon, value = lines[number - 1].partition(": ")
     harmless = {"identifier": name, "formula": "raw*0.01"}.get(key.strip().strip('"'))
     if harmless is not None:
-        lines[number - 1] = f"{key}{colon}{json.dumps(harmless)}{',' if value.endswith(',') else ''}"
+        lines[number - 1] = (
+            f"{key}{colon}{json.dumps(harmless)}{',' if value.endswith(',') else ''}"
+        )
         file.write_text("\n".join(lines), encoding="utf-8")
 
 
-def compare(trees: dict[str, dict], languages: list[Language], frames: int = 5) -> list[Result]:
-    """Generates, builds and drives every language. Raises `Differs` and `BuildError`."""
+def compare(
+    trees: dict[str, dict], languages: list[Language], frames: int = 5
+) -> list[Result]:
+    """Generates, builds and drives every language.
+
+    Raises `Differs` and `BuildError`.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "icd").mkdir()
         icd = written(trees, folder / "icd")
         results = run(languages, icd, vectors_of(icd), frames, folder=folder / "build")
-        bad = [f"{result.name}: {text}" for result in results for text in result.shown[:3]]
+        bad = [
+            f"{result.name}: {text}" for result in results for text in result.shown[:3]
+        ]
         if bad:
             raise Differs("\n".join(bad) + f"\n{json.dumps(trees, ensure_ascii=False)}")
         return results
 
 
-def check(count: int, names: list[str], start: int, say=lambda text: None, shrink: bool = False) -> dict[str, Result]:
-    """Checks ``count`` random ICDs; the sum of the results by language. Raises what `compare` raises, of the smallest ICD found."""
+def check(
+    count: int,
+    names: list[str],
+    start: int,
+    say=lambda text: None,
+    shrink: bool = False,
+) -> dict[str, Result]:
+    """Checks ``count`` random ICDs; the sum of the results by language.
+
+    Raises what `compare` raises, of the smallest ICD found.
+    """
     languages = [all_languages()[name] for name in names]
     totals = {name: Result(name) for name in names}
     done = 0
     phases = (Phase.generate, Phase.shrink) if shrink else (Phase.generate,)
 
     @seed(start)
-    @settings(max_examples=count, database=None, deadline=None, phases=phases, suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        phases=phases,
+        suppress_health_check=list(HealthCheck),
+    )
     @given(with_wholes(icds()))
     def one(trees: dict[str, dict]) -> None:
         nonlocal done
@@ -90,17 +130,33 @@ def check(count: int, names: list[str], start: int, say=lambda text: None, shrin
 def main(arguments: list[str] | None = None) -> int:
     from tests.conformance.run import table
 
-    parser = argparse.ArgumentParser(prog="python -m tests.conformance.random_icds", description=__doc__)
-    parser.add_argument("--icds", type=int, default=10, help="how many (default: %(default)s)")
-    parser.add_argument("--lang", default="c,python,rust-debug", help="comma-separated (default: %(default)s)")
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.conformance.random_icds", description=__doc__
+    )
+    parser.add_argument(
+        "--icds", type=int, default=10, help="how many (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--lang",
+        default="c,python,rust-debug",
+        help="comma-separated (default: %(default)s)",
+    )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--shrink", action="store_true", help="make an ICD that differs as small as can be: slow")
+    parser.add_argument(
+        "--shrink",
+        action="store_true",
+        help="make an ICD that differs as small as can be: slow",
+    )
     options = parser.parse_args(arguments)
     start = time.perf_counter()
     say = lambda text: print(text, file=sys.stderr, flush=True)  # noqa: E731
-    totals = check(options.icds, options.lang.split(","), options.seed, say, options.shrink)
+    totals = check(
+        options.icds, options.lang.split(","), options.seed, say, options.shrink
+    )
     print(table(list(totals.values())))
-    print(f"{options.icds} random ICDs in {time.perf_counter() - start:.0f} s, no difference")
+    print(
+        f"{options.icds} random ICDs in {time.perf_counter() - start:.0f} s, no difference"
+    )
     return 0
 
 

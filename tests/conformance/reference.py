@@ -1,4 +1,5 @@
-"""A testee over the reference codec: the protocol of ``README.md`` in its plainest form.
+"""A testee over the reference codec: the protocol of ``README.md`` in its plainest
+form.
 
 ``python -m tests.conformance.reference [ICD ...]``
 """
@@ -58,8 +59,15 @@ class Reference:
             return {"ok": False, "error": "request", "detail": str(error)}
 
     def message(self, request: dict) -> tuple[Node, Any]:
-        """The message that is meant and the node that declares it; all of a shared id, where a frame is to tell."""
-        name, kind, id = key(request, "node", str), key(request, "kind", str), key(request, "id", int)
+        """The message that is meant and the node that declares it.
+
+        All of a shared id, where a frame is to tell.
+        """
+        name, kind, id = (
+            key(request, "node", str),
+            key(request, "kind", str),
+            key(request, "id", int),
+        )
         picks = {
             "telecommand": ["telecommand_id"],
             "telemetry": ["telemetry_id"],
@@ -70,10 +78,17 @@ class Reference:
         node = self.node(name)
         named = key(request, "message", str) if "message" in request else None
         for pick in picks[kind]:
-            found = [message for message in self.icd.messages_of(node) if getattr(message, pick) == id]
+            found = [
+                message
+                for message in self.icd.messages_of(node)
+                if getattr(message, pick) == id
+            ]
             if len(found) > 1 and named is None:
                 if request["op"] != "decode":
-                    raise Refusal("request", detail="several messages have the id, and `message` names none")
+                    raise Refusal(
+                        "request",
+                        detail="several messages have the id, and `message` names none",
+                    )
                 return node, found
             found = [message for message in found if named in (None, message.name)]
             if found:
@@ -86,7 +101,10 @@ class Reference:
         if found is None:
             raise Refusal("unknown-id")
         node = self.icd.node(found.node)
-        return {"message": found.name, "bytes": codec.encode(node, found, codec.decode(node, found, frame)).hex()}
+        return {
+            "message": found.name,
+            "bytes": codec.encode(node, found, codec.decode(node, found, frame)).hex(),
+        }
 
     def node(self, name: str) -> Node:
         try:
@@ -105,14 +123,20 @@ class Reference:
                 return self.dispatched(message, frame)
             return described(node, message, codec.decode(node, message, frame), names)
         except codec.LengthError as error:
-            raise Refusal("length", expected=error.expected, actual=error.actual) from None
+            raise Refusal(
+                "length", expected=error.expected, actual=error.actual
+            ) from None
 
     def encode(self, request: dict) -> dict:
         given, physical = request.get("raw", {}), request.get("physical", {})
         if not isinstance(given, dict) or not isinstance(physical, dict):
             raise Refusal("request")
         node, message = self.message(request)
-        fields = {field.name: field for field in frame_fields(message.layout, node.orders) if field.is_raw}
+        fields = {
+            field.name: field
+            for field in frame_fields(message.layout, node.orders)
+            if field.is_raw
+        }
         for name in given:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
@@ -138,22 +162,34 @@ class Reference:
                 codec.size_of_values(part, raw)
             except codec.CodecError as error:
                 raise Refusal("range", field=part.counter, detail=str(error)) from None
-        return described(node, message, codec.decode(node, message, codec.encode(node, message, raw)))
+        return described(
+            node, message, codec.decode(node, message, codec.encode(node, message, raw))
+        )
 
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
-        default, fields = codec.new(node, message), frame_fields(message.layout, node.orders)
+        default, fields = codec.new(node, message), frame_fields(
+            message.layout, node.orders
+        )
         return {
             "name": message.name,
             "ids": list(message.ids),
             "length": message.length,
             "default": {f.name: shown(f, default.get(f.name)) for f in fields},
-            "special": {f.name: [shown(f, special.value) for special in f.special] for f in fields if f.special},
+            "special": {
+                f.name: [shown(f, special.value) for special in f.special]
+                for f in fields
+                if f.special
+            },
             "limits": {f.name: limits(f) for f in fields if f.limits},
         }
 
     def enum(self, request: dict) -> dict:
-        name, wanted, value = key(request, "node", str), key(request, "enum", str), key(request, "value", int)
+        name, wanted, value = (
+            key(request, "node", str),
+            key(request, "enum", str),
+            key(request, "value", int),
+        )
         for enum in self.node(name).enums:
             if enum.name == wanted:
                 return {"name": named(enum, value)}
@@ -161,7 +197,10 @@ class Reference:
 
     def about_node(self, request: dict) -> dict:
         node = self.node(key(request, "node", str))
-        return {"node_type": node.node_type, "interface_version": node.interface_version}
+        return {
+            "node_type": node.node_type,
+            "interface_version": node.interface_version,
+        }
 
     def sweep(self, request: dict) -> dict:
         name = key(request, "field", str)
@@ -173,7 +212,9 @@ class Reference:
             raise Refusal("request")
         node, message = self.message(request)
         fields = frame_fields(message.layout, node.orders)
-        field = next((field for field in fields if field.is_raw and field.name == name), None)
+        field = next(
+            (field for field in fields if field.is_raw and field.name == name), None
+        )
         if field is None or not settable(field):
             raise Refusal("unknown-field", field=name)
         found, failures = [], 0
@@ -197,12 +238,18 @@ def key(request: dict, name: str, type_: type):
     """The value of a key that must be there and of that type."""
     value = request.get(name)
     if type(value) is not type_:
-        raise Refusal("request", detail=f"`{name}` is missing or is not of the right type")
+        raise Refusal(
+            "request", detail=f"`{name}` is missing or is not of the right type"
+        )
     return value
 
 
 def hex_bytes(text: object, size: int | None = None) -> bytes:
-    if not isinstance(text, str) or not re.fullmatch("([0-9A-Fa-f]{2})*", text) or size not in (None, len(text) // 2):
+    if (
+        not isinstance(text, str)
+        or not re.fullmatch("([0-9A-Fa-f]{2})*", text)
+        or size not in (None, len(text) // 2)
+    ):
         raise Refusal("request", detail="not the hex digits that are expected")
     return bytes.fromhex(text)
 
@@ -236,8 +283,14 @@ def settable(field: FrameField) -> bool:
 
 def limits(field: FrameField) -> dict[str, str]:
     """The limits of a field, as doubles."""
-    found = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
-    return {key: bits_of(value.numerator / value.denominator) for key, value in found.items() if value is not None}
+    found = {
+        key: getattr(field.limits, key) for key in ("min", "max", "above", "below")
+    }
+    return {
+        key: bits_of(value.numerator / value.denominator)
+        for key, value in found.items()
+        if value is not None
+    }
 
 
 def shown(field: FrameField, value: int | bytes | None) -> object:
@@ -252,7 +305,9 @@ def shown(field: FrameField, value: int | bytes | None) -> object:
 
 
 def physical_value(field: FrameField, raw: int | bytes | None) -> str | None:
-    """A physical value as it stands in an answer: a text in hex, null where the bytes are none or the field is not there."""
+    """A physical value as it stands in an answer: a text in hex, null where the bytes
+    are none or the field is not there.
+    """
     if raw is None:
         return None
     if not isinstance(raw, bytes):
@@ -274,11 +329,17 @@ def described(node: Node, message: Message, raw: dict, names: bool = False) -> d
     fields = frame_fields(message.layout, node.orders)
     answer: dict = {
         "raw": {field.name: shown(field, raw.get(field.name)) for field in fields},
-        "physical": {f.name: physical_value(f, raw.get(f.name)) for f in fields if f.has_formula or f.type == "text"},
+        "physical": {
+            f.name: physical_value(f, raw.get(f.name))
+            for f in fields
+            if f.has_formula or f.type == "text"
+        },
         "bytes": codec.encode(node, message, raw).hex(),
     }
     if names:
-        answer["names"] = {f.name: named(f.enum, raw.get(f.name)) for f in fields if f.enum}
+        answer["names"] = {
+            f.name: named(f.enum, raw.get(f.name)) for f in fields if f.enum
+        }
     return answer
 
 

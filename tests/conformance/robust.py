@@ -1,4 +1,7 @@
-"""Requests that no testee may die of, and the refusal that each demands. They need a node with any message."""
+"""Requests that no testee may die of, and the refusal that each demands.
+
+They need a node with any message.
+"""
 
 from __future__ import annotations
 
@@ -43,27 +46,47 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
     yield {**decode, "id": 2**64}, {"ok": False, "error": "unknown-id"}
     yield {**decode, "id": -(2**70)}, {"ok": False, "error": "unknown-id"}
     yield {**decode, "node": ""}, {"ok": False, "error": "unknown-node"}
-    yield {**decode, "node": "no such node \U0001f6f0"}, {"ok": False, "error": "unknown-node"}
+    yield {**decode, "node": "no such node \U0001f6f0"}, {
+        "ok": False,
+        "error": "unknown-node",
+    }
     for value in (None, [], "", 7):
         yield {**encode, "raw": value}, refusal
         yield {**encode, "physical": value}, refusal
     strange = 'no such field \U0001f6f0 "\\\n\0'
-    yield {**encode, "raw": {**cases.given, strange: 0}}, {"ok": False, "error": "unknown-field", "field": strange}
-    yield {**encode, "physical": {strange: "0" * 16}}, {"ok": False, "error": "unknown-field", "field": strange}
+    yield {**encode, "raw": {**cases.given, strange: 0}}, {
+        "ok": False,
+        "error": "unknown-field",
+        "field": strange,
+    }
+    yield {**encode, "physical": {strange: "0" * 16}}, {
+        "ok": False,
+        "error": "unknown-field",
+        "field": strange,
+    }
     for field in cases.fields:
         if field["name"] in cases.views:
             continue  # see `MessageCases.set_views`
         yield from bad_field(cases, encode, field)
-    yield {**cases.request("enum"), "enum": "no such", "value": 0}, {"ok": False, "error": "unknown-enum"}
+    yield {**cases.request("enum"), "enum": "no such", "value": 0}, {
+        "ok": False,
+        "error": "unknown-enum",
+    }
 
 
-def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[dict, dict]]:
+def bad_field(
+    cases: MessageCases, encode: dict, field: dict
+) -> Iterator[tuple[dict, dict]]:
     """Encoding with something wrong about one field."""
     name, refusal = field["name"], {"ok": False, "error": "request"}
     without = {key: value for key, value in cases.there(field).items() if key != name}
     is_conditional = name in cases.conditional  # what is not there need not be given
     if not is_conditional:
-        yield {**encode, "raw": without}, {"ok": False, "error": "missing-field", "field": name}
+        yield {**encode, "raw": without}, {
+            "ok": False,
+            "error": "missing-field",
+            "field": name,
+        }
     if "set" not in field:
         request = {**encode, "raw": without, "physical": {name: "0" * 16}}
         yield request, {"ok": False, "error": "unknown-field", "field": name}
@@ -74,7 +97,9 @@ def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[
         for value in (None, 0, "0" * 15, "0" * 18, "0" * 15 + "x", True):
             yield {**encode, "raw": without, "physical": {name: value}}, refusal
         yield from bad_sweep(cases, name)
-    wrong: tuple[object, ...] = ([], {}, 1.5, 1e3) if is_conditional else (None, [], {}, 1.5, 1e3)
+    wrong: tuple[object, ...] = (
+        ([], {}, 1.5, 1e3) if is_conditional else (None, [], {}, 1.5, 1e3)
+    )
     if field["type"] in ("float", "bytes", "text"):
         wrong += (0, True, "0", "zz" * (field["bits"] // 8), " ")
     else:
@@ -84,13 +109,22 @@ def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[
     for value in wrong:
         yield {**encode, "raw": {**without, name: value}}, refusal
     sizes = ("", "00" * (field["bits"] // 8 + 1))
-    unfit = {"float": (), "bytes": sizes, "text": sizes, "bool": (2, -1)}.get(field["type"], ())
+    unfit = {"float": (), "bytes": sizes, "text": sizes, "bool": (2, -1)}.get(
+        field["type"], ()
+    )
     if field["type"] not in ("float", "bytes", "text"):
         unfit = (*unfit, 2**64, -(2**63) - 1, 10**40, -(10**40))
     for value in unfit:
-        yield {**encode, "raw": {**without, name: value}}, {"ok": False, "error": "range", "field": name}
+        yield {**encode, "raw": {**without, name: value}}, {
+            "ok": False,
+            "error": "range",
+            "field": name,
+        }
     if field["type"] == "float":
-        yield {**encode, "raw": {**without, name: "0" * (field["bits"] // 4 + 2)}}, refusal
+        yield {
+            **encode,
+            "raw": {**without, name: "0" * (field["bits"] // 4 + 2)},
+        }, refusal
 
 
 def bad_sweep(cases: MessageCases, name: str) -> Iterator[tuple[dict, dict]]:
@@ -105,7 +139,11 @@ def bad_sweep(cases: MessageCases, name: str) -> Iterator[tuple[dict, dict]]:
     yield {**sweep, "values": [None]}, refusal
     yield {**sweep, "values": {}}, refusal
     yield {**sweep, "values": [2**64]}, {"ok": False, "error": "range", "field": name}
-    yield {**sweep, "field": "no such"} | {"values": []}, {"ok": False, "error": "unknown-field", "field": "no such"}
+    yield {**sweep, "field": "no such"} | {"values": []}, {
+        "ok": False,
+        "error": "unknown-field",
+        "field": "no such",
+    }
     yield {**sweep, "values": []}, {"ok": True, "physical": "", "failures": 0}
 
 

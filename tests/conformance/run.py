@@ -1,4 +1,5 @@
-"""``python -m tests.conformance.run --lang c,python,rust``: golden vectors and random frames through every language.
+"""``python -m tests.conformance.run --lang c,python,rust``: golden vectors and random
+frames through every language.
 
 Ends with status 0 if no answer differs from what the reference codec demands, else 1.
 """
@@ -23,7 +24,13 @@ from icdgen.vectors.make import frame_row
 from icdgen.vectors.write import raw_json
 from tests.conformance import robust
 from tests.conformance.build import BuildError, build
-from tests.conformance.cases import Case, MessageCases, member_names, node_cases, shared_names
+from tests.conformance.cases import (
+    Case,
+    MessageCases,
+    member_names,
+    node_cases,
+    shared_names,
+)
 from tests.conformance.compare import difference
 from tests.conformance.driver import Answering, InProcess, Testee
 from tests.conformance.icds import COMMITTED, icd_of, read_vectors, vectors_of
@@ -64,7 +71,9 @@ class Batch:
     frames: int = 0
 
 
-def batches(icd: Icd, files: dict[str, dict], frames: int, seed: int) -> Iterator[Batch]:
+def batches(
+    icd: Icd, files: dict[str, dict], frames: int, seed: int
+) -> Iterator[Batch]:
     """Everything that is asked of each testee."""
     enums = member_names(files)
     for node in icd.nodes:
@@ -73,7 +82,9 @@ def batches(icd: Icd, files: dict[str, dict], frames: int, seed: int) -> Iterato
         spoken = [*icd.included(node), node]
         for declaring in spoken:
             for message in files[declaring.name]["messages"]:
-                cases = MessageCases(node.name, message, enums, data["never_set"], shared_names(data))
+                cases = MessageCases(
+                    node.name, message, enums, data["never_set"], shared_names(data)
+                )
                 label = f"{node.name} {message['name']!r}"
                 count = len(message["vectors"])
                 for batch in _batch(label, cases.all()):
@@ -82,7 +93,13 @@ def batches(icd: Icd, files: dict[str, dict], frames: int, seed: int) -> Iterato
         own = {message["name"]: message for message in data["messages"]}
         for message in node.messages:
             if frames:
-                cases = MessageCases(node.name, own[message.name], enums, data["never_set"], shared_names(data))
+                cases = MessageCases(
+                    node.name,
+                    own[message.name],
+                    enums,
+                    data["never_set"],
+                    shared_names(data),
+                )
                 yield from _random(icd, message, cases, frames, seed)
         if data["messages"]:
             yield from _robust(data, enums)
@@ -92,11 +109,15 @@ def _batch(label: str, cases: Iterator[Case]) -> Iterator[Batch]:
     found = list(cases)
     if found:
         yield Batch(
-            [robust.line(c.request) for c in found], [c.answer for c in found], [f"{label}: {c.about}" for c in found]
+            [robust.line(c.request) for c in found],
+            [c.answer for c in found],
+            [f"{label}: {c.about}" for c in found],
         )
 
 
-def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> Iterator[Batch]:
+def _random(
+    icd: Icd, message, cases: MessageCases, frames: int, seed: int
+) -> Iterator[Batch]:
     source = random.Random(f"{seed}/{message.node}/{message.name}")
     node, left = icd.node(message.node), frames
     fields = frame_fields(message.layout, node.orders)
@@ -110,10 +131,18 @@ def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> I
             frame = source.randbytes(message.length)
             optional = [field for field in fields if field.conditions]
             if parts:
-                frame = patterns.cut(message, node, frame, source.randint(parts[-1].fewest, parts[-1].most))
+                frame = patterns.cut(
+                    message,
+                    node,
+                    frame,
+                    source.randint(parts[-1].fewest, parts[-1].most),
+                )
             elif optional and source.random() < 0.7:
                 field = source.choice(optional)
-                values = {known[one.field]: source.choice(one.values) for one in field.conditions}
+                values = {
+                    known[one.field]: source.choice(one.values)
+                    for one in field.conditions
+                }
                 frame = codec.frame_of(frame, values)
             row = frame_row(node, message, "random frame", frame)
             vector = {
@@ -133,7 +162,9 @@ def _robust(data: dict, enums: dict) -> Iterator[Batch]:
     answers: list[dict] = [{"ok": False, "error": "request"}] * len(lines)
     about = [f"bad line {line[:60]!r}" for line in lines]
     largest = max(data["messages"], key=lambda m: len({f["type"] for f in m["fields"]}))
-    cases = MessageCases(data["node"], largest, enums, data["never_set"], shared_names(data))
+    cases = MessageCases(
+        data["node"], largest, enums, data["never_set"], shared_names(data)
+    )
     for request, answer in robust.bad_requests(cases):
         lines.append(robust.line(request))
         answers.append(answer)
@@ -154,7 +185,10 @@ def run(
 
 
 def run_batches(
-    languages: list[Language], icd: Icd, asked: Iterable[Batch], folder: Path | None = None
+    languages: list[Language],
+    icd: Icd,
+    asked: Iterable[Batch],
+    folder: Path | None = None,
 ) -> list[Result]:
     """The same, of what is asked already made."""
     results: list[Result] = []
@@ -164,7 +198,11 @@ def run_batches(
             results.append(selftest(language, build(language, icd, folder)))
             continue
         reference = language.kind == REFERENCE
-        testee = InProcess(Reference(icd).answer) if reference else Testee(build(language, icd, folder))
+        testee = (
+            InProcess(Reference(icd).answer)
+            if reference
+            else Testee(build(language, icd, folder))
+        )
         results.append(Result(language.name))
         testees.append((results[-1], testee))
     for batch in asked if testees else ():
@@ -173,7 +211,9 @@ def run_batches(
     for result, testee in testees:
         status = testee.close()
         if status:
-            result.differs(f"the testee ended with status {status}: {testee.complaint()}")
+            result.differs(
+                f"the testee ended with status {status}: {testee.complaint()}"
+            )
     return results
 
 
@@ -182,10 +222,14 @@ def drive(testee: Answering, batch: Batch, result: Result) -> None:
     start = time.perf_counter()
     replies = testee.ask(batch.lines)
     result.seconds += time.perf_counter() - start
-    for line, expected, about, reply in zip(batch.lines, batch.answers, batch.about, replies, strict=True):
+    for line, expected, about, reply in zip(
+        batch.lines, batch.answers, batch.about, replies, strict=True
+    ):
         problem = difference(expected, reply)
         if problem:
-            result.differs(f"{about}\n    sent {line[:300].decode('ascii', 'replace')}\n    {problem}")
+            result.differs(
+                f"{about}\n    sent {line[:300].decode('ascii', 'replace')}\n    {problem}"
+            )
             if reply is None:
                 result.shown.append(testee.complaint())
                 break
@@ -198,14 +242,22 @@ def drive(testee: Answering, batch: Batch, result: Result) -> None:
 def selftest(language: Language, command: list[str]) -> Result:
     """Runs a self-test, whose last line is JSON: messages, vectors, checks, failures."""
     result, start = Result(language.name), time.perf_counter()
-    done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
+    done = subprocess.run(
+        command, capture_output=True, text=True, errors="replace", timeout=600
+    )
     result.seconds = time.perf_counter() - start
     try:
         counts = json.loads(done.stdout.strip().splitlines()[-1])
-        result.messages, result.vectors, result.requests = counts["messages"], counts["vectors"], counts["checks"]
+        result.messages, result.vectors, result.requests = (
+            counts["messages"],
+            counts["vectors"],
+            counts["checks"],
+        )
         result.differences = counts["failures"]
     except (ValueError, IndexError, KeyError):
-        result.differs(f"the self-test did not end as it should (status {done.returncode})")
+        result.differs(
+            f"the self-test did not end as it should (status {done.returncode})"
+        )
     if done.returncode and not result.differences:
         result.differs(f"status {done.returncode}")
     if result.differences:
@@ -215,7 +267,15 @@ def selftest(language: Language, command: list[str]) -> Result:
 
 def table(results: list[Result]) -> str:
     """One line a language."""
-    head = ("language", "messages", "vectors", "random frames", "requests", "differences", "seconds")
+    head = (
+        "language",
+        "messages",
+        "vectors",
+        "random frames",
+        "requests",
+        "differences",
+        "seconds",
+    )
     rows = [
         (
             r.name,
@@ -228,16 +288,25 @@ def table(results: list[Result]) -> str:
         )
         for r in results
     ]
-    widths = [max(len(row[column]) for row in (head, *rows)) for column in range(len(head))]
+    widths = [
+        max(len(row[column]) for row in (head, *rows)) for column in range(len(head))
+    ]
     lines = []
     for first, *rest in (head, *rows):
-        numbers = (text.rjust(width) for text, width in zip(rest, widths[1:], strict=True))
+        numbers = (
+            text.rjust(width) for text, width in zip(rest, widths[1:], strict=True)
+        )
         lines.append("  ".join((first.ljust(widths[0]), *numbers)))
     return "\n".join(lines)
 
 
-def chosen(parser: argparse.ArgumentParser, given: str, languages: dict[str, Language]) -> list[Language]:
-    """The languages of ``--lang``. Ends the program for one that does not exist or whose tools are not installed."""
+def chosen(
+    parser: argparse.ArgumentParser, given: str, languages: dict[str, Language]
+) -> list[Language]:
+    """The languages of ``--lang``.
+
+    Ends the program for one that does not exist or whose tools are not installed.
+    """
     names = given.split(",")
     unknown = [name for name in names if name not in languages]
     if unknown:
@@ -259,21 +328,41 @@ def told(results: list[Result]) -> int:
 
 def main(arguments: list[str] | None = None) -> int:
     languages = all_languages()
-    parser = argparse.ArgumentParser(prog="python -m tests.conformance.run", description=__doc__)
-    parser.add_argument(
-        "--lang", default="c,python,rust", help=f"comma-separated, of {', '.join(languages)} (default: %(default)s)"
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.conformance.run", description=__doc__
     )
-    parser.add_argument("--frames", type=int, default=20, help="random frames a message (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="of the random frames (default: %(default)s)")
     parser.add_argument(
-        "--vectors", type=Path, help="folder of the vector files (default: generated/vectors, else made now)"
+        "--lang",
+        default="c,python,rust",
+        help=f"comma-separated, of {', '.join(languages)} (default: %(default)s)",
     )
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--frames",
+        type=int,
+        default=20,
+        help="random frames a message (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seed",
+        type=int,
+        default=1,
+        help="of the random frames (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--vectors",
+        type=Path,
+        help="folder of the vector files (default: generated/vectors, else made now)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     asked = chosen(parser, options.lang, languages)
     try:
         icd = icd_of(options.icds)
-        committed = options.vectors or (COMMITTED if COMMITTED.is_dir() and not options.icds else None)
+        committed = options.vectors or (
+            COMMITTED if COMMITTED.is_dir() and not options.icds else None
+        )
         files = read_vectors(committed) if committed else vectors_of(icd)
         absent = [node.name for node in icd.nodes if node.name not in files]
         if absent:

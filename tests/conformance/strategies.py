@@ -15,7 +15,8 @@ from tests.conformance.derived import derived
 from tests.conformance.open_ends import nested_end, open_end, open_parts
 from tests.conformance.sharing import sharing
 
-# Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
+# Words that mean something to a language, to generated code, or to a template; alone
+# each would be a bad identifier.
 _WORDS = (
     "class", "def", "None", "True", "self", "import", "lambda", "async", "match", "type", "fn", "crate", "impl", "mod", "Self",
     "int", "char", "register", "volatile", "struct", "union", "void", "static", "restrict", "template", "operator", "new", "dyn",
@@ -38,16 +39,25 @@ class Names:
     seen: set
 
     def one(self, word: str) -> dict:
-        """``name`` and ``identifier`` of something; the rules may refuse the identifier."""
+        """``name`` and ``identifier`` of something.
+
+        The rules may refuse the identifier.
+        """
         draw = self.draw
         number = len(self.seen)
-        pieces = draw(st.lists(st.sampled_from(_WORDS + _NASTY), min_size=1, max_size=4))
+        pieces = draw(
+            st.lists(st.sampled_from(_WORDS + _NASTY), min_size=1, max_size=4)
+        )
         name = draw(st.sampled_from((" ", ""))).join(pieces).strip()
         while name in self.seen or not name:
             name += f" {number}"
         self.seen.add(name)
         dangerous = draw(st.sampled_from(_WORDS))
-        identifier = dangerous if draw(st.integers(0, 2)) == 0 else f"{dangerous} {word} {number}"
+        identifier = (
+            dangerous
+            if draw(st.integers(0, 2)) == 0
+            else f"{dangerous} {word} {number}"
+        )
         return {"name": name, "identifier": identifier}
 
 
@@ -60,7 +70,14 @@ def icds(draw) -> dict[str, dict]:
     for number in range(draw(st.integers(1, 3))):
         name = f"n{number}"
         includes = bool(number) and draw(st.booleans())
-        tree = draw(_icd(name, names, shared if not number or includes else draw(_ids()), first_id=number * 60))
+        tree = draw(
+            _icd(
+                name,
+                names,
+                shared if not number or includes else draw(_ids()),
+                first_id=number * 60,
+            )
+        )
         if includes:
             tree["include"] = ["n0.yaml"]
         trees[name] = tree
@@ -69,7 +86,9 @@ def icds(draw) -> dict[str, dict]:
 
 @dataclass(frozen=True)
 class Ids:
-    """The ids of a node: ``bits`` wide, with ``above`` in the bits above the lowest byte; some written as bytes."""
+    """The ids of a node: ``bits`` wide, with ``above`` in the bits above the lowest
+    byte; some written as bytes.
+    """
 
     bits: int
     above: int
@@ -77,7 +96,11 @@ class Ids:
 
     def __call__(self, low: int) -> int | list[int]:
         id = self.above << 8 | low
-        return list(id.to_bytes((self.bits + 7) // 8, "big")) if self.as_bytes and low % 2 else id
+        return (
+            list(id.to_bytes((self.bits + 7) // 8, "big"))
+            if self.as_bytes and low % 2
+            else id
+        )
 
 
 @st.composite
@@ -88,7 +111,10 @@ def _ids(draw) -> Ids:
 
 @st.composite
 def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
-    enums = [draw(_enum(Names(draw, set()), f"E{name}{number}")) for number in range(draw(st.integers(1, 3)))]
+    enums = [
+        draw(_enum(Names(draw, set()), f"E{name}{number}"))
+        for number in range(draw(st.integers(1, 3)))
+    ]
     orders = {
         "byte_order": draw(st.sampled_from(("little", "big"))),
         "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
@@ -100,25 +126,45 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
     messages = []
     for number in range(draw(st.integers(1, 5))):
         own = draw(_own_orders())
-        fields, length = draw(_fields(enums if number else enums + enums, orders | own, structs))
+        fields, length = draw(
+            _fields(enums if number else enums + enums, orders | own, structs)
+        )
         message = {
             **names.one("message"),
             **own,
-            "kind": draw(st.sampled_from(("telecommand", "telemetry", "configuration"))),
+            "kind": draw(
+                st.sampled_from(("telecommand", "telemetry", "configuration"))
+            ),
         }
         if message["kind"] == "configuration":
-            message |= {"set_id": ids(first_id + number), "get_id": ids(first_id + 20 - number)}
+            message |= {
+                "set_id": ids(first_id + number),
+                "get_id": ids(first_id + 20 - number),
+            }
         else:
-            message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
+            message["id"] = ids(
+                first_id + number + (0 if message["kind"] == "telecommand" else 40)
+            )
         message["length"] = length
         if draw(st.integers(0, 2)) == 0:
             alternatives = draw(_alternatives(fields, length, enums, orders | own))
             ends = (one["at"] + one["bits"] + 7 for one in alternatives)
-            fields, message["length"] = [*fields, *alternatives], max([length, *(end // 8 for end in ends)])
-        if not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
-            place = {"at": 8 * message["length"], **Names(draw, {field["name"] for field in fields}).one("end")}
+            fields, message["length"] = [*fields, *alternatives], max(
+                [length, *(end // 8 for end in ends)]
+            )
+        if (
+            not any("when" in field for field in fields)
+            and draw(st.integers(0, 3)) == 0
+        ):
+            place = {
+                "at": 8 * message["length"],
+                **Names(draw, {field["name"] for field in fields}).one("end"),
+            }
             fields = [*fields, *draw(open_parts(place, fields, _field(enums), structs))]
-        elif not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
+        elif (
+            not any("when" in field for field in fields)
+            and draw(st.integers(0, 3)) == 0
+        ):
             struct = draw(_struct(names.one("struct"), enums, structs, orders))
             own_names = Names(draw, {field["name"] for field in fields})
             inner_names = Names(draw, {field["name"] for field in struct["fields"]})
@@ -136,62 +182,126 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             message["fields"] = fields
         if "id" in message and draw(st.integers(0, 3)) == 0:
             made = _fields(enums, orders | own, structs)
-            messages += draw(sharing(message, names, made, partial(_open_end, enums=enums, structs=structs)))
+            messages += draw(
+                sharing(
+                    message,
+                    names,
+                    made,
+                    partial(_open_end, enums=enums, structs=structs),
+                )
+            )
         else:
             messages.append(message)
     for message in messages:
         message |= draw(derived(message.get("fields", ())))
     messages.append(_uses_all(names.one("message"), enums, structs, ids(first_id + 59)))
-    node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
+    node = {
+        "name": name,
+        "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))),
+        **orders,
+    }
     if ids.bits != 8:
         node["id_bits"] = ids.bits
-    return {"icdgen": 1, "node": node, "enums": enums, "structs": [*structs, *variable], "messages": messages}
+    return {
+        "icdgen": 1,
+        "node": node,
+        "enums": enums,
+        "structs": [*structs, *variable],
+        "messages": messages,
+    }
 
 
 @st.composite
-def _struct(draw, names: dict, enums: list[dict], others: list[dict], orders: dict) -> dict:
-    """A struct, others in it; ``orders`` are those of its node. Where it stands, bits may be counted in another way."""
+def _struct(
+    draw, names: dict, enums: list[dict], others: list[dict], orders: dict
+) -> dict:
+    """A struct, others in it; ``orders`` are those of its node.
+
+    Where it stands, bits may be counted in another way.
+    """
     fields, length = draw(_fields(enums, orders, others, in_struct=True))
     if not fields:
         fields, length = [{"at": 3, "bits": 2, "name": "only", "type": "uint"}], 1
-    return {**names, "length": length + draw(st.sampled_from((0, 0, 1, 3))), "fields": fields}
+    return {
+        **names,
+        "length": length + draw(st.sampled_from((0, 0, 1, 3))),
+        "fields": fields,
+    }
 
 
-def _uses_all(names: dict, enums: list[dict], structs: list[dict], id: int | list[int]) -> dict:
-    """A message with a field of each enumeration and of each struct, so that none is unused."""
+def _uses_all(
+    names: dict, enums: list[dict], structs: list[dict], id: int | list[int]
+) -> dict:
+    """A message with a field of each enumeration and of each struct, so that none is
+    unused.
+    """
     fields, at = [], 3
     for number, enum in enumerate(enums):
         bits = _needed(enum)
-        fields.append({"at": at, "bits": bits, "name": f"user {number}", "type": "enum", "enum": enum["name"]})
+        fields.append(
+            {
+                "at": at,
+                "bits": bits,
+                "name": f"user {number}",
+                "type": "enum",
+                "enum": enum["name"],
+            }
+        )
         at += bits
     for number, struct in enumerate(structs):
         at = (at + 7) // 8 * 8
         fields.append({"at": at, "name": f"struct {number}", "struct": struct["name"]})
         at += 8 * struct["length"]
-    return {**names, "kind": "telemetry", "id": id, "length": (at + 7) // 8, "fields": fields}
+    return {
+        **names,
+        "kind": "telemetry",
+        "id": id,
+        "length": (at + 7) // 8,
+        "fields": fields,
+    }
 
 
 def _needed(enum: dict) -> int:
-    """Bits of the narrowest field that holds every member; a negative one makes all of them signed."""
-    values = [value for member in enum["members"] for value in (member["value"], member.get("to", 0))]
+    """Bits of the narrowest field that holds every member.
+
+    A negative one makes all of them signed.
+    """
+    values = [
+        value
+        for member in enum["members"]
+        for value in (member["value"], member.get("to", 0))
+    ]
     signed = min(values) < 0
-    return max((~value if value < 0 else value).bit_length() + signed for value in values) or 1
+    return (
+        max((~value if value < 0 else value).bit_length() + signed for value in values)
+        or 1
+    )
 
 
 @st.composite
 def _enum(draw, names: Names, name: str) -> dict:
     bits = draw(st.sampled_from((1, 2, 3, 4, 7, 8, 9, 16, 31, 32, 33, 63, 64)))
     low, high = draw(
-        st.sampled_from(((0, (1 << bits) - 1), (0, (1 << bits) - 1), (-(1 << bits - 1), (1 << bits - 1) - 1)))
+        st.sampled_from(
+            (
+                (0, (1 << bits) - 1),
+                (0, (1 << bits) - 1),
+                (-(1 << bits - 1), (1 << bits - 1) - 1),
+            )
+        )
     )
     near = st.integers(max(low, -5), min(5, high))
-    values = draw(st.lists(st.integers(low, high) | near, min_size=1, max_size=6, unique=True))
+    values = draw(
+        st.lists(st.integers(low, high) | near, min_size=1, max_size=6, unique=True)
+    )
     members: list[dict] = []
     after = dict(zip(ordered := sorted(values), ordered[1:], strict=False))
     for value in values:
         room = after.get(value, high + 1) - value - 1
         reach = (
-            {"to": value + draw(st.integers(1, min(room, 300)))} if room > 0 and draw(st.integers(0, 4)) == 0 else {}
+            {"to": value + draw(st.integers(1, min(room, 300)))}
+            if room > 0 and draw(st.integers(0, 4)) == 0
+            else {}
         )
         members.append({"value": value, **reach, **names.one("member")})
     return {"name": name, "members": members}
@@ -216,14 +326,20 @@ def _width(field: dict) -> int:
 def _bits_of(field: dict, orders: dict) -> int:
     """The bits of the frame that a field has: bit w of byte b is bit 8 * b + w."""
     places = (divmod(at, 8) for at in range(field["at"], field["at"] + _width(field)))
-    return sum(1 << 8 * byte + (bit if orders["bit_order"] == "lsb0" else 7 - bit) for byte, bit in places)
+    return sum(
+        1 << 8 * byte + (bit if orders["bit_order"] == "lsb0" else 7 - bit)
+        for byte, bit in places
+    )
 
 
 @st.composite
 def _fields(
     draw, enums: list[dict], orders: dict, structs: list[dict], in_struct: bool = False
 ) -> tuple[list[dict], int]:
-    """Fields one after another with gaps of reserved bits, and their bytes; ``orders`` are those of the message."""
+    """Fields one after another with gaps of reserved bits, and their bytes.
+
+    ``orders`` are those of the message.
+    """
     fields: list[dict] = []
     names = Names(draw, set())
     at = used = end = 0
@@ -231,18 +347,34 @@ def _fields(
         at += draw(st.sampled_from((0, 0, 0, 1, 2, 3, 5, 8, 11)))
         field = draw(_field(enums))
         is_plain = field.keys() == {"bits", "type"} and field["type"] == "uint"
-        own = draw(_own_orders()) if field["type"] not in ("bytes", "text", "bool") else {}
+        own = (
+            draw(_own_orders())
+            if field["type"] not in ("bytes", "text", "bool")
+            else {}
+        )
         if in_struct:
-            own.pop("bit_order", None)  # of other messages it might be the same, and fields overlap
-        straight = tuple({**orders, **own}.values()) in (("little", "lsb0"), ("big", "msb0"))
+            own.pop(
+                "bit_order", None
+            )  # of other messages it might be the same, and fields overlap
+        straight = tuple({**orders, **own}.values()) in (
+            ("little", "lsb0"),
+            ("big", "msb0"),
+        )
         if field["type"] in ("bytes", "text"):
             at = (at + 7) // 8 * 8
         while used & _bits_of({"at": at, **field}, orders | own):
             at += draw(st.sampled_from((1, 8 - at % 8)))
             at = (at + 7) // 8 * 8 if field["type"] in ("bytes", "text") else at
         used |= _bits_of({"at": at, **field}, orders | own)
-        fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own})
-        if is_plain and not in_struct and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
+        fields.append(
+            {"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own}
+        )
+        if (
+            is_plain
+            and not in_struct
+            and (straight or at % 8 + fields[-1]["bits"] <= 8)
+            and draw(st.booleans())
+        ):
             fields[-1]["bitfields"] = draw(_division(names, fields[-1]["bits"]))
         end = max(end, at + _width(fields[-1]))
         at = draw(st.sampled_from((end, end, end // 8 * 8)))
@@ -253,7 +385,12 @@ def _fields(
         if count is not None:
             at = (end + 7) // 8 * 8
             fields.append(
-                {"at": at, **names.one("part"), "struct": struct["name"], **({"count": count} if count else {})}
+                {
+                    "at": at,
+                    **names.one("part"),
+                    "struct": struct["name"],
+                    **({"count": count} if count else {}),
+                }
             )
             end = at + 8 * struct["length"] * (count or 1)
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
@@ -261,18 +398,40 @@ def _fields(
 
 
 @st.composite
-def _alternatives(draw, fields: list[dict], length: int, enums: list[dict], orders: dict) -> list[dict]:
-    """Fields that are there or not by the value of another, some of them in the same bits; and that one, if there is none."""
+def _alternatives(
+    draw, fields: list[dict], length: int, enums: list[dict], orders: dict
+) -> list[dict]:
+    """Fields that are there or not by the value of another, some of them in the same
+    bits; and that one, if there is none.
+    """
     selectors = [field for field in fields if _decides(field)]
     room = length + draw(st.integers(1, 9))
     used = (1 << 8 * length) - 1 if any("struct" in field for field in fields) else 0
     for field in fields:
-        used |= 0 if field.get("view") or "struct" in field else _bits_of(field, {**orders, **field})
-    names = Names(draw, {part["name"] for field in fields for part in (field, *field.get("bitfields", ()))})
+        used |= (
+            0
+            if field.get("view") or "struct" in field
+            else _bits_of(field, {**orders, **field})
+        )
+    names = Names(
+        draw,
+        {
+            part["name"]
+            for field in fields
+            for part in (field, *field.get("bitfields", ()))
+        },
+    )
     made = (
         []
         if selectors
-        else [{"at": 8 * length, **names.one("selector"), "bits": draw(st.integers(1, 8)), "type": "uint"}]
+        else [
+            {
+                "at": 8 * length,
+                **names.one("selector"),
+                "bits": draw(st.integers(1, 8)),
+                "type": "uint",
+            }
+        ]
     )
     used |= _bits_of(made[0], orders) if made else 0
     selector = draw(st.sampled_from(selectors or made))
@@ -280,17 +439,31 @@ def _alternatives(draw, fields: list[dict], length: int, enums: list[dict], orde
     values = draw(st.lists(st.integers(0, most), min_size=1, max_size=4, unique=True))
     found: list[dict] = []
     for near in draw(
-        st.lists(st.integers(0, 8 * room - 1) | st.integers(8 * length, 8 * room - 1), min_size=1, max_size=4)
+        st.lists(
+            st.integers(0, 8 * room - 1) | st.integers(8 * length, 8 * room - 1),
+            min_size=1,
+            max_size=4,
+        )
     ):
         for value in values:
             field = {**draw(_field(enums)), **draw(_own_orders())}
             if field["type"] in ("bytes", "text"):
                 continue
-            dropped = ("count", "byte_order", "bit_order") if field["type"] == "bool" else ("count",)
+            dropped = (
+                ("count", "byte_order", "bit_order")
+                if field["type"] == "bool"
+                else ("count",)
+            )
             field = {key: given for key, given in field.items() if key not in dropped}
             at = max(0, min(near, 8 * room - field["bits"]))
             when = {selector["name"]: draw(st.sampled_from((value, [value])))}
-            place = {"at": at, "bits": field.pop("bits"), **names.one("alternative"), **field, "when": when}
+            place = {
+                "at": at,
+                "bits": field.pop("bits"),
+                **names.one("alternative"),
+                **field,
+                "when": when,
+            }
             taken = used
             for other in found:
                 same = _listed(other["when"]) == _listed(when)
@@ -306,19 +479,37 @@ def _listed(when: dict) -> list[list[int]]:
 
 def _decides(field: dict) -> bool:
     """Whether other fields may depend on its value."""
-    others = ("formula", "points", "const", "count", "view", "bitfields", "struct", "special")
-    return field.get("type") in ("uint", "bool", "enum") and not any(key in field for key in others)
+    others = (
+        "formula",
+        "points",
+        "const",
+        "count",
+        "view",
+        "bitfields",
+        "struct",
+        "special",
+    )
+    return field.get("type") in ("uint", "bool", "enum") and not any(
+        key in field for key in others
+    )
 
 
 @st.composite
-def _open_end(draw, fields: list[dict], length: int, enums: list[dict], structs: list[dict]) -> dict:
+def _open_end(
+    draw, fields: list[dict], length: int, enums: list[dict], structs: list[dict]
+) -> dict:
     """What ends a message of variable length, behind ``length`` bytes."""
-    place = {"at": 8 * length, **Names(draw, {field["name"] for field in fields}).one("end")}
+    place = {
+        "at": 8 * length,
+        **Names(draw, {field["name"] for field in fields}).one("end"),
+    }
     return draw(open_end(place, fields, _field(enums), structs))
 
 
 @st.composite
-def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict], orders: dict) -> list[dict]:
+def _views(
+    draw, fields: list[dict], used: int, names: Names, enums: list[dict], orders: dict
+) -> list[dict]:
     """Views of bits that fields have, where a place that was drawn has no others."""
     found = []
     for _ in range(draw(st.sampled_from((0, 0, 1, 3))) if fields else 0):
@@ -330,10 +521,22 @@ def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict],
         bounded = field.keys() & {"special", "min", "max", "above", "below"}
         if field["type"] in ("uint", "int") and not bounded and draw(st.booleans()):
             field["bits"] = min(field["bits"], place["bits"])
-        for key in ("const", "count", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
+        for key in (
+            "const",
+            "count",
+            *(("byte_order", "bit_order") if field["type"] == "bool" else ()),
+        ):
             field.pop(key, None)
         if not _bits_of({"at": at, **field}, {**orders, **field}) & ~used:
-            found.append({"at": at, "bits": field.pop("bits"), **names.one("view"), **field, "view": True})
+            found.append(
+                {
+                    "at": at,
+                    "bits": field.pop("bits"),
+                    **names.one("view"),
+                    **field,
+                    "view": True,
+                }
+            )
     return found
 
 
@@ -343,7 +546,11 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
     cuts = sorted(draw(st.sets(st.integers(0, bits), max_size=4)) | {0, bits})
     parts = []
     for start, end in pairwise(cuts):
-        kind = draw(st.sampled_from(("uint", "int", "bool") if end - start == 1 else ("uint", "int")))
+        kind = draw(
+            st.sampled_from(
+                ("uint", "int", "bool") if end - start == 1 else ("uint", "int")
+            )
+        )
         part = {"at": start, "bits": end - start, **names.one("part"), "type": kind}
         if kind != "bool" and draw(st.booleans()):
             part |= {"unit": "deg", "formula": draw(_formula())}
@@ -353,21 +560,55 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
 
 @st.composite
 def _field(draw, enums: list[dict]) -> dict:
-    kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text")))
-    array = {"count": draw(st.sampled_from((1, 2, 3, 8, 9)))} if draw(st.integers(0, 3)) == 0 else {}
+    kind = draw(
+        st.sampled_from(
+            ("uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text")
+        )
+    )
+    array = (
+        {"count": draw(st.sampled_from((1, 2, 3, 8, 9)))}
+        if draw(st.integers(0, 3)) == 0
+        else {}
+    )
     if kind in ("bytes", "text"):
         return {"bits": 8 * draw(st.integers(1, 12)), "type": kind, **array}
     if kind == "bool":
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
-        formula = draw(st.sampled_from(({"formula": draw(_curve())}, draw(_table(-9.9, 9.9)), {})))
-        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 4.0e15)), max_size=2, unique=True))
-        named = {"special": [_meaning(one, index) for index, one in enumerate(values)]} if values else {}
-        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula, **named}
+        formula = draw(
+            st.sampled_from(({"formula": draw(_curve())}, draw(_table(-9.9, 9.9)), {}))
+        )
+        values = draw(
+            st.lists(
+                st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 4.0e15)),
+                max_size=2,
+                unique=True,
+            )
+        )
+        named = (
+            {"special": [_meaning(one, index) for index, one in enumerate(values)]}
+            if values
+            else {}
+        )
+        return {
+            "bits": draw(st.sampled_from((32, 64))),
+            "type": kind,
+            **array,
+            **formula,
+            **named,
+        }
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
-        return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"], **array}
-    bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
+        return {
+            "bits": draw(st.integers(_needed(enum), 64)),
+            "type": kind,
+            "enum": enum["name"],
+            **array,
+        }
+    bits = draw(
+        st.integers(1, 64)
+        | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64))
+    )
     field: dict = {"bits": bits, "type": kind, **array}
     if draw(st.booleans()):
         ends = (-(1 << bits - 1), 1 << bits - 1) if kind == "int" else (0, 1 << bits)
@@ -376,16 +617,26 @@ def _field(draw, enums: list[dict]) -> dict:
         field |= said if chosen > 1 else draw(_table(*ends))
     if draw(st.booleans()):
         field["unit"] = draw(st.sampled_from(("deg", "m/s^2", "%", "V")))
-    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if kind == "int" else (0, (1 << bits) - 1)
+    low, high = (
+        (-(1 << bits - 1), (1 << bits - 1) - 1)
+        if kind == "int"
+        else (0, (1 << bits) - 1)
+    )
     raw = st.integers(low, high)
     if draw(st.integers(0, 5)) == 0:
         field["const"] = draw(raw)
     elif draw(st.integers(0, 5)) == 0:
         values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
-        field["special"] = [_meaning(value, index) for index, value in enumerate(values)]
-    elif draw(st.integers(0, 5)) == 0 and field.keys().isdisjoint(("formula", "points")):
+        field["special"] = [
+            _meaning(value, index) for index, value in enumerate(values)
+        ]
+    elif draw(st.integers(0, 5)) == 0 and field.keys().isdisjoint(
+        ("formula", "points")
+    ):
         values = draw(st.lists(raw, min_size=2, max_size=2, unique=True))
-        low_key, high_key = draw(st.sampled_from((("min", "max"), ("above", "max"), ("min", "below"))))
+        low_key, high_key = draw(
+            st.sampled_from((("min", "max"), ("above", "max"), ("min", "below")))
+        )
         field |= {low_key: min(values), high_key: max(values)}
     return field
 
@@ -399,8 +650,14 @@ def _formula(draw) -> str:
     """Factors and offsets, plain and extreme; the rules bound what they may come to."""
     if draw(st.integers(0, 3)) == 0:
         return draw(_long_formula())
-    top = draw(st.sampled_from((1, 3, 7, 10, 1000, 65535, 2**31, 2**32 - 5, 2**32)) | st.integers(1, 2**32))
-    bottom = draw(st.sampled_from((1, 2, 3, 7, 10, 100, 1000, 4096, 10**7, 2**32 - 5)) | st.integers(1, 2**32))
+    top = draw(
+        st.sampled_from((1, 3, 7, 10, 1000, 65535, 2**31, 2**32 - 5, 2**32))
+        | st.integers(1, 2**32)
+    )
+    bottom = draw(
+        st.sampled_from((1, 2, 3, 7, 10, 100, 1000, 4096, 10**7, 2**32 - 5))
+        | st.integers(1, 2**32)
+    )
     offset = draw(st.sampled_from((0, 0, 0, 1, 40, 273, 2**20, 2**30)))
     sign = draw(st.sampled_from(("", "-")))
     shift = f" {draw(st.sampled_from('+-'))} {offset}" if offset else ""
@@ -424,7 +681,14 @@ def _formula(draw) -> str:
 @st.composite
 def _curve(draw) -> str:
     """Lines and polynomials, many of which rise or fall all along."""
-    simple = ("raw*57.295779513", "raw/3 - 1", "raw = value*1e3", "raw^2", "-raw^3/7 - raw", "5 + 0.5*raw + 3e-6*raw^2")
+    simple = (
+        "raw*57.295779513",
+        "raw/3 - 1",
+        "raw = value*1e3",
+        "raw^2",
+        "-raw^3/7 - raw",
+        "5 + 0.5*raw + 3e-6*raw^2",
+    )
     number = st.integers(-(10**9), 10**9).map(lambda value: f"({value}/1000)")
     powers = draw(st.lists(st.integers(1, 7), min_size=1, max_size=4, unique=True))
     terms = [f"{draw(number)}*raw^{power}" for power in powers]
@@ -434,20 +698,39 @@ def _curve(draw) -> str:
 
 @st.composite
 def _table(draw, low: float, high: float) -> dict:
-    """Points within and beyond the raw values, many of whose physical values rise or fall all along."""
+    """Points within and beyond the raw values, many of whose physical values rise or
+    fall all along.
+    """
     # Points that lie closer are too steep for a double: a finding, and no ICD.
-    between = st.floats(1.5 * low - 9, 1.5 * high + 9).map(lambda raw: _spelled(round(raw, 9)))
+    between = st.floats(1.5 * low - 9, 1.5 * high + 9).map(
+        lambda raw: _spelled(round(raw, 9))
+    )
     raw = st.integers(math.floor(low), math.ceil(high)) | between
-    raws = sorted(draw(st.lists(raw, min_size=2, max_size=6, unique_by=float)), key=float)
-    values = draw(st.lists(st.integers(-(10**6), 10**6), min_size=len(raws), max_size=len(raws), unique=True))
-    values = draw(st.sampled_from((values, sorted(values), sorted(values, reverse=True))))
+    raws = sorted(
+        draw(st.lists(raw, min_size=2, max_size=6, unique_by=float)), key=float
+    )
+    values = draw(
+        st.lists(
+            st.integers(-(10**6), 10**6),
+            min_size=len(raws),
+            max_size=len(raws),
+            unique=True,
+        )
+    )
+    values = draw(
+        st.sampled_from((values, sorted(values), sorted(values, reverse=True)))
+    )
     size = draw(st.sampled_from((1, 10, 1000, 10**7)))
-    points = [[raw, _spelled(value / size)] for raw, value in zip(raws, values, strict=True)]
+    points = [
+        [raw, _spelled(value / size)] for raw, value in zip(raws, values, strict=True)
+    ]
     return {"points": points, "outside": draw(st.sampled_from(OUTSIDE))}
 
 
 def _spelled(number: float) -> float | str:
-    """A text where it has an exponent, as readers of YAML differ about numbers with one."""
+    """A text where it has an exponent, as readers of YAML differ about numbers with
+    one.
+    """
     return repr(number) if "e" in repr(number) else number
 
 
@@ -457,7 +740,17 @@ def _long_formula(draw) -> str:
     sign = draw(st.sampled_from(("", "-")))
     digits = draw(st.integers(1, 10**20 - 1))
     factor = draw(
-        st.sampled_from(("2^-19", "2^-66", "1e-9", "4.656612873077393e-10", "3^-113", "2^180", "1e-25"))
+        st.sampled_from(
+            (
+                "2^-19",
+                "2^-66",
+                "1e-9",
+                "4.656612873077393e-10",
+                "3^-113",
+                "2^180",
+                "1e-25",
+            )
+        )
         | st.integers(1, 180).map(lambda n: f"2^-{n}")
         | st.integers(1, 38).map(lambda n: f"{digits}e-{n}")
     )

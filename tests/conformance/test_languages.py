@@ -1,4 +1,6 @@
-"""Every language answers every vector as the reference codec does: the shipped ICDs, and odd ones."""
+"""Every language answers every vector as the reference codec does: the shipped ICDs,
+and odd ones.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,11 @@ from tests.conformance.languages import SELFTEST, TESTEE, all_languages
 from tests.conformance.random_icds import check
 from tests.conformance.run import Batch, batches, run_batches
 
-LANGUAGES = [language for language in all_languages().values() if language.kind in (TESTEE, SELFTEST)]
+LANGUAGES = [
+    language
+    for language in all_languages().values()
+    if language.kind in (TESTEE, SELFTEST)
+]
 # Built for the shipped ICDs too; the others, variants of these, for the odd ones only.
 SHIPPED = ("c", "c-cortex-m", "javascript", "python", "rust-debug")
 OPTIONAL = {"python3.9"}  # not every machine has an interpreter that old
@@ -30,7 +36,11 @@ class Asked(NamedTuple):
 
 def asked(icd: Icd, frames: int) -> Asked:
     files = vectors_of(icd)
-    vectors = sum(len(message["vectors"]) for data in files.values() for message in data["messages"])
+    vectors = sum(
+        len(message["vectors"])
+        for data in files.values()
+        for message in data["messages"]
+    )
     return Asked(icd, list(batches(icd, files, frames, 1)), vectors)
 
 
@@ -45,13 +55,16 @@ def strange(tmp_path_factory):
 
 
 def agree(language, asked):
-    assert not language.missing(), f"scripts/test installs {', '.join(language.missing())}"
+    assert (
+        not language.missing()
+    ), f"scripts/test installs {', '.join(language.missing())}"
     (result,) = run_batches([language], asked.icd, asked.batches)
     assert result.differences == 0, "\n".join(result.shown)
     assert result.vectors >= asked.vectors
 
 
-# Left to `python -m tests.conformance.run`: what takes minutes to build, and variants of which others here are as well.
+# Left to `python -m tests.conformance.run`: what takes minutes to build, and variants
+# of which others here are as well.
 LEFT = {"rust", "c-clang", "c-portable", "c-selftest-no-double"}
 ODD = [one.name for one in LANGUAGES if one.name not in OPTIONAL | LEFT]
 
@@ -67,7 +80,9 @@ def test_a_language_agrees_with_the_reference_codec_on_the_shipped_icds(shipped,
 
 
 def test_physical_values_are_the_same_to_the_last_bit(strange):
-    totals, notes = physical.run(["c", "javascript", "python", "rust-debug"], strange.icd, 100, whole=10, near=50)
+    totals, notes = physical.run(
+        ["c", "javascript", "python", "rust-debug"], strange.icd, 100, whole=10, near=50
+    )
     assert notes == []
     scaled = [
         f
@@ -76,12 +91,16 @@ def test_physical_values_are_the_same_to_the_last_bit(strange):
         for f in raw_fields_in(m.layout)
         if f.has_formula and f.is_invertible
     ]
-    assert all(total.fields == len(scaled) > 20 and total.values > 20_000 for total in totals)
+    assert all(
+        total.fields == len(scaled) > 20 and total.values > 20_000 for total in totals
+    )
 
 
 def test_random_icds_agree_in_all_languages():
     totals = check(3, ["c", "javascript", "python", "rust-debug"], start=1)
-    assert all(total.vectors > 100 and total.differences == 0 for total in totals.values())
+    assert all(
+        total.vectors > 100 and total.differences == 0 for total in totals.values()
+    )
 
 
 def test_a_language_of_another_package_joins_by_its_entry_point(tmp_path, monkeypatch):
@@ -91,9 +110,15 @@ def test_a_language_of_another_package_joins_by_its_entry_point(tmp_path, monkey
     )
     info = tmp_path / "icdgen_other-1.0.dist-info"
     info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: icdgen-other\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[icdgen.conformance]\nother = icdgen_other:LANGUAGES\n")
+    (info / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: icdgen-other\nVersion: 1.0\n"
+    )
+    (info / "entry_points.txt").write_text(
+        "[icdgen.conformance]\nother = icdgen_other:LANGUAGES\n"
+    )
     monkeypatch.syspath_prepend(str(tmp_path))
     other = all_languages()["other"]
-    assert other.missing() == ["env"]  # a tool is there if the command that says its version ends well
+    assert other.missing() == [
+        "env"
+    ]  # a tool is there if the command that says its version ends well
     assert "c" in all_languages()

@@ -1,4 +1,6 @@
-"""Decoders of envelopes in noise: a megabyte costs nothing but itself, and where a stream is cut does not matter."""
+"""Decoders of envelopes in noise: a megabyte costs nothing but itself, and where a
+stream is cut does not matter.
+"""
 
 from __future__ import annotations
 
@@ -34,13 +36,21 @@ def form_of(node: str):
     return facts.of(ICD, ICD.node(node)).stream
 
 
-def messages(node: str, source: random.Random, count: int) -> tuple[bytes, list[tuple[int, str]]]:
+def messages(
+    node: str, source: random.Random, count: int
+) -> tuple[bytes, list[tuple[int, str]]]:
     """Messages as they are sent, and their ids and data as they must come out."""
     form, line, sent = form_of(node), b"", []
     for number in range(count):
         row = source.choice(form.rows("telemetry"))
         data = source.randbytes(row.most - 1) + b"\1"
-        line += stream.encode(form, "telemetry", row.id, data, {"sequence": number} if form.of("sequence") else None)
+        line += stream.encode(
+            form,
+            "telemetry",
+            row.id,
+            data,
+            {"sequence": number} if form.of("sequence") else None,
+        )
         sent.append((row.id, data.hex()))
     return line, sent
 
@@ -48,32 +58,55 @@ def messages(node: str, source: random.Random, count: int) -> tuple[bytes, list[
 def asked(testee: Testee, node: str, *streams: list[bytes]) -> list[dict]:
     rows = ({"op": "stream_events", "node": node, "direction": "telemetry", "chunks": [one.hex() for one in chunks]}
             for chunks in streams)  # fmt: skip
-    return [json.loads(answer or b"{}") for answer in testee.ask([json.dumps(row).encode() for row in rows])]
+    return [
+        json.loads(answer or b"{}")
+        for answer in testee.ask([json.dumps(row).encode() for row in rows])
+    ]
 
 
 def came(answer: dict) -> list[tuple[int, str]]:
-    return [(event["id"], event["bytes"]) for event in answer["events"] if event["event"] == "message"]
+    return [
+        (event["id"], event["bytes"])
+        for event in answer["events"]
+        if event["event"] == "message"
+    ]
 
 
 @cache
 def found(node: str, line: bytes) -> tuple[list[tuple[int, str]], int, int]:
-    """What the decoder of the Python runtime makes of it: messages, bytes discarded and pending."""
-    from icdgen_runtime.wire.stream import StreamDecoder  # which `icdgen` makes importable
+    """What the decoder of the Python runtime makes of it: messages, bytes discarded and
+    pending.
+    """
+    from icdgen_runtime.wire.stream import (
+        StreamDecoder,
+    )  # which `icdgen` makes importable
 
     decoder = StreamDecoder(link_of(ICD, facts.of(ICD, ICD.node(node))))
     events = [event for event in decoder.feed(line) if event.event == "message"]
-    return [(event.id or 0, event.data.hex()) for event in events], decoder.discarded, decoder.pending
+    return (
+        [(event.id or 0, event.data.hex()) for event in events],
+        decoder.discarded,
+        decoder.pending,
+    )
 
 
 @pytest.mark.parametrize("node", NODES)
 def test_a_megabyte_of_noise_before_messages(testee, node):
     source = random.Random(node)
-    noise = bytes(source.choices(MARKERS, k=MEGABYTE // 4)) + source.randbytes(3 * MEGABYTE // 4)
+    noise = bytes(source.choices(MARKERS, k=MEGABYTE // 4)) + source.randbytes(
+        3 * MEGABYTE // 4
+    )
     line, sent = messages(node, source, 8)
-    padded = noise + bytes(form_of(node).longest_line) * 2 + line + bytes(form_of(node).longest_line)
+    padded = (
+        noise
+        + bytes(form_of(node).longest_line) * 2
+        + line
+        + bytes(form_of(node).longest_line)
+    )
     (answer,) = asked(testee, node, [padded])
     assert (came(answer), answer["discarded"], answer["pending"]) == found(node, padded)
-    # Where neither sync nor checksum tells noise from a message, it may take the beginning of what follows with it.
+    # Where neither sync nor checksum tells noise from a message, it may take the
+    # beginning of what follows with it.
     lost = 2 if node == "payload" else 0
     assert came(answer)[-(len(sent) - lost) :] == sent[lost:]
 
@@ -85,7 +118,9 @@ def test_every_place_at_which_a_stream_can_be_cut(testee, node):
     data = source.randbytes(short.most - 1) + b"\1"
     one = stream.encode(form_of(node), "telemetry", short.id, data)
     line = bytes(source.choices(MARKERS, k=6)) + one + one[:-1] + one + one
-    whole, *cut = asked(testee, node, [line], *([line[:at], line[at:]] for at in range(len(line) + 1)))
+    whole, *cut = asked(
+        testee, node, [line], *([line[:at], line[at:]] for at in range(len(line) + 1))
+    )
     assert whole["ok"] and all(answer == whole for answer in cut)
     (single,) = asked(testee, node, [bytes([byte]) for byte in line])
     assert single == whole

@@ -1,4 +1,6 @@
-"""Links that are described as envelopes: every language answers as the reference does, of examples and of odd links."""
+"""Links that are described as envelopes: every language answers as the reference does,
+of examples and of odd links.
+"""
 
 from __future__ import annotations
 
@@ -37,6 +39,9 @@ def test_changed_requests_about_envelopes_are_answered_like_the_reference(links,
     asked = list(wire_changed.requests(icd, files, random.Random(7), 2000))
     testee = Testee(build(all_languages()[name], icd))
     answers = testee.ask([json.dumps(request).encode() for request, _ in asked])
-    told = ((request, difference(good, answer)) for (request, good), answer in zip(asked, answers, strict=True))
+    told = (
+        (request, difference(good, answer))
+        for (request, good), answer in zip(asked, answers, strict=True)
+    )
     assert [(request, what) for request, what in told if what] == []
     assert testee.close() == 0, testee.complaint()

@@ -1,4 +1,6 @@
-"""The conformance run itself: it agrees with the reference, and it does notice what is wrong."""
+"""The conformance run itself: it agrees with the reference, and it does notice what is
+wrong.
+"""
 
 from __future__ import annotations
 
@@ -57,8 +59,16 @@ def test_the_reference_answers_every_request_as_it_must(icd, files):
 @pytest.mark.parametrize(
     "change",
     [
-        lambda a: a.get("raw", {}).update({"Flag": int(a["raw"]["Flag"])}) if "Flag" in a.get("raw", {}) else None,
-        lambda a: a.get("raw", {}).update({"Eleven": a["raw"]["Eleven"] ^ 1}) if "Eleven" in a.get("raw", {}) else None,
+        lambda a: (
+            a.get("raw", {}).update({"Flag": int(a["raw"]["Flag"])})
+            if "Flag" in a.get("raw", {})
+            else None
+        ),
+        lambda a: (
+            a.get("raw", {}).update({"Eleven": a["raw"]["Eleven"] ^ 1})
+            if "Eleven" in a.get("raw", {})
+            else None
+        ),
         lambda a: a.update(bytes=a["bytes"].upper()) if "bytes" in a else None,
         lambda a: a["physical"].clear() if "raw" in a else None,
         lambda a: a.update(expected=a["expected"] + 1) if "expected" in a else None,
@@ -67,7 +77,9 @@ def test_the_reference_answers_every_request_as_it_must(icd, files):
         lambda a: a.update(error="request") if a.get("error") == "unknown-id" else None,
         lambda a: a.update(name=None) if "name" in a else None,
         lambda a: a.update(ids=a["ids"][::-1]) if len(a.get("ids", ())) == 2 else None,
-        lambda a: a.get("special", {}).update({"Ninth": [255]}) if a.get("special") else None,
+        lambda a: (
+            a.get("special", {}).update({"Ninth": [255]}) if a.get("special") else None
+        ),
         lambda a: a.get("limits", {}).clear(),
         lambda a: a.update(node_type=4) if a.get("node_type") == 3 else None,
     ],
@@ -87,19 +99,32 @@ def test_a_setter_that_truncates_is_found_out(icd, files, monkeypatch):
     nearest = codec.raw_from_physical
 
     def truncating(field, value):
-        return int(field.scale.raw(codec.Fraction(value))) if field.scale else nearest(field, value)
+        return (
+            int(field.scale.raw(codec.Fraction(value)))
+            if field.scale
+            else nearest(field, value)
+        )
 
     monkeypatch.setattr(codec, "raw_from_physical", truncating)
     assert is_found_out(Reference(icd).answer, icd, files)
 
 
-def test_a_physical_value_computed_by_multiplication_is_found_out(tmp_path, demo, monkeypatch):
+def test_a_physical_value_computed_by_multiplication_is_found_out(
+    tmp_path, demo, monkeypatch
+):
     icd = icd_of([demo])
     field = icd.nodes[0].messages[0].fields[0]
     total, notes = physical.Total("any"), []
     (chunk,) = physical.chunks(field, 0, 16)
     monkeypatch.setattr(codec, "physical_double", lambda field, raw: raw * 0.01)
-    physical.sweep(InProcess(Reference(icd).answer), total, icd.nodes[0].messages[0], field, chunk, notes)
+    physical.sweep(
+        InProcess(Reference(icd).answer),
+        total,
+        icd.nodes[0].messages[0],
+        field,
+        chunk,
+        notes,
+    )
     assert total.values == 65536
     assert total.differences > 1000
 
@@ -109,15 +134,26 @@ def test_comparing_is_strict_about_types_and_silent_about_details():
     assert difference({"ok": True, "x": 1}, b'{"ok": true, "x": true}')
     assert difference({"ok": True, "x": 1}, b'{"ok": true, "x": 1.0}')
     assert difference({"ok": True, "x": 1}, b'{"ok": true}')
-    assert difference({"ok": True, "x": {"y": 1}}, b'{"ok": true, "x": {"y": 2}}') == "x.y: 2, expected 1"
-    assert difference({"ok": False, "error": "range"}, b'{"ok": false, "error": "range", "detail": "any"}') is None
-    assert difference({"ok": True}, b"{") and difference({"ok": True}, b"[]") and difference({"ok": True}, None)
+    assert (
+        difference({"ok": True, "x": {"y": 1}}, b'{"ok": true, "x": {"y": 2}}')
+        == "x.y: 2, expected 1"
+    )
+    assert (
+        difference(
+            {"ok": False, "error": "range"},
+            b'{"ok": false, "error": "range", "detail": "any"}',
+        )
+        is None
+    )
+    assert (
+        difference({"ok": True}, b"{")
+        and difference({"ok": True}, b"[]")
+        and difference({"ok": True}, None)
+    )
 
 
 def test_a_testee_that_dies_is_noticed_and_started_again():
-    program = (
-        "import sys\nfor line in sys.stdin:\n  print(line.strip(), flush=True)\n  if 'die' in line: sys.exit('gone')"
-    )
+    program = "import sys\nfor line in sys.stdin:\n  print(line.strip(), flush=True)\n  if 'die' in line: sys.exit('gone')"
     testee = Testee([sys.executable, "-c", program])
     assert testee.ask([b"1", b"die", b"2", b"3"]) == [b"1", b"die", None, None]
     assert testee.complaint().strip() == "gone"
@@ -149,7 +185,9 @@ def test_what_was_built_from_the_same_source_is_not_built_again(icd, tmp_path):
         return ["true"]
 
     for _ in range(2):
-        assert build(Language("any", ("c",), (), note, front=False), icd, tmp_path) == ["true"]
+        assert build(Language("any", ("c",), (), note, front=False), icd, tmp_path) == [
+            "true"
+        ]
     assert built == [True]
 
 
@@ -162,8 +200,20 @@ def test_the_command_prints_what_starts_a_testee(demo, tmp_path, monkeypatch):
         text=True,
     )
     assert made.returncode == 0, made.stderr
-    request = {"op": "decode", "node": "demo", "kind": "telemetry", "id": 146, "bytes": "2efb01"}
-    answer = subprocess.run(made.stdout, shell=True, input=json.dumps(request) + "\n", capture_output=True, text=True)
+    request = {
+        "op": "decode",
+        "node": "demo",
+        "kind": "telemetry",
+        "id": 146,
+        "bytes": "2efb01",
+    }
+    answer = subprocess.run(
+        made.stdout,
+        shell=True,
+        input=json.dumps(request) + "\n",
+        capture_output=True,
+        text=True,
+    )
     assert json.loads(answer.stdout) == {
         "ok": True, "raw": {"Roll Angle": -1234, "Mode": 1}, "physical": {"Roll Angle": "c028ae147ae147ae"}, "bytes": "2efb01",
     }  # fmt: skip
@@ -171,7 +221,16 @@ def test_the_command_prints_what_starts_a_testee(demo, tmp_path, monkeypatch):
 
 def test_languages_are_found_by_their_modules():
     names = set(all_languages())
-    assert {"c", "c-clang", "c-s390x", "c-cortex-m", "c-cortex-m-no-double", "python", "rust", "rust-debug"} <= names
+    assert {
+        "c",
+        "c-clang",
+        "c-s390x",
+        "c-cortex-m",
+        "c-cortex-m-no-double",
+        "python",
+        "rust",
+        "rust-debug",
+    } <= names
     assert all_languages()["reference"].kind == REFERENCE
 
 

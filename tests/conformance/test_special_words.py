@@ -1,4 +1,6 @@
-"""A word that is special to a language, its modules, files or build is refused as a name, or what is generated compiles."""
+"""A word that is special to a language, its modules, files or build is refused as a
+name, or what is generated compiles.
+"""
 
 from __future__ import annotations
 
@@ -44,16 +46,31 @@ REFUSED_NODES = {
 }
 
 
-def icd(name: str, messages=("one",), fields=("x",), enumerations=("e",), members=("z",)) -> dict:
+def icd(
+    name: str, messages=("one",), fields=("x",), enumerations=("e",), members=("z",)
+) -> dict:
     """An ICD with things of these names."""
-    enums = [{"name": one, "members": [{"value": 0, "name": "zero"}]} for one in enumerations]
-    enums.append({"name": "holder", "members": [{"value": n, "name": one} for n, one in enumerate(members)]})
-    numbers = [{"at": 8 * n, "bits": 8, "name": one, "type": "uint"} for n, one in enumerate(fields)]
+    enums = [
+        {"name": one, "members": [{"value": 0, "name": "zero"}]} for one in enumerations
+    ]
+    enums.append(
+        {
+            "name": "holder",
+            "members": [{"value": n, "name": one} for n, one in enumerate(members)],
+        }
+    )
+    numbers = [
+        {"at": 8 * n, "bits": 8, "name": one, "type": "uint"}
+        for n, one in enumerate(fields)
+    ]
     users = [
-        {"at": 8 * n, "bits": 8, "name": f"user {n}", "type": "enum", "enum": e["name"]} for n, e in enumerate(enums)
+        {"at": 8 * n, "bits": 8, "name": f"user {n}", "type": "enum", "enum": e["name"]}
+        for n, e in enumerate(enums)
     ]
     scaled = [field | {"unit": "s", "formula": "raw*0.1"} for field in numbers]
-    found = [{"name": one, "kind": "telemetry", "fields": scaled[:1]} for one in messages]
+    found = [
+        {"name": one, "kind": "telemetry", "fields": scaled[:1]} for one in messages
+    ]
     found += [
         {"name": "plain numbers", "kind": "telecommand", "fields": numbers},
         {"name": "scaled numbers", "kind": "telecommand", "fields": scaled},
@@ -80,15 +97,24 @@ def refused(folder: Path, tree: dict) -> bool:
 
 @pytest.fixture(scope="module", params=("nodes", "names", "enumerations"))
 def folder(request, tmp_path_factory) -> Path:
-    """The folder of what is made of all words that are not refused: as nodes, or as names within one."""
+    """The folder of what is made of all words that are not refused: as nodes, or as
+    names within one.
+    """
     tmp = tmp_path_factory.mktemp("words")
     if request.param == "nodes":
         trees = {word: icd(word) for word in WORDS}
         found = {word: tree for word, tree in trees.items() if not refused(tmp, tree)}
         assert REFUSED_NODES.isdisjoint(found)
     else:
-        kinds = ("enumerations",) if request.param == "enumerations" else ("messages", "fields", "members")
-        kept = {kind: [w for w in WORDS if not refused(tmp, icd("n", **{kind: [w]}))] for kind in kinds}
+        kinds = (
+            ("enumerations",)
+            if request.param == "enumerations"
+            else ("messages", "fields", "members")
+        )
+        kept = {
+            kind: [w for w in WORDS if not refused(tmp, icd("n", **{kind: [w]}))]
+            for kind in kinds
+        }
         found = {"n": icd("n", **kept)}
     assert len(str(found)) > 10_000  # most words can be used
     loaded = load([written(tmp / "icd", found)])
@@ -102,23 +128,48 @@ def folder(request, tmp_path_factory) -> Path:
 
 
 def run(*command: str | Path, cwd: Path) -> None:
-    done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True)
+    done = subprocess.run(
+        [str(word) for word in command], cwd=cwd, capture_output=True, text=True
+    )
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
 
 
-@pytest.mark.parametrize("compiler", [("gcc", "c99"), ("clang", "gnu17"), ("g++", "gnu++17")])
+@pytest.mark.parametrize(
+    "compiler", [("gcc", "c99"), ("clang", "gnu17"), ("g++", "gnu++17")]
+)
 def test_it_compiles_in_c(folder, compiler):
     source = folder / ("all.cpp" if compiler[0] == "g++" else "all.c")
-    headers = sorted(path.relative_to(folder / "c") for path in (folder / "c").rglob("*.h"))
+    headers = sorted(
+        path.relative_to(folder / "c") for path in (folder / "c").rglob("*.h")
+    )
     source.write_text("".join(f'#include "{header}"\n' for header in headers))
-    run(compiler[0], f"-std={compiler[1]}", *WARNINGS, "-fsyntax-only", f"-I{folder / 'c'}", source, cwd=folder)
+    run(
+        compiler[0],
+        f"-std={compiler[1]}",
+        *WARNINGS,
+        "-fsyntax-only",
+        f"-I{folder / 'c'}",
+        source,
+        cwd=folder,
+    )
 
 
 def test_cargo_builds_it(folder):
     manifest = folder / "rust/Cargo.toml"
-    text = re.sub(r"^[\w-]+ = \{.*optional = true.*\n", "", manifest.read_text(), flags=re.M)  # nothing is fetched
+    text = re.sub(
+        r"^[\w-]+ = \{.*optional = true.*\n", "", manifest.read_text(), flags=re.M
+    )  # nothing is fetched
     manifest.write_text(re.sub(r"\[\"dep:[\w-]+\"\]", "[]", text))
-    run("cargo", "check", "--offline", "--quiet", "--all-targets", "--features", "std", cwd=folder / "rust")
+    run(
+        "cargo",
+        "check",
+        "--offline",
+        "--quiet",
+        "--all-targets",
+        "--features",
+        "std",
+        cwd=folder / "rust",
+    )
 
 
 def test_it_can_be_used_in_python(folder):

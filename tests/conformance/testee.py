@@ -1,4 +1,6 @@
-"""``python -m tests.conformance.testee LANG``: builds a testee if need be and prints the command line that starts it."""
+"""``python -m tests.conformance.testee LANG``: builds a testee if need be and prints
+the command line that starts it.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +15,18 @@ from tests.conformance.languages import TESTEE, all_languages
 
 
 def main(arguments: list[str] | None = None) -> int:
-    languages = {name: one for name, one in all_languages().items() if one.kind == TESTEE}
-    parser = argparse.ArgumentParser(prog="python -m tests.conformance.testee", description=__doc__)
-    parser.add_argument("lang", choices=languages, metavar="LANG", help=f"one of {', '.join(languages)}")
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    languages = {
+        name: one for name, one in all_languages().items() if one.kind == TESTEE
+    }
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.conformance.testee", description=__doc__
+    )
+    parser.add_argument(
+        "lang", choices=languages, metavar="LANG", help=f"one of {', '.join(languages)}"
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     language = languages[options.lang]
     if language.missing():

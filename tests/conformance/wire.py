@@ -1,4 +1,5 @@
-"""``python -m tests.conformance.wire --lang c,python,rust``: the golden vectors of the protocol through every language.
+"""``python -m tests.conformance.wire --lang c,python,rust``: the golden vectors of the
+protocol through every language.
 
 Ends with status 0 if no answer differs from what the vectors demand, else 1.
 """
@@ -30,23 +31,47 @@ def vectors_of(icd: Icd) -> dict:
 
 
 def batches(files: dict) -> Iterator[Batch]:
-    """Everything that is asked of each testee: the cases of a node, and requests that must be refused."""
+    """Everything that is asked of each testee: the cases of a node, and requests that
+    must be refused.
+    """
     for node in files["nodes"]:
         cases = node["cases"]
-        about = [f"{node['node']} {case['request']['op']}: {case['why']}" for case in cases]
+        about = [
+            f"{node['node']} {case['request']['op']}: {case['why']}" for case in cases
+        ]
         lines = [robust.line(case["request"]) for case in cases]
         yield Batch(lines, [case["answer"] for case in cases], about, 1, len(cases))
         bad = list(refused(cases))
         answers: list[dict] = [{"ok": False, "error": "request"}] * len(bad)
-        yield Batch([robust.line(one) for one in bad], answers, [f"bad request {one}" for one in bad])
+        yield Batch(
+            [robust.line(one) for one in bad],
+            answers,
+            [f"bad request {one}" for one in bad],
+        )
     if files["nodes"]:
         nobody = {**files["nodes"][0]["cases"][0]["request"], "node": "nobody"}
-        yield Batch([robust.line(nobody)], [{"ok": False, "error": "unknown-node"}], ["a node that does not exist"])
+        yield Batch(
+            [robust.line(nobody)],
+            [{"ok": False, "error": "unknown-node"}],
+            ["a node that does not exist"],
+        )
 
 
 def refused(cases: list[dict]) -> Iterator[dict]:
     """The first request of each op, with each of its keys missing or of another type."""
-    optional = {"address", "senders", "end", "limit", "crc", "node", "settings", "block", "size", "all", "values"}
+    optional = {
+        "address",
+        "senders",
+        "end",
+        "limit",
+        "crc",
+        "node",
+        "settings",
+        "block",
+        "size",
+        "all",
+        "values",
+    }
     seen = set()
     for case in cases:
         request = case["request"]
@@ -55,19 +80,30 @@ def refused(cases: list[dict]) -> Iterator[dict]:
         seen.add(request["op"])
         for key in request:
             if key != "op":
-                yield {**request, key: [None] if key == "settings" else {"no": "such value"}}
-                if key not in optional and not (key == "value" and request["op"] == "dos_time"):
+                yield {
+                    **request,
+                    key: [None] if key == "settings" else {"no": "such value"},
+                }
+                if key not in optional and not (
+                    key == "value" and request["op"] == "dos_time"
+                ):
                     yield {k: v for k, v in request.items() if k != key}
         if isinstance(request.get("bytes"), str):
             yield {**request, "bytes": request["bytes"] + "0"}
 
 
-def run(languages: list[Language], icd: Icd, files: dict, folder: Path | None = None) -> list[Result]:
+def run(
+    languages: list[Language], icd: Icd, files: dict, folder: Path | None = None
+) -> list[Result]:
     """Builds every language and drives it. Raises `BuildError`."""
     results, testees = [], []
     for language in languages:
         reference = language.kind == REFERENCE
-        testee: Answering = InProcess(Reference(icd).answer) if reference else Testee(build(language, icd, folder))
+        testee: Answering = (
+            InProcess(Reference(icd).answer)
+            if reference
+            else Testee(build(language, icd, folder))
+        )
         results.append(Result(language.name))
         testees.append(testee)
     for batch in batches(files):
@@ -76,23 +112,37 @@ def run(languages: list[Language], icd: Icd, files: dict, folder: Path | None = 
     for result, testee in zip(results, testees, strict=True):
         status = testee.close()
         if status:
-            result.differs(f"the testee ended with status {status}: {testee.complaint()}")
+            result.differs(
+                f"the testee ended with status {status}: {testee.complaint()}"
+            )
     return results
 
 
 def main(arguments: list[str] | None = None) -> int:
-    languages = {name: one for name, one in all_languages().items() if one.kind != SELFTEST}
-    parser = argparse.ArgumentParser(prog="python -m tests.conformance.wire", description=__doc__)
-    parser.add_argument(
-        "--lang", default="c,python,rust", help=f"comma-separated, of {', '.join(languages)} (default: %(default)s)"
+    languages = {
+        name: one for name, one in all_languages().items() if one.kind != SELFTEST
+    }
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.conformance.wire", description=__doc__
     )
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--lang",
+        default="c,python,rust",
+        help=f"comma-separated, of {', '.join(languages)} (default: %(default)s)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     asked = chosen(parser, options.lang, languages)
     try:
         icd = icd_of(options.icds)
         committed = VECTORS.is_file() and not options.icds
-        files = json.loads(VECTORS.read_text(encoding="utf-8")) if committed else vectors_of(icd)
+        files = (
+            json.loads(VECTORS.read_text(encoding="utf-8"))
+            if committed
+            else vectors_of(icd)
+        )
         results = run(asked, icd, files)
     except (BuildError, ValueError) as error:
         print(error, file=sys.stderr)

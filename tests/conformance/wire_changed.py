@@ -1,4 +1,6 @@
-"""Requests about the wire layer: golden ones, changed in a few places, with the answers of the reference."""
+"""Requests about the wire layer: golden ones, changed in a few places, with the answers
+of the reference.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ CAN_BYTES = 8  # a bus carries no longer packet, and not every language can hold
 WORDS = {"kind", "bus", "do", "event", "op", "node"}
 
 
-def requests(icd: Icd, vectors: dict, source: random.Random, count: int) -> Iterator[tuple[dict, dict]]:
+def requests(
+    icd: Icd, vectors: dict, source: random.Random, count: int
+) -> Iterator[tuple[dict, dict]]:
     """So many requests with their answers, every op as often."""
     by_op: dict[str, list[dict]] = {}
     for node in vectors["nodes"]:
@@ -30,7 +34,9 @@ def requests(icd: Icd, vectors: dict, source: random.Random, count: int) -> Iter
             request = _changed(source, request, "")
         _in_time(request.get("script"))
         _in_time(request.get("packets"))
-        if any(len(packet.get("bytes", "")) > 2 * CAN_BYTES for packet in _packets(request)):
+        if any(
+            len(packet.get("bytes", "")) > 2 * CAN_BYTES for packet in _packets(request)
+        ):
             continue
         if request["op"] == "file" and not _frames_are_whole(icd, request):
             continue
@@ -61,7 +67,15 @@ def _changed(source: random.Random, value, key: str):
         return not value
     elif isinstance(value, int):
         return max(
-            0, source.choice((value + 1, value - 1, value ^ 1 << source.randrange(8), value + source.randrange(2000)))
+            0,
+            source.choice(
+                (
+                    value + 1,
+                    value - 1,
+                    value ^ 1 << source.randrange(8),
+                    value + source.randrange(2000),
+                )
+            ),
         )
     elif isinstance(value, str) and re.fullmatch("([0-9a-f]{2})*", value):
         return _change_bytes(source, bytearray.fromhex(value)).hex()
@@ -85,7 +99,9 @@ def _change_list(source: random.Random, rows: list, key: str) -> None:
 
 
 def _change_bytes(source: random.Random, data: bytearray) -> bytearray:
-    at, byte = source.randrange(len(data) + 1), source.choice((*FRAMING, source.randrange(256)))
+    at, byte = source.randrange(len(data) + 1), source.choice(
+        (*FRAMING, source.randrange(256))
+    )
     what = source.choice(("set", "flip", "remove", "insert", "repeat"))
     if what == "insert" or at == len(data):
         data.insert(at, byte)
@@ -109,7 +125,9 @@ def _in_time(rows) -> None:
 
 
 def _frames_are_whole(icd: Icd, request: dict) -> bool:
-    """Whether every frame that is handed over has its length: the client lets no other pass."""
+    """Whether every frame that is handed over has its length: the client lets no other
+    pass.
+    """
     known = facts.of(icd, icd.node(request["node"]))
     try:
         procedure = scripts.procedure_of(known, request)
@@ -117,8 +135,16 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
         return True
     for row in request["script"]:
         event, want = row.get("event"), procedure._pending
-        if event and event["event"] == "done" and procedure._is_outstanding and isinstance(want, Request):
-            if want.kind == TELEMETRY and len(event["bytes"]) != 2 * known.telemetry[want.id].length:
+        if (
+            event
+            and event["event"] == "done"
+            and procedure._is_outstanding
+            and isinstance(want, Request)
+        ):
+            if (
+                want.kind == TELEMETRY
+                and len(event["bytes"]) != 2 * known.telemetry[want.id].length
+            ):
                 return False
         if event:
             procedure.event(row["at"], event)

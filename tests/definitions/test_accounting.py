@@ -1,4 +1,6 @@
-"""What a reader did not use of its source is reported by name and place, and nothing else is."""
+"""What a reader did not use of its source is reported by name and place, and nothing
+else is.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,10 @@ def device(*ignored: str) -> tuple[Account, AccountedElement]:
 def unused(account: Account) -> list[tuple[str, int | None]]:
     to = Definitions("device.xml")
     account.report(to)
-    assert all((one.code, one.severity) == ("IMP085", "note") and one.help for one in to.import_findings)
+    assert all(
+        (one.code, one.severity) == ("IMP085", "note") and one.help
+        for one in to.import_findings
+    )
     return [(one.message, one.spot.line) for one in to.import_findings]
 
 
@@ -88,10 +93,17 @@ def test_each_way_to_read_counts(access):
 
 def test_keys_of_json_and_yaml_that_nobody_read_are_reported_with_their_path():
     tree = accounted(
-        {"meta": {"id": "a", "license": "b"}, "types": {"point": {"seq": [{"id": "x", "doc": "y"}], "doc": "z"}}},
+        {
+            "meta": {"id": "a", "license": "b"},
+            "types": {"point": {"seq": [{"id": "x", "doc": "y"}], "doc": "z"}},
+        },
         frozenset({"types"}),
     )
-    assert tree["meta"]["id"] == "a" and {**tree["types"]["point"]["seq"][0]} and "none" not in tree
+    assert (
+        tree["meta"]["id"] == "a"
+        and {**tree["types"]["point"]["seq"][0]}
+        and "none" not in tree
+    )
     account = Account()
     account.mappings(tree)
     assert unused(account) == [
@@ -102,7 +114,9 @@ def test_keys_of_json_and_yaml_that_nobody_read_are_reported_with_their_path():
 
 def test_an_xml_that_nests_deeper_than_python_does_is_accounted_for():
     account = Account()
-    root = safe_xml.parse("deep.xml", b"<a>" * 20_000 + b"</a>" * 20_000, account=account)
+    root = safe_xml.parse(
+        "deep.xml", b"<a>" * 20_000 + b"</a>" * 20_000, account=account
+    )
     list(root.iter("a"))[-1].get("name")
     account.elements(root)
     assert unused(account) == []

@@ -1,4 +1,6 @@
-"""CAN databases become ICDs that say what cantools reads in them, and only what is wrong in a database is a finding."""
+"""CAN databases become ICDs that say what cantools reads in them, and only what is
+wrong in a database is a finding.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,10 @@ def test_names_ids_lengths_senders_and_comments_arrive(train):
 def test_an_id_of_29_bits_is_marked_only_among_those_of_11_bits(train, tmp_path):
     (tree,) = train.trees.values()
     assert tree["node"]["id_bits"] == 32
-    assert message(train, "BrakeDetails")["id"] == 2566844926 and message(train, "DriveStatus")["id"] == 256
+    assert (
+        message(train, "BrakeDetails")["id"] == 2566844926
+        and message(train, "DriveStatus")["id"] == 256
+    )
     only = 'BU_: Drive\nBO_ 2566844926 BrakeDetails: 1 Drive\n SG_ Page : 0|8@1+ (1,0) [0|0] "" Drive\n'
     (tmp_path / "only.dbc").write_text(only)
     read = run.read(tmp_path / "only.dbc", can.Dbc())
@@ -55,7 +60,12 @@ def test_an_id_of_29_bits_is_marked_only_among_those_of_11_bits(train, tmp_path)
 
 def test_units_formulas_and_limits_arrive_where_they_say_more_than_the_width(train):
     speed = field(train, "DriveStatus", "Speed")
-    assert (speed["unit"], speed["formula"], speed.get("min"), speed["max"]) == ("km/h", "raw*0.01", None, 300)
+    assert (speed["unit"], speed["formula"], speed.get("min"), speed["max"]) == (
+        "km/h",
+        "raw*0.01",
+        None,
+        300,
+    )
     torque = field(train, "DriveStatus", "Torque")
     assert (torque["unit"], torque["formula"], "min" in torque, "max" in torque) == (
         "N.m",
@@ -67,7 +77,11 @@ def test_units_formulas_and_limits_arrive_where_they_say_more_than_the_width(tra
 
 def test_fields_in_another_order_than_most_say_so(train):
     pressure = field(train, "DriveStatus", "Pressure")
-    assert (pressure["at"], pressure["byte_order"], pressure["bit_order"]) == (32, "big", "msb0")
+    assert (pressure["at"], pressure["byte_order"], pressure["bit_order"]) == (
+        32,
+        "big",
+        "msb0",
+    )
 
 
 def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(train):
@@ -76,16 +90,27 @@ def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(
     assert [(one["value"], one.get("to"), one["name"], one.get("identifier")) for one in mode["members"]] == [
         (0, None, "Off 0", None), (1, None, "2nd gear", "value 2nd gear"), (2, 3, "Spare", None), (5, None, "Off 5", None),
     ]  # fmt: skip
-    assert field(train, "DriveStatus", "Torque")["special"] == [{"value": 2047, "meaning": "not known"}]
-    assert [one.code for one in train.definitions.import_findings] == ["IMP074", "IMP073", "IMP071", "IMP085"]
+    assert field(train, "DriveStatus", "Torque")["special"] == [
+        {"value": 2047, "meaning": "not known"}
+    ]
+    assert [one.code for one in train.definitions.import_findings] == [
+        "IMP074",
+        "IMP073",
+        "IMP071",
+        "IMP085",
+    ]
 
 
 def test_the_smaller_of_overlapping_fields_is_a_view(train):
-    assert field(train, "DriveStatus", "LevelLow")["view"] and "view" not in field(train, "DriveStatus", "Level")
+    assert field(train, "DriveStatus", "LevelLow")["view"] and "view" not in field(
+        train, "DriveStatus", "Level"
+    )
 
 
 def test_multiplexed_fields_have_conditions(train):
-    whens = {one["name"]: one.get("when") for one in message(train, "BrakeDetails")["fields"]}
+    whens = {
+        one["name"]: one.get("when") for one in message(train, "BrakeDetails")["fields"]
+    }
     assert whens == {
         "Page": None,
         "Temperature": {"Page": 0},
@@ -96,29 +121,56 @@ def test_multiplexed_fields_have_conditions(train):
 
 
 def test_names_that_no_language_takes_get_identifiers_and_are_listed(train):
-    assert train.identifiers == ["value `2nd gear`: `value 2nd gear`", "field `class`: `class field`"]
+    assert train.identifiers == [
+        "value `2nd gear`: `value 2nd gear`",
+        "field `class`: `class field`",
+    ]
     assert field(train, "DriveStatus", "class")["identifier"] == "class field"
 
 
 def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
     (tree,) = faulty.trees.values()
-    assert [one["name"] for one in tree["messages"]] == ["Wide", "Short", "Nested", "Fine"]
+    assert [one["name"] for one in tree["messages"]] == [
+        "Wide",
+        "Short",
+        "Nested",
+        "Fine",
+    ]
     assert message(faulty, "Wide")["id"] == wire_ids.CAN_EXTENDED_FLAG + 13274
     assert [one["name"] for one in message(faulty, "Short")["fields"]] == ["Inside"]
-    found = [(one.code, one.spot.line, one.message) for one in faulty.definitions.import_findings]
+    found = [
+        (one.code, one.spot.line, one.message)
+        for one in faulty.definitions.import_findings
+    ]
     assert found == [
         ("IMP076", 5, "the id 0x33da has more than the 11 bits of a standard frame"),
-        ("IMP075", 7, '`SG_ 0_COUNTER : 8|8@1+ (1,0) [0|0] "" Drive` is not understood'),
-        ("IMP075", 13, "`BO_ 513 2nd: 1 Drive` is not understood, nor are the 1 signals below it"),
+        (
+            "IMP075",
+            7,
+            '`SG_ 0_COUNTER : 8|8@1+ (1,0) [0|0] "" Drive` is not understood',
+        ),
+        (
+            "IMP075",
+            13,
+            "`BO_ 513 2nd: 1 Drive` is not understood, nor are the 1 signals below it",
+        ),
         ("IMP075", 21, '`CM_ "no end"` is not understood'),
-        ("IMP076", 27, "`VAL_` names `Missing` of message 515, which has no such signal"),
+        (
+            "IMP076",
+            27,
+            "`VAL_` names `Missing` of message 515, which has no such signal",
+        ),
         ("IMP072", None, "message `Short`: `Outside` ends behind its 2 bytes"),
         (
             "IMP091",
             None,
             "message `Nested`, `Value` is left out: it depends on `Inner`, which is optional itself",
         ),
-        ("IMP085", None, "`receivers` of `signal` is not used (5 times, first: message `Wide`, `Speed`)"),
+        (
+            "IMP085",
+            None,
+            "`receivers` of `signal` is not used (5 times, first: message `Wide`, `Speed`)",
+        ),
     ]
     assert faulty.failed and (faulty.imported, faulty.definitions.total) == (4, 4)
 
@@ -126,10 +178,14 @@ def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
 def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):
     text = (FILES / "faulty.dbc").read_text()
     assert "Outside : 12|8@1+" in text
-    (tmp_path / "before.dbc").write_text(text.replace("Outside : 12|8@1+", "Outside : -1|8@1+"))
+    (tmp_path / "before.dbc").write_text(
+        text.replace("Outside : 12|8@1+", "Outside : -1|8@1+")
+    )
     read = run.read(tmp_path / "before.dbc", kinds.of(tmp_path / "before.dbc"))
     assert [one["name"] for one in message(read, "Short")["fields"]] == ["Inside"]
-    told = [one.message for one in read.definitions.import_findings if one.code == "IMP072"]
+    told = [
+        one.message for one in read.definitions.import_findings if one.code == "IMP072"
+    ]
     assert told == ["message `Short`: `Outside` begins before its 2 bytes"]
 
 
@@ -138,19 +194,31 @@ def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tm
     import cantools
 
     path = tmp_path / f"train.{form}"
-    cantools.database.dump_file(cantools.database.load_file(FILES / "train.dbc", strict=False), path)
+    cantools.database.dump_file(
+        cantools.database.load_file(FILES / "train.dbc", strict=False), path
+    )
     reader = kinds.of(path)
     assert reader is not None and reader.name == form
     read = run.read(path, reader)
     keys = ("at", "bits", "type", "formula", "when", "enum", "byte_order", "view")
     for name in ("DriveStatus", "BrakeDetails"):
         ours, theirs = (
-            [(one["name"], *(one.get(key) for key in keys)) for one in message(each, name)["fields"]]
+            [
+                (one["name"], *(one.get(key) for key in keys))
+                for one in message(each, name)["fields"]
+            ]
             for each in (train, read)
         )
-        several = [0, 1] if form == "sym" else None  # there a signal stands under each value of the multiplexer
+        several = (
+            [0, 1] if form == "sym" else None
+        )  # there a signal stands under each value of the multiplexer
         assert [
-            one if one[0] != "Common" else (*one[:5], several and {"Page": several}, *one[6:]) for one in ours
+            (
+                one
+                if one[0] != "Common"
+                else (*one[:5], several and {"Page": several}, *one[6:])
+            )
+            for one in ours
         ] == theirs
 
 

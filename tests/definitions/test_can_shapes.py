@@ -1,4 +1,6 @@
-"""Shapes of public CAN databases, drawn by us: what is imported has the values that cantools reads in the same frames."""
+"""Shapes of public CAN databases, drawn by us: what is imported has the values that
+cantools reads in the same frames.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +54,10 @@ def shapes():
 
 
 def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> int:
-    """Compare raw and physical values of random frames of each message; the number of values."""
+    """Compare raw and physical values of random frames of each message.
+
+    The number of values.
+    """
     import cantools
     from cantools.database.errors import DecodeError
 
@@ -60,12 +65,15 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
     database = cantools.database.load_string(text, "dbc", strict=False)
     for ours in node.messages:
         flag = (
-            wire_ids.CAN_EXTENDED_FLAG if node.id_bits == 32 and ours.telemetry_id & wire_ids.CAN_EXTENDED_FLAG else 0
+            wire_ids.CAN_EXTENDED_FLAG
+            if node.id_bits == 32 and ours.telemetry_id & wire_ids.CAN_EXTENDED_FLAG
+            else 0
         )
         theirs = next(
             one
             for one in database.messages
-            if one.frame_id == ours.telemetry_id - flag and (node.id_bits != 32 or one.is_extended_frame == bool(flag))
+            if one.frame_id == ours.telemetry_id - flag
+            and (node.id_bits != 32 or one.is_extended_frame == bool(flag))
         )
         selectors = {one.multiplexer_signal for one in theirs.signals} - {None}
         for _ in range(40):
@@ -74,15 +82,28 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
             for name in selectors:  # one that selects something, as often as not
                 fields = frame_fields(ours.layout, node.orders)
                 chosen = next(one for one in fields if one.name == name)
-                values = [value for one in fields for need in one.conditions for value in need.values]
+                values = [
+                    value
+                    for one in fields
+                    for need in one.conditions
+                    for value in need.values
+                ]
                 if dice.random() < 0.7 and values:
                     frame = codec.frame_of(frame, {chosen: dice.choice(values)})
                     raw = codec.decode(node, ours, frame)
             for scaled in (False, True):
-                with contextlib.suppress(DecodeError):  # of a selector's value that no signal has
-                    for name, value in theirs.decode(frame, decode_choices=False, scaling=scaled).items():
-                        mine = next((one for one in ours.fields if one.name == name), None)
-                        assert mine is not None and name in raw, f"{ours.name}.{name} is there in {frame.hex()}"
+                with contextlib.suppress(
+                    DecodeError
+                ):  # of a selector's value that no signal has
+                    for name, value in theirs.decode(
+                        frame, decode_choices=False, scaling=scaled
+                    ).items():
+                        mine = next(
+                            (one for one in ours.fields if one.name == name), None
+                        )
+                        assert (
+                            mine is not None and name in raw
+                        ), f"{ours.name}.{name} is there in {frame.hex()}"
                         exact = codec.physical(mine, raw[name]) if scaled else None
                         expected = raw[name] if exact is None else exact
                         assert value == pytest.approx(
@@ -93,15 +114,25 @@ def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> in
 
 
 def test_values_of_all_shapes_are_those_of_cantools(shapes, tmp_path):
-    assert assert_values_are_those_of_cantools(shapes, (FILES / "shapes.dbc").read_text(), tmp_path) > 500
+    assert (
+        assert_values_are_those_of_cantools(
+            shapes, (FILES / "shapes.dbc").read_text(), tmp_path
+        )
+        > 500
+    )
 
 
 def test_a_signed_signal_with_a_name_keeps_its_sign(shapes, tmp_path):
     temperature = field(shapes, "Engine", "Temperature")
-    assert temperature["type"] == "int" and temperature["special"] == [{"value": 127, "meaning": "Invalid"}]
+    assert temperature["type"] == "int" and temperature["special"] == [
+        {"value": 127, "meaning": "Invalid"}
+    ]
     node = model(shapes, tmp_path)
     engine = next(one for one in node.messages if one.name == "Engine")
-    assert codec.decode(node, engine, bytes.fromhex("00f6000000000000"))["Temperature"] == -10
+    assert (
+        codec.decode(node, engine, bytes.fromhex("00f6000000000000"))["Temperature"]
+        == -10
+    )
 
 
 def test_a_quantity_with_a_name_for_not_available_keeps_unit_and_limits(shapes):
@@ -109,14 +140,32 @@ def test_a_quantity_with_a_name_for_not_available_keeps_unit_and_limits(shapes):
     assert (speed["type"], speed["unit"], speed["max"]) == ("uint", "km/h", 254)
     assert speed["special"] == [{"value": 255, "meaning": "SNA"}]
     torque = field(shapes, "Engine", "Torque")
-    assert (torque["type"], torque["min"], torque["max"], len(torque["special"])) == ("int", -100, 100, 2)
+    assert (torque["type"], torque["min"], torque["max"], len(torque["special"])) == (
+        "int",
+        -100,
+        100,
+        2,
+    )
 
 
-def test_names_without_unit_and_limits_and_names_that_cover_all_values_are_enumerations(shapes):
-    kinds = {name: field(shapes, "Engine", name)["type"] for name in ("Gear", "Level", "Trim", "Range")}
+def test_names_without_unit_and_limits_and_names_that_cover_all_values_are_enumerations(
+    shapes,
+):
+    kinds = {
+        name: field(shapes, "Engine", name)["type"]
+        for name in ("Gear", "Level", "Trim", "Range")
+    }
     assert set(kinds.values()) == {"enum"}
-    members = {one["name"]: [each["value"] for each in one["members"]] for one in tree_of(shapes)["enums"]}
-    assert members == {"Gear": [0, 1, 7], "Level": [0, 1, 2], "Trim": [-2, -1, 0, 1], "Range": [1]}
+    members = {
+        one["name"]: [each["value"] for each in one["members"]]
+        for one in tree_of(shapes)["enums"]
+    }
+    assert members == {
+        "Gear": [0, 1, 7],
+        "Level": [0, 1, 2],
+        "Trim": [-2, -1, 0, 1],
+        "Range": [1],
+    }
 
 
 def test_standard_and_extended_frames_of_one_number_are_two_messages(shapes):
@@ -126,27 +175,41 @@ def test_standard_and_extended_frames_of_one_number_are_two_messages(shapes):
 
 
 def test_fields_depend_on_a_signed_multiplexer(shapes):
-    whens = {one["name"]: one.get("when") for one in message(shapes, "Diagnosis")["fields"]}
+    whens = {
+        one["name"]: one.get("when") for one in message(shapes, "Diagnosis")["fields"]
+    }
     assert whens == {"Page": None, "Current": {"Page": 0}, "Voltage": {"Page": 127}}
 
 
 @pytest.mark.parametrize(("bits", "sign", "value", "is_held"), [
     (2, "+", 3, True), (2, "+", 4, False), (2, "-", 1, True), (2, "-", 2, False), (8, "+", 255, True), (8, "+", 256, False),
 ])  # fmt: skip
-def test_a_value_that_the_multiplexer_cannot_have_selects_nothing(bits, sign, value, is_held, tmp_path):
+def test_a_value_that_the_multiplexer_cannot_have_selects_nothing(
+    bits, sign, value, is_held, tmp_path
+):
     text = (
         f'{HEAD}BO_ 1 Status: 4 Engine\n SG_ Page M : 0|{bits}@1{sign} (1,0) [0|0] "" Display\n'
         f' SG_ Speed m{value} : 8|8@1+ (1,0) [0|0] "" Display\n'
     )
     read = imported(text, tmp_path)
-    assert ("Speed" in [one["name"] for one in message(read, "Status")["fields"]]) == is_held
-    said = [one.message for one in read.definitions.import_findings if one.code == "IMP091"]
+    assert (
+        "Speed" in [one["name"] for one in message(read, "Status")["fields"]]
+    ) == is_held
+    said = [
+        one.message for one in read.definitions.import_findings if one.code == "IMP091"
+    ]
     assert said == (
-        [] if is_held else ["message `Status`, `Speed` is left out: it depends on values of `Page` that it cannot have"]
+        []
+        if is_held
+        else [
+            "message `Status`, `Speed` is left out: it depends on values of `Page` that it cannot have"
+        ]
     )
 
 
-def test_long_names_of_messages_signals_and_multiplexers_are_those_that_arrive(tmp_path):
+def test_long_names_of_messages_signals_and_multiplexers_are_those_that_arrive(
+    tmp_path,
+):
     long = "Temperature_of_the_cooling_water_behind_the_second_heat_exchanger"
     text = (
         f'{HEAD}BO_ 1 Stat: 4 Engine\n SG_ Pg M : 0|8@1+ (1,0) [0|0] "" Display\n'
@@ -163,7 +226,9 @@ def test_long_names_of_messages_signals_and_multiplexers_are_those_that_arrive(t
     assert {one["name"]: one.get("when") for one in message(read, "Status_of_the_engine")["fields"]} == {
         f"{long}_page": None, f"{long}_inlet": {f"{long}_page": 1}, f"{long}_outlet": {f"{long}_page": 2}, "T3": None,
     }  # fmt: skip
-    assert read.identifiers == [], "a limit of C is solved in C, not by other names for all languages"
+    assert (
+        read.identifiers == []
+    ), "a limit of C is solved in C, not by other names for all languages"
 
 
 def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
@@ -184,17 +249,26 @@ def test_many_names_that_are_no_identifiers_lose_no_message(tmp_path):
     ]
     blocks = [
         f"BO_ {id} {name}{id % 2}: 8 Engine\n"
-        + "".join(f' SG_ {one} : {4 * at}|4@1+ (1,0) [0|0] "" Display\n' for at, one in enumerate(names))
-        for id, name in enumerate(("Status", "STATUS", "status", "STATus", "class", "Class"), 1)
+        + "".join(
+            f' SG_ {one} : {4 * at}|4@1+ (1,0) [0|0] "" Display\n'
+            for at, one in enumerate(names)
+        )
+        for id, name in enumerate(
+            ("Status", "STATUS", "status", "STATus", "class", "Class"), 1
+        )
     ]
     read = imported(HEAD + "\n".join(blocks), tmp_path)
     assert (read.imported, read.definitions.total) == (6, 6)
     assert all(len(one["fields"]) == len(names) for one in tree_of(read)["messages"])
-    assert [one for one in read.definitions.import_findings if one.severity == "error"] == []
+    assert [
+        one for one in read.definitions.import_findings if one.severity == "error"
+    ] == []
     model(read, tmp_path)
 
 
-def test_enumerations_of_messages_and_fields_that_are_left_out_are_left_out_too(tmp_path):
+def test_enumerations_of_messages_and_fields_that_are_left_out_are_left_out_too(
+    tmp_path,
+):
     text = (
         f'{HEAD}BO_ 1 Twin: 8 Engine\n SG_ Mode : 0|8@1+ (1,0) [0|0] "" Display\n\n'
         'BO_ 1 Other: 8 Engine\n SG_ State : 0|8@1+ (1,0) [0|0] "" Display\n\n'
@@ -202,7 +276,12 @@ def test_enumerations_of_messages_and_fields_that_are_left_out_are_left_out_too(
         'VAL_ 1 Mode 0 "Off" 1 "On" ;\nVAL_ 2 Far 0 "Near" 1 "Far" ;\n'
     )
     read = imported(text, tmp_path)
-    used = {one["enum"] for each in tree_of(read)["messages"] for one in each.get("fields", ()) if "enum" in one}
+    used = {
+        one["enum"]
+        for each in tree_of(read)["messages"]
+        for one in each.get("fields", ())
+        if "enum" in one
+    }
     assert {one["name"] for one in tree_of(read).get("enums", ())} == used
     assert "Far" not in used
 
@@ -218,8 +297,13 @@ def test_start_values_cycle_times_and_further_senders_arrive(tmp_path):
     )
     read = imported(text, tmp_path)
     assert message(read, "Status")["group"] == "Engine"
-    assert message(read, "Status")["summary"] == "What the engine does. Sent every 20 ms. Also sent by Gateway."
-    assert field(read, "Status", "Speed")["summary"] == "How fast. Start value: 7 (raw)."
+    assert (
+        message(read, "Status")["summary"]
+        == "What the engine does. Sent every 20 ms. Also sent by Gateway."
+    )
+    assert (
+        field(read, "Status", "Speed")["summary"] == "How fast. Start value: 7 (raw)."
+    )
 
 
 def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_path):
@@ -231,7 +315,11 @@ def test_what_a_database_says_beyond_an_icd_is_reported_by_name_and_place(tmp_pa
         "SIG_GROUP_ 1 Pair 1 : Speed;\n"
     )
     read = imported(text, tmp_path)
-    found = {(one.message, one.spot.line) for one in read.definitions.import_findings if one.code == "IMP085"}
+    found = {
+        (one.message, one.spot.line)
+        for one in read.definitions.import_findings
+        if one.code == "IMP085"
+    }
     assert {
         ("`VERSION` is not used", 1),
         ("`EV_` is not used", 8),
@@ -250,7 +338,13 @@ def test_a_database_of_which_all_is_used_has_no_finding(tmp_path):
 def test_a_database_that_is_cut_anywhere_says_so(tmp_path):
     text = (FILES / "shapes.dbc").read_text()
     whole = len(
-        [one for one in run.read(FILES / "shapes.dbc", can.Dbc()).definitions.import_findings if one.code != "IMP085"]
+        [
+            one
+            for one in run.read(
+                FILES / "shapes.dbc", can.Dbc()
+            ).definitions.import_findings
+            if one.code != "IMP085"
+        ]
     )
     from icdgen.diagnostics import Findings
 
@@ -262,8 +356,15 @@ def test_a_database_that_is_cut_anywhere_says_so(tmp_path):
         except Findings:
             continue
         is_complete = cut.endswith((";", "\n")) or not cut.rsplit("\n", 1)[-1].strip()
-        lines = {one.spot.line for one in read.definitions.import_findings if one.code == "IMP075"}
-        assert is_complete or lines & {cut.count("\n") + 1, cut.rstrip().count("\n") + 1}, cut[-60:]
+        lines = {
+            one.spot.line
+            for one in read.definitions.import_findings
+            if one.code == "IMP075"
+        }
+        assert is_complete or lines & {
+            cut.count("\n") + 1,
+            cut.rstrip().count("\n") + 1,
+        }, cut[-60:]
     assert whole == 3
 
 
@@ -274,9 +375,17 @@ def test_a_statement_that_cantools_refuses_costs_its_message_and_not_the_file(tm
         'BA_DEF_ SG_ "GenSigStartValue" STRING ;\nBA_DEF_DEF_ "GenSigStartValue" "";\nBA_ "GenSigStartValue" SG_ 2 Mode "high";\n'
     )
     read = imported(text, tmp_path)
-    assert [one["name"] for one in tree_of(read)["messages"]] == ["Good"] and read.definitions.total == 2
-    (error,) = [one for one in read.definitions.import_findings if one.severity == "error"]
-    assert error.code == "IMP070" and "message `Bad` is not imported" in error.message and error.spot.line == 8
+    assert [one["name"] for one in tree_of(read)["messages"]] == [
+        "Good"
+    ] and read.definitions.total == 2
+    (error,) = [
+        one for one in read.definitions.import_findings if one.severity == "error"
+    ]
+    assert (
+        error.code == "IMP070"
+        and "message `Bad` is not imported" in error.message
+        and error.spot.line == 8
+    )
 
 
 def test_messages_of_one_name_are_all_imported_by_sender_or_by_id(tmp_path):
@@ -285,11 +394,17 @@ def test_messages_of_one_name_are_all_imported_by_sender_or_by_id(tmp_path):
         for id, sender in ((256, "Engine"), (257, "Gateway"))
     )
     read = imported(text, tmp_path)
-    assert [one["name"] for one in tree_of(read)["messages"]] == ["Engine Status", "Gateway Status"]
+    assert [one["name"] for one in tree_of(read)["messages"]] == [
+        "Engine Status",
+        "Gateway Status",
+    ]
     assert "IMP092" in [one.code for one in read.definitions.import_findings]
 
     read = imported(text.replace("1 Gateway", "1 Engine"), tmp_path)
-    assert [one["name"] for one in tree_of(read)["messages"]] == ["Status 0x100", "Status 0x101"]
+    assert [one["name"] for one in tree_of(read)["messages"]] == [
+        "Status 0x100",
+        "Status 0x101",
+    ]
     model(read, tmp_path)
 
 
@@ -357,11 +472,19 @@ ARXML = """\
                 ("`type string` of `Var` is not used (`Status`)", 10),
             ],
         ),
-        (can.Arxml(), ARXML, [("`LIN-CLUSTER` of `ELEMENTS` is not used (`Doors`)", 8)]),
+        (
+            can.Arxml(),
+            ARXML,
+            [("`LIN-CLUSTER` of `ELEMENTS` is not used (`Doors`)", 8)],
+        ),
     ],
     ids=["kcd", "sym", "arxml"],
 )
 def test_what_cantools_drops_of_a_file_is_reported(reader, text, unused):
     definitions = reader.read("vehicle", text.encode())
-    found = [(one.message, one.spot.line) for one in definitions.import_findings if one.code == "IMP085"]
+    found = [
+        (one.message, one.spot.line)
+        for one in definitions.import_findings
+        if one.code == "IMP085"
+    ]
     assert [one for one in found if one[1] is not None] == unused

@@ -1,6 +1,8 @@
-"""Electronic data sheets become ICDs: what components send, packages beside the file, and values that design parameters define.
+"""Electronic data sheets become ICDs: what components send, packages beside the file,
+and values that design parameters define.
 
-What is read of random frames is compared with a reader of bits of its own in tests/devices.
+What is read of random frames is compared with a reader of bits of its own in
+tests/devices.
 """
 
 from __future__ import annotations
@@ -42,7 +44,9 @@ def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
     assert [(one["name"], one["kind"]) for one in tree["messages"]] == [
         ("Housekeeping", "telemetry"), ("Picture", "telemetry"), ("Noop", "telecommand"), ("Shoot", "telecommand"),
     ]  # fmt: skip
-    assert ("IMP084", "no interface carries 1 container: `Settings`") in said(camera) and not camera.failed
+    assert ("IMP084", "no interface carries 1 container: `Settings`") in said(
+        camera
+    ) and not camera.failed
 
 
 def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
@@ -51,42 +55,80 @@ def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
     assert [(one["at"], one["bits"], one["role"]) for one in header if one["role"] in ("id", "length", "sequence")] == [
         (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
     ]  # fmt: skip
-    assert header[2]["value"] == {"telecommand": 1, "telemetry": 1} and tree["node"]["id_bits"] == 11
-    assert message(camera, "Noop")["length"] == 2 and field(camera, "Housekeeping", "Time")["at"] == 0
+    assert (
+        header[2]["value"] == {"telecommand": 1, "telemetry": 1}
+        and tree["node"]["id_bits"] == 11
+    )
+    assert (
+        message(camera, "Noop")["length"] == 2
+        and field(camera, "Housekeeping", "Time")["at"] == 0
+    )
 
 
 def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(camera):
-    assert [message(camera, name)["id"] for name in ("Picture", "Housekeeping", "Noop", "Shoot")] == [300, 20, 10, 10]
-    assert [field(camera, name, "Code")["const"] for name in ("Noop", "Shoot")] == [0, 1]
-    (process,) = [one for one in camera.definitions.import_findings if one.code == "IMP083"]
-    assert process.message == "no application process is stated for 3 messages, only `TopicId` of their interfaces"
+    assert [
+        message(camera, name)["id"]
+        for name in ("Picture", "Housekeeping", "Noop", "Shoot")
+    ] == [300, 20, 10, 10]
+    assert [field(camera, name, "Code")["const"] for name in ("Noop", "Shoot")] == [
+        0,
+        1,
+    ]
+    (process,) = [
+        one for one in camera.definitions.import_findings if one.code == "IMP083"
+    ]
+    assert (
+        process.message
+        == "no application process is stated for 3 messages, only `TopicId` of their interfaces"
+    )
 
 
-@pytest.mark.parametrize(("topic", "id"), [("3", 2 ^ 0x60), ("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 255", 255)])
+@pytest.mark.parametrize(
+    ("topic", "id"),
+    [("3", 2 ^ 0x60), ("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 255", 255)],
+)
 def test_topics_become_application_processes_as_those_of_cfs(tmp_path, topic, id):
-    folder = copied(tmp_path, "mission.xml", "${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", topic)
+    folder = copied(
+        tmp_path, "mission.xml", "${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", topic
+    )
     assert message(imported("camera.xml", folder), "Noop")["id"] == id
 
 
 def test_a_parameter_that_is_no_topic_is_the_number_of_the_process(tmp_path):
     said = 'parameter="{}" variableRef="Commands"'
-    folder = copied(tmp_path, "camera.xml", said.format("TopicId"), said.format("MsgId"))
+    folder = copied(
+        tmp_path, "camera.xml", said.format("TopicId"), said.format("MsgId")
+    )
     text = (folder / "mission.xml").read_text()
-    (folder / "mission.xml").write_text(text.replace("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", "0x1880"))
+    (folder / "mission.xml").write_text(
+        text.replace("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", "0x1880")
+    )
     assert message(imported("camera.xml", folder), "Noop")["id"] == 0x80
 
 
-def test_a_container_that_interfaces_carry_by_several_numbers_is_as_many_messages(tmp_path):
+def test_a_container_that_interfaces_carry_by_several_numbers_is_as_many_messages(
+    tmp_path,
+):
     interface = '<Interface name="{}" type="LINK/PACKETS/Out">'
-    folder = copied(tmp_path, "camera.xml", interface.format("PICTURES"), interface.format("MORE"))
-    text = (folder / "camera.xml").read_text().replace('name="Data" type="Picture"', 'name="Data" type="Housekeeping"')
+    folder = copied(
+        tmp_path, "camera.xml", interface.format("PICTURES"), interface.format("MORE")
+    )
+    text = (
+        (folder / "camera.xml")
+        .read_text()
+        .replace('name="Data" type="Picture"', 'name="Data" type="Housekeeping"')
+    )
     end = '<ParameterMap interface="MORE" parameter="TopicId" variableRef="Commands"/></ParameterMapSet>'
     (folder / "camera.xml").write_text(text.replace("</ParameterMapSet>", end))
     read = imported("camera.xml", folder)
-    assert [message(read, name)["id"] for name in ("Housekeeping HK", "Housekeeping MORE")] == [20, 19]
+    assert [
+        message(read, name)["id"] for name in ("Housekeeping HK", "Housekeeping MORE")
+    ] == [20, 19]
 
 
-def test_names_are_those_that_tell_fields_apart_and_containers_in_arrays_are_structs(camera):
+def test_names_are_those_that_tell_fields_apart_and_containers_in_arrays_are_structs(
+    camera,
+):
     (tree,) = camera.trees.values()
     assert [one["name"] for one in message(camera, "Housekeeping")["fields"]] == [
         "Time", "Mode", "Ready", "Shutter", "Exposure", "Front Lens", "Front Sensor", "Back Lens", "Back Sensor", "Peaks", "Matrix",
@@ -97,16 +139,29 @@ def test_names_are_those_that_tell_fields_apart_and_containers_in_arrays_are_str
         5,
         ["Row", "Column", "Level"],
     )
-    assert field(camera, "Housekeeping", "Peaks") == {"at": 136, "name": "Peaks", "struct": "Peak", "count": 3}
+    assert field(camera, "Housekeeping", "Peaks") == {
+        "at": 136,
+        "name": "Peaks",
+        "struct": "Peak",
+        "count": 3,
+    }
     assert field(camera, "Housekeeping", "Matrix")["count"] == 6  # three rows of two
 
 
 def test_units_ranges_and_calibrations_arrive(camera):
     exposure = field(camera, "Shoot", "Exposure")
-    assert {key: exposure[key] for key in ("unit", "min", "max")} == {"unit": "ms", "min": 1, "max": 5000}
+    assert {key: exposure[key] for key in ("unit", "min", "max")} == {
+        "unit": "ms",
+        "min": 1,
+        "max": 5000,
+    }
     assert field(camera, "Housekeeping", "Front Lens")["formula"] == "raw*0.01 - 20"
     sensor = field(camera, "Housekeeping", "Back Sensor")
-    assert (sensor["unit"], sensor["points"][2], sensor["outside"]) == ("C", [400, 125.5], "extrapolate")
+    assert (sensor["unit"], sensor["points"][2], sensor["outside"]) == (
+        "C",
+        [400, 125.5],
+        "extrapolate",
+    )
     assert message(camera, "Picture")["summary"] == "A piece of a picture."
 
 
@@ -116,28 +171,43 @@ def test_a_list_is_an_open_end_that_its_field_counts(camera):
     }  # fmt: skip
     log = imported("log.xml")
     assert field(log, "Note", "Words")["size"] == {"field": "Length", "plus": -5}
-    assert field(log, "Values", "Value")["up_to"] == 255 and field(log, "Dump", "Block")["type"] == "bytes"
+    assert (
+        field(log, "Values", "Value")["up_to"] == 255
+        and field(log, "Dump", "Block")["type"] == "bytes"
+    )
 
 
 def test_what_a_container_is_based_on_stands_around_it(gyro):
     names = [one["name"] for one in message(gyro, "Serial")["fields"]]
-    assert (names[0], names[-1]) == ("Mark", "Crc") and field(gyro, "Serial", "Crc")["at"] == 168
+    assert (names[0], names[-1]) == ("Mark", "Crc") and field(gyro, "Serial", "Crc")[
+        "at"
+    ] == 168
     assert (message(gyro, "State")["id"], message(gyro, "Serial")["id"]) == (16, 17)
     assert field(gyro, "State", "Mark")["const"] == int.from_bytes(b"GYR1", "big")
 
 
 def test_the_length_of_a_container_is_a_constant_where_it_is_always_the_same(gyro):
-    assert field(gyro, "State", "Bits")["const"] == 8 * (message(gyro, "State")["length"] - 7)
+    assert field(gyro, "State", "Bits")["const"] == 8 * (
+        message(gyro, "State")["length"] - 7
+    )
     assert "const" not in field(imported("log.xml"), "Note", "Length")
 
 
-def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_to_their_bits(gyro):
-    raw = {name: field(gyro, "State", name)["type"] for name in ("Offset", "Scale", "Drift")}
+def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_to_their_bits(
+    gyro,
+):
+    raw = {
+        name: field(gyro, "State", name)["type"]
+        for name in ("Offset", "Scale", "Drift")
+    }
     assert raw == {"Offset": "uint", "Scale": "uint", "Drift": "int"}
     told = [text for code, text in said(gyro) if code == "IMP078"]
     assert "`Offset` (message `State`): it is encoded as onesComplement" in told
     assert "`Number` (message `Serial`): it is encoded as packedBCD" in told
-    enums = {one["name"]: [member["value"] for member in one["members"]] for one in gyro.trees["gyro"]["enums"]}
+    enums = {
+        one["name"]: [member["value"] for member in one["members"]]
+        for one in gyro.trees["gyro"]["enums"]
+    }
     assert enums == {"Sign": [0, 1, 129], "Trend": [-1, 1], "Wide": [0, 1]}
     assert field(gyro, "Serial", "Revision")["const"] == -3
 
@@ -145,9 +215,14 @@ def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_t
 def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(gyro):
     assert field(gyro, "State", "Crc")["summary"] == "CRC16_CCITT."
     assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
-    (missing,) = [one for one in gyro.definitions.import_findings if one.severity == "error"]
+    (missing,) = [
+        one for one in gyro.definitions.import_findings if one.severity == "error"
+    ]
     why = "`Extra` is present only on a condition"
-    assert missing.message == f"message `Sometimes`: from `Extra` on only bytes are imported: {why}"
+    assert (
+        missing.message
+        == f"message `Sometimes`: from `Extra` on only bytes are imported: {why}"
+    )
     lines = (SHEETS / "gyro.xml").read_text().splitlines()
     assert 'name="Sometimes"' in lines[missing.spot.line - 1]
 
@@ -163,26 +238,42 @@ def copied(folder, name, old="", new=""):
 
 
 def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
-    folder = copied(tmp_path, "mission.xml", '<Define name="NAME_LENGTH" value="${WORD} + 4"/>', "")
+    folder = copied(
+        tmp_path, "mission.xml", '<Define name="NAME_LENGTH" value="${WORD} + 4"/>', ""
+    )
     read = imported("camera.xml", folder)
     why = "no file in the folder defines `${MISSION/NAME_LENGTH}`"
-    assert ("IMP081", f"message `Shoot`: from `File` on only bytes are imported: {why}") in said(read)
-    assert read.imported == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
+    assert (
+        "IMP081",
+        f"message `Shoot`: from `File` on only bytes are imported: {why}",
+    ) in said(read)
+    assert (
+        read.imported == 4 and message(read, "Shoot")["fields"][-1]["type"] == "bytes"
+    )
     (folder / "mission.xml").unlink()
-    assert "no file in the folder defines `${MISSION/HEADER}`" in why_not("camera.xml", folder)
+    assert "no file in the folder defines `${MISSION/HEADER}`" in why_not(
+        "camera.xml", folder
+    )
 
 
 def test_a_package_that_lies_elsewhere_is_said(tmp_path):
     folder = copied(tmp_path, "packets.xml")
     (folder / "packets.xml").unlink()
     said = why_not("camera.xml", folder)
-    assert "is of the package `LINK/PACKETS`, which is neither in the file nor in its folder" in said
+    assert (
+        "is of the package `LINK/PACKETS`, which is neither in the file nor in its folder"
+        in said
+    )
 
 
 def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
     folder = copied(tmp_path, "packets.xml")
     shutil.copy(folder / "packets.xml", folder / "packets_old.xml")
-    text = (folder / "mission.xml").read_text().replace('name="PEAKS" value="2 ^ 2 - 1"', 'name="PEAKS" value="9"')
+    text = (
+        (folder / "mission.xml")
+        .read_text()
+        .replace('name="PEAKS" value="2 ^ 2 - 1"', 'name="PEAKS" value="9"')
+    )
     (folder / "mission_old.xml").write_text(text)
     read = imported("camera.xml", folder)
     assert [text for code, text in said(read) if code == "IMP076"] == [
@@ -193,8 +284,15 @@ def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
 
 
 def test_packets_of_another_version_have_it_in_their_envelope(tmp_path):
-    folder = copied(tmp_path, "packets.xml", 'entry="Version" value="0"', 'entry="Version" value="1"')
-    header = imported("camera.xml", folder).trees["camera"]["protocol"]["stream"]["header"]
+    folder = copied(
+        tmp_path,
+        "packets.xml",
+        'entry="Version" value="0"',
+        'entry="Version" value="1"',
+    )
+    header = imported("camera.xml", folder).trees["camera"]["protocol"]["stream"][
+        "header"
+    ]
     assert header[0] == {"at": 0, "bits": 3, "role": "constant", "value": 1}
 
 
@@ -224,14 +322,19 @@ def array(name, of, size):
 
 
 def constrained(one):
-    return container("B") + container("A", "", f"<ConstraintSet>{one}</ConstraintSet>", baseType="B")
+    return container("B") + container(
+        "A", "", f"<ConstraintSet>{one}</ConstraintSet>", baseType="B"
+    )
 
 
 SEVERAL = "<EnumeratedRange><Label>A</Label><Label>B</Label></EnumeratedRange>"
 
 
 def nested(depth, times):
-    return "".join(container(f"C{n}", "".join(entry(f"C{n + 1}", f"E{k}") for k in range(times))) for n in range(depth))
+    return "".join(
+        container(f"C{n}", "".join(entry(f"C{n + 1}", f"E{k}") for k in range(times)))
+        for n in range(depth)
+    )
 
 
 FLOAT = '<FloatDataType name="f"><FloatDataEncoding sizeInBits="32" encodingAndPrecision="IEEE754_2008_single"/></FloatDataType>'
@@ -280,7 +383,9 @@ def test_containers_that_cannot_be_held_are_left_out_and_end(types, says, tmp_pa
 
 
 def integer(said):
-    return f'<IntegerDataType name="byte"><IntegerDataEncoding {said}/></IntegerDataType>'
+    return (
+        f'<IntegerDataType name="byte"><IntegerDataEncoding {said}/></IntegerDataType>'
+    )
 
 
 @pytest.mark.parametrize(
@@ -304,7 +409,11 @@ def test_types_that_cannot_be_held_are_said(byte, says, tmp_path):
     assert says in refused(sheet(container("A"), byte), tmp_path)
 
 
-BOMB = "<!DOCTYPE x [" + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)) + '<!ENTITY e0 "ha">]>'
+BOMB = (
+    "<!DOCTYPE x ["
+    + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10))
+    + '<!ENTITY e0 "ha">]>'
+)
 ITSELF = '<Define name="A" value="${B}"/><Define name="B" value="${A}"/>'
 GROWS = '<Define name="A0" value="word word word word"/>' + "".join(
     f'<Define name="A{n}" value="{f"${{A{n - 1}}} " * 10}"/>' for n in range(1, 15)
@@ -328,16 +437,24 @@ def test_hostile_files_are_refused(text, says, tmp_path):
 
 def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeypatch):
     monkeypatch.setattr(eds_types.Types, "most_steps", 100)
-    assert "the file says more than 100 things" in refused(sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path)
+    assert "the file says more than 100 things" in refused(
+        sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path
+    )
     monkeypatch.setattr(eds_interfaces, "MOST_STEPS", 3)
-    assert "its interfaces carry more than 3 containers" in why_not("camera.xml", SHEETS)
+    assert "its interfaces carry more than 3 containers" in why_not(
+        "camera.xml", SHEETS
+    )
     monkeypatch.setattr(eds_sheets, "MOST_FILES", 1)
     for name in ("b.xml", "c.xml"):
         (tmp_path / name).write_text(sheet(""))
-    assert "its folder has more than 1 data sheets" in refused(sheet(container("A")), tmp_path)
+    assert "its folder has more than 1 data sheets" in refused(
+        sheet(container("A")), tmp_path
+    )
 
 
-def test_a_file_beside_it_that_is_broken_is_named_and_others_are_not_looked_at(tmp_path):
+def test_a_file_beside_it_that_is_broken_is_named_and_others_are_not_looked_at(
+    tmp_path,
+):
     (tmp_path / "other.xml").write_text("<other><unclosed></other>")
     (tmp_path / "good.xml").write_text(sheet(container("A")))
     assert run.read(tmp_path / "good.xml", eds.Eds()).imported == 1
@@ -363,7 +480,11 @@ def why_not(name, folder):
 def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tmp_path):
     inner = container("I", entry("byte", "R"), baseType="X")
     (tmp_path / "one.xml").write_text(
-        sheet(container("X", abstract="true") + inner + container("A", entry("I"), baseType="X"))
+        sheet(
+            container("X", abstract="true")
+            + inner
+            + container("A", entry("I"), baseType="X")
+        )
     )
     fields = message(run.read(tmp_path / "one.xml", eds.Eds()), "A")["fields"]
     assert [one["name"] for one in fields] == ["P", "Q P", "R"]
@@ -372,12 +493,15 @@ def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tm
 def test_an_id_in_front_of_all_is_the_envelope(tmp_path):
     told = '<ConstraintSet><ValueConstraint entry="P" value="{}"/></ConstraintSet>'
     types = "".join(
-        container(name, entry("byte", "R"), told.format(id), baseType="X") for name, id in (("A", 7), ("B", 9))
+        container(name, entry("byte", "R"), told.format(id), baseType="X")
+        for name, id in (("A", 7), ("B", 9))
     )
     (tmp_path / "ids.xml").write_text(sheet(container("X", abstract="true") + types))
     (tree,) = run.read(tmp_path / "ids.xml", eds.Eds()).trees.values()
     assert tree["protocol"]["stream"]["header"] == [{"at": 0, "bits": 8, "role": "id"}]
-    assert [(one["id"], one["length"], one["fields"][0]["name"]) for one in tree["messages"]] == [
+    assert [
+        (one["id"], one["length"], one["fields"][0]["name"]) for one in tree["messages"]
+    ] == [
         (7, 1, "R"),
         (9, 1, "R"),
     ]
@@ -386,13 +510,21 @@ def test_an_id_in_front_of_all_is_the_envelope(tmp_path):
 def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):
     (tmp_path / "two.xml").write_text(sheet(container("A") + container("B")))
     read = run.read(tmp_path / "two.xml", eds.Eds())
-    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [("A", 1), ("B", 2)]
-    assert said(read) == [("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")]
+    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [
+        ("A", 1),
+        ("B", 2),
+    ]
+    assert said(read) == [
+        ("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")
+    ]
 
 
 def test_the_command_reads_them_and_says_what_it_found(tmp_path):
     result = icdgen("import", str(SHEETS / "camera.xml"), "--out", "icd", cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert "camera.xml: an electronic data sheet (CCSDS SOIS), 4 of 4 messages imported\n" in result.stdout
+    assert (
+        "camera.xml: an electronic data sheet (CCSDS SOIS), 4 of 4 messages imported\n"
+        in result.stdout
+    )
     assert result.stdout.endswith("`icdgen check icd/camera.yaml`: no findings\n")
     assert icdgen("fmt", "--check", "icd", cwd=tmp_path).returncode == 0

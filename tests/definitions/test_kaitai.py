@@ -1,4 +1,5 @@
-"""Formats of Kaitai Struct become ICDs: their sequence a message, or one for each way in which values let it go on.
+"""Formats of Kaitai Struct become ICDs: their sequence a message, or one for each way
+in which values let it go on.
 
 What is read of random frames is compared with kaitaistruct's reading in tests/devices.
 """
@@ -33,24 +34,39 @@ def imported(name):
     return run.read(FILES / name, reader)
 
 
-def test_each_way_in_which_values_let_the_sequence_go_on_is_a_message_told_by_them(probe):
+def test_each_way_in_which_values_let_the_sequence_go_on_is_a_message_told_by_them(
+    probe,
+):
     (tree,) = probe.trees.values()
     told = [
-        (one["name"], [part["const"] for part in one["fields"] if part["name"] in ("is_late", "kind")])
+        (
+            one["name"],
+            [
+                part["const"]
+                for part in one["fields"]
+                if part["name"] in ("is_late", "kind")
+            ],
+        )
         for one in tree["messages"]
     ]
     assert told == [
         ("probe with delay power", [1, 1]), ("probe with delay places", [1, 2]),
         ("probe power", [0, 1]), ("probe places", [0, 2]),
     ]  # fmt: skip
-    assert {one["id"] for one in tree["messages"]} == {1} and probe.definitions.total == probe.imported == 4
+    assert {one["id"] for one in tree["messages"]} == {
+        1
+    } and probe.definitions.total == probe.imported == 4
     assert (
-        field(probe, "probe with delay power", "volts_raw")["at"] == field(probe, "probe power", "volts_raw")["at"] + 16
+        field(probe, "probe with delay power", "volts_raw")["at"]
+        == field(probe, "probe power", "volts_raw")["at"] + 16
     )
 
 
 def test_contents_and_what_alone_is_valid_are_constants(probe):
-    assert (field(probe, "probe power", "sync")["const"], field(probe, "probe power", "version")["const"]) == (
+    assert (
+        field(probe, "probe power", "sync")["const"],
+        field(probe, "probe power", "version")["const"],
+    ) == (
         0xEB90,
         2,
     )
@@ -60,64 +76,127 @@ def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, fra
     said = field(probe, "probe power", "temperature_raw")
     assert (said["formula"], said["unit"]) == ("raw*0.5 - 40", "C")
     assert field(frame, "frame unnumbered", "current")["formula"] == "raw/1000.0 + 0.5"
-    assert "formula" not in field(frame, "frame unnumbered", "uptime")  # whole numbers are divided without the rest
+    assert "formula" not in field(
+        frame, "frame unnumbered", "uptime"
+    )  # whole numbers are divided without the rest
     assert [
-        (one.code, one.message) for one in (*import_findings(probe.definitions), *import_findings(frame.definitions))
+        (one.code, one.message)
+        for one in (
+            *import_findings(probe.definitions),
+            *import_findings(frame.definitions),
+        )
     ] == [
-        ("IMP078", "`body total`: `cells[0] + cells[1]` is not a linear function of one field"),
-        ("IMP081", "`header callsign` is not imported: its bytes are processed by `ror(1)` before they are read"),
-        ("IMP078", "`header ssid`: `(ssid_raw & 0x0f) >> 1` is not a linear function of one field"),
-        ("IMP078", "`payload halves`: `uptime / 2` is not a linear function of one field"),
-        ("IMP081", "`payload elsewhere` is not imported: an expression gives its position"),
+        (
+            "IMP078",
+            "`body total`: `cells[0] + cells[1]` is not a linear function of one field",
+        ),
+        (
+            "IMP081",
+            "`header callsign` is not imported: its bytes are processed by `ror(1)` before they are read",
+        ),
+        (
+            "IMP078",
+            "`header ssid`: `(ssid_raw & 0x0f) >> 1` is not a linear function of one field",
+        ),
+        (
+            "IMP078",
+            "`payload halves`: `uptime / 2` is not a linear function of one field",
+        ),
+        (
+            "IMP081",
+            "`payload elsewhere` is not imported: an expression gives its position",
+        ),
         ("IMP081", "`payload data` is not imported: its size is `size * 2`"),
     ]
-    assert [one.spot.line for one in import_findings(frame.definitions)] == [18, 28, 46, 47, 58]
+    assert [one.spot.line for one in import_findings(frame.definitions)] == [
+        18,
+        28,
+        46,
+        47,
+        58,
+    ]
 
 
 def test_types_that_are_repeated_are_structs_and_others_part_of_the_message(probe):
     (tree,) = probe.trees.values()
-    assert [(one["name"], one["length"], len(one["fields"])) for one in tree["structs"]] == [("place", 8, 2)]
+    assert [
+        (one["name"], one["length"], len(one["fields"])) for one in tree["structs"]
+    ] == [("place", 8, 2)]
     assert field(probe, "probe places", "place") | {"at": 0} == {
         "at": 0,
         "name": "place",
         "struct": "place",
         "count": 2,
     }
-    assert field(probe, "probe power", "cells")["count"] == 3 and field(probe, "probe power", "kind")["enum"] == "kind"
+    assert (
+        field(probe, "probe power", "cells")["count"] == 3
+        and field(probe, "probe power", "kind")["enum"] == "kind"
+    )
 
 
 def test_some_bits_that_decide_are_fields_of_their_own_and_the_whole_is_a_view(frame):
-    parts = [one for one in message(frame, "frame unnumbered")["fields"] if one["name"].startswith("control")]
+    parts = [
+        one
+        for one in message(frame, "frame unnumbered")["fields"]
+        if one["name"].startswith("control")
+    ]
     assert [(one["name"], one["at"], one["bits"], one.get("const")) for one in parts if "view" not in one] == [
         ("control bits 0 to 1", 56, 2, 3), ("control bits 2 to 3", 58, 2, None),
         ("control bit 4", 60, 1, 0), ("control bits 5 to 7", 61, 3, None),
     ]  # fmt: skip
-    assert [(one["name"], one["at"], one["bits"]) for one in parts if "view" in one] == [("control", 56, 8)]
+    assert [
+        (one["name"], one["at"], one["bits"]) for one in parts if "view" in one
+    ] == [("control", 56, 8)]
 
 
 def test_bytes_are_held_of_what_cannot_be_told_further(frame):
-    assert field(frame, "frame unnumbered", "callsign") == {"at": 0, "bits": 48, "name": "callsign", "type": "bytes"}
+    assert field(frame, "frame unnumbered", "callsign") == {
+        "at": 0,
+        "bits": 48,
+        "name": "callsign",
+        "type": "bytes",
+    }
     assert field(frame, "frame information", "data")["size"] == "rest"
     assert message(frame, "frame information")["length"] == 10
 
 
 def test_bits_enumerations_limits_and_ends_arrive(frame):
     of = {one["name"]: one for one in message(frame, "frame unnumbered")["fields"]}
-    assert (of["low"]["at"], of["high"]["at"], of["limit"]["min"], of["limit"]["max"]) == (120, 124, -40, 85)
+    assert (
+        of["low"]["at"],
+        of["high"]["at"],
+        of["limit"]["min"],
+        of["limit"]["max"],
+    ) == (120, 124, -40, 85)
     assert (of["number"]["at"], of["data"]["at"], of["data"]["bits"]) == (136, 144, 24)
-    assert of["current"]["byte_order"] == "big" and of["uptime"]["summary"] == "Since the last reset."
+    assert (
+        of["current"]["byte_order"] == "big"
+        and of["uptime"]["summary"] == "Since the last reset."
+    )
     assert (of["samples"]["at"], of["samples"]["count"]) == (168, "rest")
     (tree,) = frame.trees.values()
-    assert [(one["value"], one["name"]) for one in tree["enums"][0]["members"]] == [(0, "off"), (1, "on"), (3, "both")]
+    assert [(one["value"], one["name"]) for one in tree["enums"][0]["members"]] == [
+        (0, "off"),
+        (1, "on"),
+        (3, "both"),
+    ]
 
 
-def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is_none(tmp_path):
+def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is_none(
+    tmp_path,
+):
     text = ksy("{id: b, type: u1, valid: {min: 2, max: 999}}", "{id: c, type: u1, valid: {min: 2}}", "{id: d, type: u1, valid: a}",
                more="instances:\n  e: {value: c * 0.5}\n")  # fmt: skip
     (tmp_path / "bad.ksy").write_text(text)
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
     b, c, d = (field(read, "bad", name) for name in "bcd")
-    assert (b["min"], "max" in b, c["formula"], "min" in c, "const" in d) == (2, False, "raw*0.5", False, False)
+    assert (b["min"], "max" in b, c["formula"], "min" in c, "const" in d) == (
+        2,
+        False,
+        "raw*0.5",
+        False,
+        False,
+    )
     assert read.definitions.import_findings == []
 
 
@@ -136,7 +215,11 @@ def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tm
     more = "types:\n  t:\n    seq: [{id: c, type: u1}]\ninstances:\n  d: {value: a * 0.5}\n"
     (tmp_path / "bad.ksy").write_text(ksy(attribute, "{id: z, type: u1}", more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
-    assert field(read, "bad", "b") == {"at": 8, "name": "b", **held} and "formula" not in field(read, "bad", "a")
+    assert field(read, "bad", "b") == {
+        "at": 8,
+        "name": "b",
+        **held,
+    } and "formula" not in field(read, "bad", "a")
     assert [one.message for one in import_findings(read.definitions)] == [
         "`z` is not imported: it follows a part of variable size",
         "`d`: `a * 0.5` is not a linear function of one field",
@@ -147,10 +230,16 @@ BYTE = "{id: a, type: u1}"
 
 
 def ksy(*attributes, more=""):
-    return "meta:\n  id: bad\nseq:\n" + "".join(f"  - {one}\n" for one in (BYTE, *attributes)) + more
+    return (
+        "meta:\n  id: bad\nseq:\n"
+        + "".join(f"  - {one}\n" for one in (BYTE, *attributes))
+        + more
+    )
 
 
-NESTED = "types:\n" + "".join(f"  t{n}:\n    seq: [{{id: x, type: t{n + 1}}}]\n" for n in range(60))
+NESTED = "types:\n" + "".join(
+    f"  t{n}:\n    seq: [{{id: x, type: t{n + 1}}}]\n" for n in range(60)
+)
 BROAD = "types:\n" + "".join(
     f"  t{n}:\n    seq: [{{id: x, type: t{n + 1}}}, {{id: y, type: t{n + 1}}}]\n" for n in range(20)
 ) + "  t20:\n    seq: [{id: z, type: u1}]\n"  # fmt: skip
@@ -190,18 +279,27 @@ BROAD = "types:\n" + "".join(
          '`b` is not imported: it depends on whether a field is `"x"`'),
     ],
 )  # fmt: skip
-def test_what_cannot_be_held_is_said_with_the_reason_and_what_is_before_it_is_held(attribute, more, says, tmp_path):
+def test_what_cannot_be_held_is_said_with_the_reason_and_what_is_before_it_is_held(
+    attribute, more, says, tmp_path
+):
     (tmp_path / "bad.ksy").write_text(ksy(attribute, more=more))
     read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
-    assert read.failed and [one.code for one in import_findings(read.definitions)] == ["IMP081"]
-    assert says in read.definitions.import_findings[0].message and read.definitions.import_findings[0].spot.line
+    assert read.failed and [one.code for one in import_findings(read.definitions)] == [
+        "IMP081"
+    ]
+    assert (
+        says in read.definitions.import_findings[0].message
+        and read.definitions.import_findings[0].spot.line
+    )
     for one in read.trees["bad"]["messages"]:
         assert one["fields"][0]["name"] == "a" and one["fields"][-1]["type"] == "bytes"
 
 
 BOMB = (
     "meta: {id: bad}\na: &a [1, 1]\n"
-    + "".join(f"{y}: &{y} [*{x}, *{x}]\n" for x, y in zip("abcdefg", "bcdefgh", strict=True))
+    + "".join(
+        f"{y}: &{y} [*{x}, *{x}]\n" for x, y in zip("abcdefg", "bcdefgh", strict=True)
+    )
     + "seq: *h\n"
 )
 
@@ -226,17 +324,26 @@ BOMB = (
             1,
         ),
         ("meta:\n  id: x\nseq: []\n", "no message can be imported", 1),
-        ("meta:\n  id: x\nseq:\n  - {size: 1, process: zlib}\n", "its bytes are processed by `zlib`", 1),
+        (
+            "meta:\n  id: x\nseq:\n  - {size: 1, process: zlib}\n",
+            "its bytes are processed by `zlib`",
+            1,
+        ),
     ],
 )
-def test_hostile_files_and_what_is_no_definition_are_refused(text, says, line, tmp_path):
+def test_hostile_files_and_what_is_no_definition_are_refused(
+    text, says, line, tmp_path
+):
     (tmp_path / "bad.ksy").write_text(text)
     reader = kinds.of(tmp_path / "bad.ksy")
     assert isinstance(reader, kaitai.Kaitai)
     with pytest.raises(Findings) as raised:
         run.read(tmp_path / "bad.ksy", reader)
     (finding,) = raised.value.findings
-    assert (finding.code, finding.place.line) == ("IMP005", line) and says in finding.message
+    assert (finding.code, finding.place.line) == (
+        "IMP005",
+        line,
+    ) and says in finding.message
 
 
 @pytest.mark.parametrize("more", [BROAD, ""])
@@ -258,4 +365,6 @@ def test_ways_to_go_on_are_bounded(tmp_path):
                f"{{id: d, type: {{switch-on: b, cases: {{{cases}}}}}}}")  # fmt: skip
     found = kaitai.Kaitai().read("bad.ksy", text.encode())
     assert len(found.networks[0].messages) == kaitai.MOST_MESSAGES
-    assert found.import_findings[-1].message.endswith("it branches in more than 256 ways; the others are not imported")
+    assert found.import_findings[-1].message.endswith(
+        "it branches in more than 256 ways; the others are not imported"
+    )

@@ -1,4 +1,6 @@
-"""The pages about definitions: each file gives the output shown, from the definition to the program that runs."""
+"""The pages about definitions: each file gives the output shown, from the definition to
+the program that runs.
+"""
 
 from __future__ import annotations
 
@@ -36,16 +38,24 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
                 if command.startswith("icdgen")
                 else command
             )
-            run = subprocess.run(line, shell=True, cwd=tmp_path, capture_output=True, text=True)
+            run = subprocess.run(
+                line, shell=True, cwd=tmp_path, capture_output=True, text=True
+            )
             assert run.returncode == 0, run.stdout + run.stderr
-            said += run.stdout.splitlines() if not command.startswith("icdgen --lang") else []
+            said += (
+                run.stdout.splitlines()
+                if not command.startswith("icdgen --lang")
+                else []
+            )
         assert said == expected
     assert (tmp_path / "icd" / "train.yaml").read_text() == blocks("yaml")[0]
 
     (tmp_path / "icd" / "errata").mkdir()
     (tmp_path / "icd" / "errata" / "train.yaml").write_text(blocks("yaml")[1])
     loaded = load([tmp_path / "icd"])
-    assert loaded.findings == [] and [one.kind for one in loaded.icd.nodes[0].messages] == ["telecommand"]
+    assert loaded.findings == [] and [
+        one.kind for one in loaded.icd.nodes[0].messages
+    ] == ["telecommand"]
 
 
 @pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo")
@@ -58,9 +68,14 @@ def test_the_program_in_rust_prints_what_the_page_shows(tmp_path):
     (app / "src" / "main.rs").write_text(blocks("rust")[0])
     for command in ("import train.dbc --out icd", "--lang rust --out train-code icd"):
         subprocess.run(
-            [sys.executable, "-m", "icdgen", *command.split()], cwd=tmp_path, check=True, capture_output=True
+            [sys.executable, "-m", "icdgen", *command.split()],
+            cwd=tmp_path,
+            check=True,
+            capture_output=True,
         )
-    run = subprocess.run(["cargo", "run", "-q", "--offline"], cwd=app, capture_output=True, text=True)
+    run = subprocess.run(
+        ["cargo", "run", "-q", "--offline"], cwd=app, capture_output=True, text=True
+    )
     assert (run.stdout, run.returncode) == (blocks("text")[0], 0), run.stderr
 
 
@@ -87,8 +102,12 @@ def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
-def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(tmp_path):
-    for name, text in zip(("link.xml", "mission.xml", "heater.xml"), blocks("xml")[1:], strict=True):
+def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(
+    tmp_path,
+):
+    for name, text in zip(
+        ("link.xml", "mission.xml", "heater.xml"), blocks("xml")[1:], strict=True
+    ):
         (tmp_path / name).write_text(text)
     read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
     (tree,) = read.trees.values()
@@ -97,7 +116,13 @@ def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(t
     (tmp_path / "heater.yaml").write_text(emit.text(tree))
     (tmp_path / "main.c").write_text(blocks("c")[2])
     generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"
-    for command in (generated, "cc -std=c99 -Wall -Werror -Iinclude main.c -o main", "./main"):
-        made = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
+    for command in (
+        generated,
+        "cc -std=c99 -Wall -Werror -Iinclude main.c -o main",
+        "./main",
+    ):
+        made = subprocess.run(
+            command, shell=True, cwd=tmp_path, capture_output=True, text=True
+        )
         assert made.returncode == 0, made.stdout + made.stderr
     assert made.stdout == blocks("text")[1]

@@ -28,8 +28,12 @@ def test_a_kind_of_another_package_is_known_by_its_entry_point(tmp_path, monkeyp
     (tmp_path / "their_lines.py").write_text(MODULE)
     dist = tmp_path / "their_lines-1.0.dist-info"
     dist.mkdir()
-    (dist / "METADATA").write_text("Metadata-Version: 2.1\nName: their-lines\nVersion: 1.0\n")
-    (dist / "entry_points.txt").write_text("[icdgen.definitions]\nlines = their_lines:Lines\n")
+    (dist / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: their-lines\nVersion: 1.0\n"
+    )
+    (dist / "entry_points.txt").write_text(
+        "[icdgen.definitions]\nlines = their_lines:Lines\n"
+    )
     monkeypatch.syspath_prepend(str(tmp_path))
     file = tmp_path / "a.txt"
     file.write_text("%lines\nFirst\n2nd")

@@ -13,7 +13,12 @@ from icdgen.definitions.model import Definitions
 from icdgen.icd.formula import parse
 from icdgen.icd.layout import integer_range
 
-PLACES = st.builds(frames.Place, st.integers(0, 480), st.integers(1, 32), st.sampled_from([frames.LITTLE, frames.BIG]))
+PLACES = st.builds(
+    frames.Place,
+    st.integers(0, 480),
+    st.integers(1, 32),
+    st.sampled_from([frames.LITTLE, frames.BIG]),
+)
 
 
 @given(PLACES)
@@ -23,11 +28,24 @@ def test_bits_are_the_same_however_they_are_counted(place):
     assert (other.order != place.order) == place.is_within_byte
 
 
-@given(st.dictionaries(st.integers(-4, 40), st.sampled_from(["Off", "On", "Spare", "", "Off 3", "Déjà\n vu"])))
-def test_each_value_with_a_name_has_one_member_and_each_member_a_name_of_its_own(choices):
+@given(
+    st.dictionaries(
+        st.integers(-4, 40),
+        st.sampled_from(["Off", "On", "Spare", "", "Off 3", "Déjà\n vu"]),
+    )
+)
+def test_each_value_with_a_name_has_one_member_and_each_member_a_name_of_its_own(
+    choices,
+):
     found = members(choices, 0, 31, "here", Definitions(""))
-    values = [value for one in found for value in range(one["value"], one.get("to", one["value"]) + 1)]
-    assert values == sorted(value for value, name in choices.items() if 0 <= value <= 31 and name)
+    values = [
+        value
+        for one in found
+        for value in range(one["value"], one.get("to", one["value"]) + 1)
+    ]
+    assert values == sorted(
+        value for value, name in choices.items() if 0 <= value <= 31 and name
+    )
     names = [one["name"] for one in found]
     assert len(set(names)) == len(names) and all(names)
 
@@ -41,23 +59,53 @@ def test_values_with_names_keep_their_sign_and_a_quantity_its_unit_limits_and_fo
     bits, is_signed, choices, unit, formula, limits
 ):
     kind = "int" if is_signed else "uint"
-    field, enums, notes = {"type": kind, **unit, **formula, **limits}, Enumerations(), Definitions("")
-    enums.hold(field, bits, choices, "Gear", "Status", "message `Status`, `Gear`", notes)
+    field, enums, notes = (
+        {"type": kind, **unit, **formula, **limits},
+        Enumerations(),
+        Definitions(""),
+    )
+    enums.hold(
+        field, bits, choices, "Gear", "Status", "message `Status`, `Gear`", notes
+    )
     declared = {one["name"]: one["members"] for one in enums.declared()}
     first, last = integer_range(bits, is_signed)
     possible = {value for value in choices if first <= value <= last}
     if field["type"] == "enum":
-        named = [value for one in declared["Gear"] for value in range(one["value"], one.get("to", one["value"]) + 1)]
-        assert is_signed == any(value < 0 for value in named), "the sign of an enumeration is that of its values"
-        low, high = max(first, limits.get("min", first)), min(last, limits.get("max", last))
-        assert not formula and (not (unit or limits) or set(range(low, high + 1)) <= set(named))
+        named = [
+            value
+            for one in declared["Gear"]
+            for value in range(one["value"], one.get("to", one["value"]) + 1)
+        ]
+        assert is_signed == any(
+            value < 0 for value in named
+        ), "the sign of an enumeration is that of its values"
+        low, high = max(first, limits.get("min", first)), min(
+            last, limits.get("max", last)
+        )
+        assert not formula and (
+            not (unit or limits) or set(range(low, high + 1)) <= set(named)
+        )
     else:
-        assert field["type"] == kind and field.items() >= (unit | formula | limits).items() and not declared
+        assert (
+            field["type"] == kind
+            and field.items() >= (unit | formula | limits).items()
+            and not declared
+        )
         named = [one["value"] for one in field.get("special", ())]
-        is_covered = possible and not formula and not unit and not limits and is_signed == any(v < 0 for v in possible)
+        is_covered = (
+            possible
+            and not formula
+            and not unit
+            and not limits
+            and is_signed == any(v < 0 for v in possible)
+        )
         assert not is_covered, "names without a unit are an enumeration"
-    assert sorted(named) == sorted(possible), "each value that the field can have keeps its name"
-    assert len(choices) == len(possible) or any(one.code == "IMP074" for one in notes.import_findings)
+    assert sorted(named) == sorted(
+        possible
+    ), "each value that the field can have keeps its name"
+    assert len(choices) == len(possible) or any(
+        one.code == "IMP074" for one in notes.import_findings
+    )
 
 
 NUMBERS = st.floats(-1e9, 1e9).filter(lambda number: abs(number) > 1e-12)
@@ -65,8 +113,12 @@ NUMBERS = st.floats(-1e9, 1e9).filter(lambda number: abs(number) > 1e-12)
 
 @given(NUMBERS, st.just(0.0) | NUMBERS, st.integers(-(2**31), 2**31))
 def test_a_formula_says_what_factor_and_offset_say(factor, offset, raw):
-    said = wording.formula(wording.printed(factor), wording.printed(offset)).get("formula", "raw")
-    assert parse(said).physical(Fraction(raw)) == Fraction(str(factor)) * raw + Fraction(str(offset))
+    said = wording.formula(wording.printed(factor), wording.printed(offset)).get(
+        "formula", "raw"
+    )
+    assert parse(said).physical(Fraction(raw)) == Fraction(
+        str(factor)
+    ) * raw + Fraction(str(offset))
 
 
 @given(st.text(max_size=30), st.text(max_size=30))
@@ -74,4 +126,6 @@ def test_names_of_nodes_are_names_and_texts_are_one_line(name, text):
     import re
 
     assert re.fullmatch("[a-z][a-z0-9_]{0,39}", wording.node_name(name))
-    assert "\n" not in wording.line(text) and wording.line(text) == wording.line(wording.line(text))
+    assert "\n" not in wording.line(text) and wording.line(text) == wording.line(
+        wording.line(text)
+    )

@@ -1,6 +1,7 @@
 """Definitions in the shapes that public files have become ICDs without a message fewer.
 
-`python -m tests.xtce.shapes` compares the values with those of Yamcs, `python -m tests.devices` with those of other libraries.
+`python -m tests.xtce.shapes` compares the values with those of Yamcs, `python -m
+tests.devices` with those of other libraries.
 """
 
 from __future__ import annotations
@@ -31,7 +32,11 @@ def imported(path):
 
 
 def imported_set(*paths):
-    files = [one for path in paths for one in (kinds.within(path) if path.is_dir() else [(path, kinds.of(path))])]
+    files = [
+        one
+        for path in paths
+        for one in (kinds.within(path) if path.is_dir() else [(path, kinds.of(path))])
+    ]
     return {Path(one.definitions.file).name: one for one in run.read_set(files)}
 
 
@@ -53,20 +58,35 @@ def test_xtce_conditions_on_members_of_aggregates_tell_messages_apart(kite):
     assert [(one["name"], one["id"]) for one in tree["messages"]] == [
         ("Orbit", 100), ("Wheels", 101), ("Sails", 101), ("Reboot", 101), ("SwitchOn", 101),
     ]  # fmt: skip
-    assert field(kite, "Wheels", "Section Kind")["const"] == 1 and field(kite, "Sails", "Section Kind")["const"] == 2
+    assert (
+        field(kite, "Wheels", "Section Kind")["const"] == 1
+        and field(kite, "Sails", "Section Kind")["const"] == 2
+    )
     assert [one["name"] for one in message(kite, "Orbit")["fields"]] == [
         "Elapsed", "Position x", "Position y", "Position z", "Shadow",
     ]  # fmt: skip
 
 
-def test_xtce_a_container_that_only_others_are_based_on_is_a_note_and_no_missing_message(kite):
-    assert findings(kite) == [("IMP087", "note")] and kite.imported == kite.definitions.total == 5
+def test_xtce_a_container_that_only_others_are_based_on_is_a_note_and_no_missing_message(
+    kite,
+):
+    assert (
+        findings(kite) == [("IMP087", "note")]
+        and kite.imported == kite.definitions.total == 5
+    )
     assert "`TelemetryPacket`" in kite.definitions.import_findings[0].message
 
 
-def test_xtce_a_command_container_without_a_base_continues_that_of_the_base_command(kite):
-    assert message(kite, "Reboot")["fields"] == [{"at": 0, "bits": 16, "name": "Packet_ID", "type": "uint", "const": 1}]
-    assert [one["name"] for one in message(kite, "SwitchOn")["fields"]] == ["Packet_ID", "Battery"]
+def test_xtce_a_command_container_without_a_base_continues_that_of_the_base_command(
+    kite,
+):
+    assert message(kite, "Reboot")["fields"] == [
+        {"at": 0, "bits": 16, "name": "Packet_ID", "type": "uint", "const": 1}
+    ]
+    assert [one["name"] for one in message(kite, "SwitchOn")["fields"]] == [
+        "Packet_ID",
+        "Battery",
+    ]
 
 
 def edited(tmp_path, *changes):
@@ -78,31 +98,54 @@ def edited(tmp_path, *changes):
     return imported(tmp_path / "kite.xml")
 
 
-def test_xtce_a_member_that_an_aggregate_does_not_have_costs_the_message_alone(tmp_path):
+def test_xtce_a_member_that_an_aggregate_does_not_have_costs_the_message_alone(
+    tmp_path,
+):
     read = edited(tmp_path, ('"Section/Kind"', '"Section/Sort"'))
     assert read.imported == 4
-    assert "`Sails` is not imported: it depends on `Section/Sort`, which it does not have" in "".join(
-        one.message for one in read.definitions.import_findings
+    assert (
+        "`Sails` is not imported: it depends on `Section/Sort`, which it does not have"
+        in "".join(one.message for one in read.definitions.import_findings)
     )
 
 
 def test_xtce_an_entry_may_be_a_member_of_an_aggregate(tmp_path):
     read = edited(tmp_path, ('"Wheel"/></EntryList>', '"Position/y"/></EntryList>'))
-    assert message(read, "Wheels")["fields"][-1] == {"at": 104, "bits": 32, "name": "Position y", "type": "float"}
+    assert message(read, "Wheels")["fields"][-1] == {
+        "at": 104,
+        "bits": 32,
+        "name": "Position y",
+        "type": "float",
+    }
 
 
 def test_xtce_a_packet_without_data_costs_itself_and_not_the_file(tmp_path):
     assigned = '<ArgumentAssignment argumentName="Packet_ID" argumentValue="{}"/>'
     entry = '<EntryList><ArgumentRefEntry argumentRef="Packet_ID"/></EntryList>'
-    read = edited(tmp_path, (entry, "<EntryList/>"), (assigned.format(1), ""), (assigned.format(2), ""))
-    assert read.imported == 4 and "SwitchOn" in {one["name"] for one in read.trees["kite"]["messages"]}
-    (lost,) = [one.message for one in read.definitions.import_findings if one.severity == "error"]
+    read = edited(
+        tmp_path,
+        (entry, "<EntryList/>"),
+        (assigned.format(1), ""),
+        (assigned.format(2), ""),
+    )
+    assert read.imported == 4 and "SwitchOn" in {
+        one["name"] for one in read.trees["kite"]["messages"]
+    }
+    (lost,) = [
+        one.message
+        for one in read.definitions.import_findings
+        if one.severity == "error"
+    ]
     assert lost.startswith("message `Reboot` is not imported: it has no data")
 
 
 def test_xtce_a_header_of_which_only_parts_are_named_is_one(tmp_path):
     text = (SHAPES / "aggregate.xml").read_text()
-    whole = re.search(r"<ParameterRefEntry parameterRef=\"Packet_Id\"/>.*?\"Packet_Length\"/>", text, re.DOTALL)[0]
+    whole = re.search(
+        r"<ParameterRefEntry parameterRef=\"Packet_Id\"/>.*?\"Packet_Length\"/>",
+        text,
+        re.DOTALL,
+    )[0]
     read = edited(
         tmp_path,
         (whole, placed("Packet_Id/APID", 5) + placed("Packet_Sequence/Count", 18)),
@@ -112,15 +155,29 @@ def test_xtce_a_header_of_which_only_parts_are_named_is_one(tmp_path):
         ('<Comparison value="TM" parameterRef="Packet_Id/Type"/>', ""),
         ('<Comparison value="NotPresent" parameterRef="Packet_Id/Secondary"/>', ""),
     )
-    assert [one["id"] for one in read.trees["kite"]["messages"]] == [100, 101, 101, 101, 101]
-    assert field(read, "Orbit", "Elapsed")["at"] == 0 and message(read, "Orbit")["length"] == 17
+    assert [one["id"] for one in read.trees["kite"]["messages"]] == [
+        100,
+        101,
+        101,
+        101,
+        101,
+    ]
+    assert (
+        field(read, "Orbit", "Elapsed")["at"] == 0
+        and message(read, "Orbit")["length"] == 17
+    )
 
 
 def test_xtce_a_field_within_the_header_is_left_out_with_a_finding(tmp_path):
     entry = '<ParameterRefEntry parameterRef="Shadow"/>'
     read = edited(tmp_path, (entry, entry + placed("Wheel", 25)))
-    (lost,) = [one for one in read.definitions.import_findings if one.severity == "error"]
-    assert (lost.code, lost.message) == ("IMP086", "message `Orbit`: `Wheel` lies within the header")
+    (lost,) = [
+        one for one in read.definitions.import_findings if one.severity == "error"
+    ]
+    assert (lost.code, lost.message) == (
+        "IMP086",
+        "message `Orbit`: `Wheel` lies within the header",
+    )
     assert read.imported == 5
 
 
@@ -147,7 +204,9 @@ def test_kaitai_instances_at_fixed_places_are_the_fields_of_a_format_without_a_s
 
 
 def test_kaitai_a_library_of_types_says_that_it_has_no_sequence(tmp_path):
-    (tmp_path / "library.ksy").write_text("meta: {id: library}\ntypes:\n  one: {seq: [{id: x, type: u1}]}\n")
+    (tmp_path / "library.ksy").write_text(
+        "meta: {id: library}\ntypes:\n  one: {seq: [{id: x, type: u1}]}\n"
+    )
     with pytest.raises(Findings) as error:
         imported(tmp_path / "library.ksy")
     assert "it has no `seq`, and so no field" in error.value.findings[0].message
@@ -160,20 +219,32 @@ def test_xtce_files_that_refer_to_each_other_are_one_database_called_like_their_
     assert name == "pus" and [(one["name"], one["id"]) for one in tree["messages"]] == [
         ("report", 7), ("alive", 7), ("connected", 7), ("ask alive", 7),
     ]  # fmt: skip
-    assert field(read, "connected", "target") == {"at": 40, "bits": 8, "name": "target", "type": "uint"}
+    assert field(read, "connected", "target") == {
+        "at": 40,
+        "bits": 8,
+        "name": "target",
+        "type": "uint",
+    }
     assert [one["const"] for one in message(read, "ask alive")["fields"]] == [17, 1]
 
 
 def test_xtce_files_that_do_not_refer_to_each_other_are_icds_of_their_own():
     reads = imported_set(SHAPES / "aggregate.xml", FILES / "probe.xml", SHAPES / "pus")
-    assert {name for one in reads.values() for name in one.trees} == {"aggregate", "probe", "pus"}
+    assert {name for one in reads.values() for name in one.trees} == {
+        "aggregate",
+        "probe",
+        "pus",
+    }
 
 
 def test_xtce_a_file_alone_says_what_it_lacks_and_how_to_give_it():
     with pytest.raises(Findings) as error:
         imported(SHAPES / "pus" / "test.xml")
     (finding,) = error.value.findings
-    assert "there is no container `/Service/report`" in finding.message and "icdgen import FILE FILE" in finding.help
+    assert (
+        "there is no container `/Service/report`" in finding.message
+        and "icdgen import FILE FILE" in finding.help
+    )
 
 
 def test_xtce_two_files_that_define_one_name_are_reported_with_both(tmp_path):
@@ -182,7 +253,11 @@ def test_xtce_two_files_that_define_one_name_are_reported_with_both(tmp_path):
     (read,) = imported_set(folder).values()
     lost = {one.message: one for one in errors(read)}
     one = lost["the container `/Service/report` is in `again.xml` and in `service.xml`"]
-    assert (one.code, one.help, one.spot.line) == ("IMP076", "the first one is taken", 23)
+    assert (one.code, one.help, one.spot.line) == (
+        "IMP076",
+        "the first one is taken",
+        23,
+    )
     assert one.spot.file.endswith("service.xml") and read.imported == 4
 
 
@@ -209,13 +284,21 @@ def test_eds_aliases_stand_for_scalars_arrays_containers_and_bases():
 
 def test_eds_a_label_without_a_value_follows_the_one_before():
     (enum,) = imported_set(SHAPES / "cfs")["pump.xml"].trees["pump"]["enums"]
-    assert [(one["name"], one["value"]) for one in enum["members"]] == [("OFF", 0), ("SLOW", 4), ("FAST", 5)]
+    assert [(one["name"], one["value"]) for one in enum["members"]] == [
+        ("OFF", 0),
+        ("SLOW", 4),
+        ("FAST", 5),
+    ]
 
 
 def test_eds_an_alias_of_itself_costs_what_uses_it(tmp_path):
     folder = shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
     types = folder / "core" / "eds" / "base_types.xml"
-    types.write_text(types.read_text().replace('name="Counter" type="uint16"', 'name="Counter" type="Counter"'))
+    types.write_text(
+        types.read_text().replace(
+            'name="Counter" type="uint16"', 'name="Counter" type="Counter"'
+        )
+    )
     reads = imported_set(folder)
     (lost,) = errors(reads["pump.xml"])
     assert "is an alias of itself" in lost.message and reads["lamp.xml"].imported == 1
@@ -225,12 +308,17 @@ def test_eds_a_sheet_alone_says_which_package_it_lacks_and_how_to_give_it():
     with pytest.raises(Findings) as error:
         imported(SHAPES / "cfs" / "lamp" / "eds" / "lamp.xml")
     (finding,) = error.value.findings
-    assert "is of the package `PACKETS`" in finding.message and "the folder of both" in finding.help
+    assert (
+        "is of the package `PACKETS`" in finding.message
+        and "the folder of both" in finding.help
+    )
 
 
 def test_a_broken_file_of_a_set_costs_itself(tmp_path):
     folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
-    (folder / "broken.xml").write_text('<SpaceSystem name="Broken"><TelemetryMetaData></SpaceSystem>')
+    (folder / "broken.xml").write_text(
+        '<SpaceSystem name="Broken"><TelemetryMetaData></SpaceSystem>'
+    )
     reads = imported_set(folder)
     (lost,) = errors(reads["broken.xml"])
     assert lost.code == "IMP005" and lost.message.startswith("not XML")
@@ -241,11 +329,24 @@ def test_a_folder_is_imported_by_the_command(tmp_path):
     shutil.copytree(SHAPES / "cfs", tmp_path / "cfs")
     result = icdgen("import", "cfs", cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert "without messages of their own: cfs/config/eds/config.xml, cfs/core/eds/packets.xml" in result.stdout
-    assert sorted(path.name for path in (tmp_path / "icd").glob("*.yaml")) == ["lamp.yaml", "pump.yaml"]
-    said = json.loads(icdgen("import", "cfs", "--update", "--format", "json", cwd=tmp_path).stdout)
-    assert {one["definition"]: one["held"] for one in said["definitions"]}["cfs/pump/eds/pump.xml"] == 1
-    assert [one["file"] for one in said["files"]] == ["icd/lamp.yaml", "icd/pump.yaml"] and said["check"] == []
+    assert (
+        "without messages of their own: cfs/config/eds/config.xml, cfs/core/eds/packets.xml"
+        in result.stdout
+    )
+    assert sorted(path.name for path in (tmp_path / "icd").glob("*.yaml")) == [
+        "lamp.yaml",
+        "pump.yaml",
+    ]
+    said = json.loads(
+        icdgen("import", "cfs", "--update", "--format", "json", cwd=tmp_path).stdout
+    )
+    assert {one["definition"]: one["held"] for one in said["definitions"]}[
+        "cfs/pump/eds/pump.xml"
+    ] == 1
+    assert [one["file"] for one in said["files"]] == [
+        "icd/lamp.yaml",
+        "icd/pump.yaml",
+    ] and said["check"] == []
 
 
 def test_what_cannot_be_imported_together_is_misuse(tmp_path):
@@ -256,7 +357,10 @@ def test_what_cannot_be_imported_together_is_misuse(tmp_path):
         (["empty"], "there is no definition in the folder empty"),
         (["cases.ksy", "manual.txt"], "manual.txt is not a known definition"),
         (["cases.ksy", "lost.xml"], "lost.xml does not exist"),
-        (["empty", "--kind", "eds"], "there is no definition of the kind eds in the folder empty"),
+        (
+            ["empty", "--kind", "eds"],
+            "there is no definition of the kind eds in the folder empty",
+        ),
     ):
         result = icdgen("import", *arguments, cwd=tmp_path)
         assert result.returncode == 2 and why in result.stderr, result.stderr
@@ -268,7 +372,11 @@ def test_help_names_all_kinds(tmp_path):
 
 
 def unused(read):
-    return [(one.message, one.spot.line) for one in read.definitions.import_findings if one.code == "IMP085"]
+    return [
+        (one.message, one.spot.line)
+        for one in read.definitions.import_findings
+        if one.code == "IMP085"
+    ]
 
 
 def test_xtce_what_is_not_used_is_a_note_with_its_line(tmp_path):
@@ -277,7 +385,10 @@ def test_xtce_what_is_not_used_is_a_note_with_its_line(tmp_path):
     read = edited(
         tmp_path,
         (type_, type_ + alarm),
-        ('<EntryList><ParameterRefEntry parameterRef="Sail"/>', "<RateInStream/><EntryList>"),
+        (
+            '<EntryList><ParameterRefEntry parameterRef="Sail"/>',
+            "<RateInStream/><EntryList>",
+        ),
     )
     assert unused(read) == [
         ("`DefaultAlarm` of `IntegerParameterType` is not used (`u32_t`)", 49),
@@ -290,12 +401,21 @@ def test_xtce_what_is_not_used_of_a_set_names_its_file(tmp_path):
     folder = shutil.copytree(SHAPES / "pus", tmp_path / "pus")
     text = (folder / "types.xml").read_text()
     (folder / "types.xml").write_text(
-        text.replace('<IntegerParameterType name="uint8"', '<IntegerParameterType name="uint8" initialValue="3"')
+        text.replace(
+            '<IntegerParameterType name="uint8"',
+            '<IntegerParameterType name="uint8" initialValue="3"',
+        )
     )
     (read,) = imported_set(folder).values()
     (one,) = read.definitions.import_findings
-    assert (one.code, one.spot.line, Path(one.spot.file).name) == ("IMP085", 5, "types.xml")
-    assert one.message == "`initialValue` of `IntegerParameterType` is not used (`uint8`)"
+    assert (one.code, one.spot.line, Path(one.spot.file).name) == (
+        "IMP085",
+        5,
+        "types.xml",
+    )
+    assert (
+        one.message == "`initialValue` of `IntegerParameterType` is not used (`uint8`)"
+    )
 
 
 def test_eds_what_is_not_used_is_a_note_in_the_file_where_it_stands(tmp_path):
@@ -303,19 +423,30 @@ def test_eds_what_is_not_used_is_a_note_in_the_file_where_it_stands(tmp_path):
     pump = folder / "pump" / "eds" / "pump.xml"
     pump.write_text(
         pump.read_text().replace(
-            '<Entry name="State" type="State"/>', '<Entry name="State" type="State" priority="3"/>'
+            '<Entry name="State" type="State"/>',
+            '<Entry name="State" type="State" priority="3"/>',
         )
     )
     reads = imported_set(folder)
-    assert unused(reads["pump.xml"]) == [("`priority` of `Entry` is not used (`State`)", 17)]
-    assert unused(reads["base_types.xml"]) == [("`IntegerDataEncoding` of `IntegerDataType` is not used (`uint8`)", 5)]
+    assert unused(reads["pump.xml"]) == [
+        ("`priority` of `Entry` is not used (`State`)", 17)
+    ]
+    assert unused(reads["base_types.xml"]) == [
+        ("`IntegerDataEncoding` of `IntegerDataType` is not used (`uint8`)", 5)
+    ]
     assert unused(reads["lamp.xml"]) == []
 
 
 def test_kaitai_what_is_not_used_is_a_note_with_its_line(tmp_path):
     text = (SHAPES / "places.ksy").read_text()
-    (tmp_path / "a.ksy").write_text(text.replace("tail: {pos: 6, type: u2}", "tail: {pos: 6, type: u2, -orig-id: TL}"))
-    assert unused(imported(tmp_path / "a.ksy")) == [("`-orig-id` of `instances` is not used (instances.tail)", 4)]
+    (tmp_path / "a.ksy").write_text(
+        text.replace(
+            "tail: {pos: 6, type: u2}", "tail: {pos: 6, type: u2, -orig-id: TL}"
+        )
+    )
+    assert unused(imported(tmp_path / "a.ksy")) == [
+        ("`-orig-id` of `instances` is not used (instances.tail)", 4)
+    ]
 
 
 def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeypatch):
@@ -326,20 +457,28 @@ def test_a_header_that_no_icd_can_have_costs_itself_and_not_the_messages(monkeyp
     monkeypatch.setattr(packets, "fill", fill)
     read = imported(SHAPES / "aggregate.xml")
     (lost,) = errors(read)
-    assert lost.code == "IMP070" and lost.message.startswith("the header is not imported: the length of")
+    assert lost.code == "IMP070" and lost.message.startswith(
+        "the header is not imported: the length of"
+    )
     assert read.imported == 5 and "protocol" not in read.trees["aggregate"]
 
 
 def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp_path):
-    text = '<StringParameterType name="text_t"><StringDataEncoding><SizeInBits><LeadingSize/></SizeInBits></StringDataEncoding></StringParameterType>'  # fmt: skip # noqa: E501
+    text = '<StringParameterType name="text_t"><StringDataEncoding><SizeInBits><LeadingSize/></SizeInBits></StringDataEncoding></StringParameterType>'  # fmt: skip  # noqa: E501
     read = edited(
         tmp_path,
         ("</ParameterTypeSet>", f"{text}</ParameterTypeSet>"),
-        ('name="Position" parameterTypeRef="vec3_t"', 'name="Position" parameterTypeRef="text_t"'),
+        (
+            'name="Position" parameterTypeRef="vec3_t"',
+            'name="Position" parameterTypeRef="text_t"',
+        ),
     )
     (lost,) = errors(read)
     assert (lost.code, lost.spot.line) == ("IMP081", 83)
-    assert lost.message == "message `Orbit`: from `Position` on only bytes are imported: it has a length prefix"
+    assert (
+        lost.message
+        == "message `Orbit`: from `Position` on only bytes are imported: it has a length prefix"
+    )
     assert read.imported == 5 and [(one["name"], one["type"]) for one in message(read, "Orbit")["fields"]] == [
         ("Elapsed", "uint"), ("Position", "bytes"),
     ]  # fmt: skip
@@ -347,7 +486,9 @@ def test_xtce_a_field_of_unknown_size_costs_what_follows_and_not_the_message(tmp
 
 
 def test_xtce_what_tells_a_message_apart_must_be_held(tmp_path):
-    read = edited(tmp_path, ('name="Kind" typeRef="u8_t"', 'name="Kind" typeRef="lost_t"'))
+    read = edited(
+        tmp_path, ('name="Kind" typeRef="u8_t"', 'name="Kind" typeRef="lost_t"')
+    )
     why = "there is no parameter type `lost_t`"
     assert sorted(one.message for one in errors(read)) == [
         f"message `{name}` is not imported: it depends on `Section/Kind`, which is in or behind `Section`: {why}"

@@ -1,4 +1,6 @@
-"""Messages to which a definition gives one id are multiplexed on purpose: the ICD that is made of it confirms that."""
+"""Messages to which a definition gives one id are multiplexed on purpose: the ICD that
+is made of it confirms that.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +11,22 @@ from icdgen.definitions.settle import settle
 from icdgen.loading import load
 
 
-def message(name: str, id: int, length: int, kind: str = "telemetry", **more: object) -> dict:
-    fields = [{"at": 0, "bits": 8 * length, "name": "Value", "type": "uint"}] if length else []
-    return {"name": name, "id": id, "kind": kind, "length": length, **more, "fields": fields}
+def message(
+    name: str, id: int, length: int, kind: str = "telemetry", **more: object
+) -> dict:
+    fields = (
+        [{"at": 0, "bits": 8 * length, "name": "Value", "type": "uint"}]
+        if length
+        else []
+    )
+    return {
+        "name": name,
+        "id": id,
+        "kind": kind,
+        "length": length,
+        **more,
+        "fields": fields,
+    }
 
 
 def network(*messages: dict) -> Network:
@@ -25,7 +40,10 @@ def sharing(tree: dict) -> list[str]:
 
 def test_messages_of_one_id_and_direction_confirm_it_and_others_do_not(tmp_path):
     made = network(
-        message("Short", 5, 1), message("Long", 5, 2), message("Order", 5, 1, "telecommand"), message("Alone", 6, 1)
+        message("Short", 5, 1),
+        message("Long", 5, 2),
+        message("Order", 5, 1, "telecommand"),
+        message("Alone", 6, 1),
     )
     to = Definitions("probe.xml")
     settle(made, to)

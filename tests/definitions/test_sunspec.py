@@ -1,4 +1,5 @@
-"""Models of SunSpec become ICDs: points as fields, groups that are there several times as structs.
+"""Models of SunSpec become ICDs: points as fields, groups that are there several times
+as structs.
 
 What is read of random blocks is compared with pysunspec2's reading in tests/devices.
 """
@@ -39,26 +40,50 @@ def test_models_of_a_device_are_messages_whose_points_follow_each_other(charger)
     assert [(one["name"], one["id"], one["length"]) for one in tree["messages"]] == [
         ("charger", 65001, 64), ("sockets", 65002, 4),
     ]  # fmt: skip
-    places = [(one["at"] // 16, one["name"]) for one in message(charger, "charger")["fields"]]
-    assert places[:6] == [(0, "ID"), (1, "L"), (2, "W"), (3, "W_SF"), (4, "Lat"), (6, "Wh")]
+    places = [
+        (one["at"] // 16, one["name"]) for one in message(charger, "charger")["fields"]
+    ]
+    assert places[:6] == [
+        (0, "ID"),
+        (1, "L"),
+        (2, "W"),
+        (3, "W_SF"),
+        (4, "Lat"),
+        (6, "Wh"),
+    ]
     assert places[-3:] == [(29, "Dial Pos"), (30, "Lamp"), (32, "Socket")]
-    assert field(charger, "charger", "ID")["const"] == 65001 and "special" not in field(charger, "charger", "L")
+    assert field(charger, "charger", "ID")["const"] == 65001 and "special" not in field(
+        charger, "charger", "L"
+    )
     assert message(charger, "charger")["summary"] == "A charger with sockets"
 
 
-def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_factor_its_summary_says_so(charger):
+def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_factor_its_summary_says_so(
+    charger,
+):
     lat, power = field(charger, "charger", "Lat"), field(charger, "charger", "W")
-    assert (lat["unit"], lat["formula"], lat["summary"]) == ("deg", "raw*1e-7", "Latitude, north is positive")
+    assert (lat["unit"], lat["formula"], lat["summary"]) == (
+        "deg",
+        "raw*1e-7",
+        "Latitude, north is positive",
+    )
     assert power["summary"] == "Power. In W times 10 to the power of W_SF."
     assert "unit" not in power and "formula" not in power
-    (said,) = (one for one in charger.definitions.import_findings if one.code == "IMP078")
-    assert said.message == "message `charger`: the factors of 1 points are in other registers: `W`"
+    (said,) = (
+        one for one in charger.definitions.import_findings if one.code == "IMP078"
+    )
+    assert (
+        said.message
+        == "message `charger`: the factors of 1 points are in other registers: `W`"
+    )
     assert said.severity == "note"
 
 
 def test_what_is_not_implemented_is_a_special_value_of_each_type(charger):
     told = {
-        one["name"]: one["special"][0]["value"] for one in message(charger, "charger")["fields"] if "special" in one
+        one["name"]: one["special"][0]["value"]
+        for one in message(charger, "charger")["fields"]
+        if "special" in one
     }
     assert told == {
         "W": -0x8000, "W_SF": -0x8000, "Lat": -0x80000000, "Wh": 0, "St": 0xFFFF, "Evt": 0xFFFFFFFF, "Hz": "nan", "N": 0xFFFF,
@@ -68,9 +93,18 @@ def test_what_is_not_implemented_is_a_special_value_of_each_type(charger):
 
 def test_symbols_are_enumerations_and_those_of_bits_the_values_of_these_bits(charger):
     (tree,) = charger.trees.values()
-    named = {one["name"]: [(member["value"], member["name"]) for member in one["members"]] for one in tree["enums"]}
-    assert named == {"St": [(0, "OFF"), (3, "ON")], "Evt": [(1, "HOT"), (1 << 31, "LOST")]}
-    assert (field(charger, "charger", "Nam")["type"], field(charger, "charger", "MAC")["type"]) == ("text", "bytes")
+    named = {
+        one["name"]: [(member["value"], member["name"]) for member in one["members"]]
+        for one in tree["enums"]
+    }
+    assert named == {
+        "St": [(0, "OFF"), (3, "ON")],
+        "Evt": [(1, "HOT"), (1 << 31, "LOST")],
+    }
+    assert (
+        field(charger, "charger", "Nam")["type"],
+        field(charger, "charger", "MAC")["type"],
+    ) == ("text", "bytes")
 
 
 def test_groups_that_are_there_several_times_are_structs(charger):
@@ -79,12 +113,19 @@ def test_groups_that_are_there_several_times_are_structs(charger):
         ("Lamp", 2, ["Lux"]), ("Socket", 4, ["A", "Lock Is"]), ("sockets Socket", 2, ["V"]),
     ]  # fmt: skip
     ends = [message(charger, name)["fields"][-1] for name in ("charger", "sockets")]
-    assert [(one["count"], one["up_to"]) for one in ends] == [("N", (2048 - 64) // 4), ("rest", (2048 - 4) // 2)]
+    assert [(one["count"], one["up_to"]) for one in ends] == [
+        ("N", (2048 - 64) // 4),
+        ("rest", (2048 - 4) // 2),
+    ]
     assert field(charger, "charger", "Lamp")["count"] == 2
 
 
-def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(charger):
-    (said,) = (one for one in charger.definitions.import_findings if one.severity == "error")
+def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(
+    charger,
+):
+    (said,) = (
+        one for one in charger.definitions.import_findings if one.severity == "error"
+    )
     assert said.message == (
         "message `curves` is not imported: "
         "`Pt`, which has any number of repetitions, is inside `Crv`, whose repetitions no point counts"
@@ -96,12 +137,20 @@ def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are
     )
 
 
-def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model_says(tmp_path):
-    curves = copy.deepcopy(next(one for one in MODELS if one["group"]["name"] == "curves"))
+def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model_says(
+    tmp_path,
+):
+    curves = copy.deepcopy(
+        next(one for one in MODELS if one["group"]["name"] == "curves")
+    )
     points, (curve,) = curves["group"]["points"], curves["group"]["groups"]
     points.append({"name": "NCrv", "type": "uint16", "size": 1})
     curve["count"] = "NCrv"
-    trip = {"name": "Trip", "points": [{"name": "ActPt", "type": "uint16", "size": 1}], "groups": [curve["groups"][0]]}
+    trip = {
+        "name": "Trip",
+        "points": [{"name": "ActPt", "type": "uint16", "size": 1}],
+        "groups": [curve["groups"][0]],
+    }
     curve["groups"].append(trip)
     (tmp_path / "curves.json").write_text(json.dumps(curves))
     read = run.read(tmp_path / "curves.json", sunspec.SunSpec())
@@ -113,13 +162,20 @@ def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model
     (layout,) = node.messages
 
     for number in (0, 1, 3):
-        rows = [(on, *range(on, on + number), 70 + on, *range(on + 9, on + 9 + number)) for on in (10, 20)]
+        rows = [
+            (on, *range(on, on + number), 70 + on, *range(on + 9, on + 9 + number))
+            for on in (10, 20)
+        ]
         registers = (65003, 12, number, 2, *rows[0], *rows[1])
         frame = struct.pack(f">{len(registers)}H", *registers)
         raw = codec.decode_frame(node, layout, frame)
         assert [raw[f"Crv[{index}].Trip ActPt"] for index in (0, 1)] == [80, 90]
-        assert [raw[f"Crv[1].Pt[{index}].X"] for index in range(number)] == list(range(20, 20 + number))
-        assert [raw[f"Crv[1].Trip Pt[{index}].X"] for index in range(number)] == list(range(29, 29 + number))
+        assert [raw[f"Crv[1].Pt[{index}].X"] for index in range(number)] == list(
+            range(20, 20 + number)
+        )
+        assert [raw[f"Crv[1].Trip Pt[{index}].X"] for index in range(number)] == list(
+            range(29, 29 + number)
+        )
         assert f"Crv[0].Pt[{number}].X" not in raw
         assert codec.encode(node, layout, codec.decode(node, layout, frame)) == frame
         with pytest.raises(codec.LengthError):
@@ -127,7 +183,9 @@ def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model
 
 
 def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp_path):
-    curves = copy.deepcopy(next(one for one in MODELS if one["group"]["name"] == "curves"))
+    curves = copy.deepcopy(
+        next(one for one in MODELS if one["group"]["name"] == "curves")
+    )
     points, (curve,) = curves["group"]["points"], curves["group"]["groups"]
     points.append({"name": "NCrv", "type": "uint16", "size": 1})
     curve["count"] = "NCrv"
@@ -143,11 +201,15 @@ def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp
     (layout,) = node.messages
 
     head = struct.pack(">4H", 65003, 12, 4, 2)
-    raw = codec.decode(node, layout, head + struct.pack(">10H", 1, *range(10, 14), 0, *range(20, 24)))
+    raw = codec.decode(
+        node, layout, head + struct.pack(">10H", 1, *range(10, 14), 0, *range(20, 24))
+    )
     assert [raw[f"Crv[{number}].On"] for number in (0, 1)] == [1, 0]
     assert [raw[f"Crv[1].Pt[{number}].X"] for number in range(4)] == [20, 21, 22, 23]
     for other in (3, 5):  # two curves, each with another number of points
-        frame = struct.pack(">4H", 65003, 2 + 2 * (1 + other), other, 2) + bytes(2 * 2 * (1 + other))
+        frame = struct.pack(">4H", 65003, 2 + 2 * (1 + other), other, 2) + bytes(
+            2 * 2 * (1 + other)
+        )
         with pytest.raises(codec.LengthError):
             codec.decode(node, layout, frame)
 
@@ -165,19 +227,39 @@ def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
     models[0]["group"]["points"][2] |= change
     (tmp_path / "models.json").write_text(json.dumps(models))
     read = run.read(tmp_path / "models.json", sunspec.SunSpec())
-    assert why in [one.message.split(": ", 1)[1] for one in read.definitions.import_findings if one.severity == "error"]
+    assert why in [
+        one.message.split(": ", 1)[1]
+        for one in read.definitions.import_findings
+        if one.severity == "error"
+    ]
     assert read.imported == 1
 
 
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ('[\n{"id": 1, "group": {"name": "a", "points": [}}]', 2, "not JSON: Expecting value"),
-        ('{"group": {"name": "a", "points": []}}', 1, "not a model of SunSpec, nor a list of them"),
-        ('{"id": 70000, "group": {"name": "a", "points": []}}', 1, "not a model of SunSpec, nor a list of them"),
+        (
+            '[\n{"id": 1, "group": {"name": "a", "points": [}}]',
+            2,
+            "not JSON: Expecting value",
+        ),
+        (
+            '{"group": {"name": "a", "points": []}}',
+            1,
+            "not a model of SunSpec, nor a list of them",
+        ),
+        (
+            '{"id": 70000, "group": {"name": "a", "points": []}}',
+            1,
+            "not a model of SunSpec, nor a list of them",
+        ),
         ("[]", 1, "the list holds no model"),
         ("[" * 100_000, 1, "not JSON"),
-        ('{"id": 1, "group": {"name": "a", "points": []}}', 1, "no message can be imported"),
+        (
+            '{"id": 1, "group": {"name": "a", "points": []}}',
+            1,
+            "no message can be imported",
+        ),
     ],
 )
 def test_what_is_no_model_is_refused_where_it_stands(tmp_path, text, line, message):
@@ -185,19 +267,30 @@ def test_what_is_no_model_is_refused_where_it_stands(tmp_path, text, line, messa
     with pytest.raises(Findings) as refused:
         run.read(tmp_path / "wrong.json", sunspec.SunSpec())
     (finding,) = refused.value.findings
-    assert (finding.code, finding.place.line) == ("IMP005", line) and finding.message.startswith(message)
+    assert (finding.code, finding.place.line) == (
+        "IMP005",
+        line,
+    ) and finding.message.startswith(message)
 
 
 def test_groups_without_end_are_left_out():
     deep = {"name": "a", "points": []}
     for _ in range(50):
         deep = {"name": "a", "points": [], "groups": [deep]}
-    made = sunspec.SunSpec().read("deep.json", json.dumps({"id": 1, "group": deep}).encode())
+    made = sunspec.SunSpec().read(
+        "deep.json", json.dumps({"id": 1, "group": deep}).encode()
+    )
     assert "groups are nested more than 8 deep" in made.import_findings[0].message
 
 
 VALUES = (
-    st.none() | st.booleans() | st.integers(-5, 1 << 40) | st.floats() | st.text(max_size=5) | st.just([]) | st.just({})
+    st.none()
+    | st.booleans()
+    | st.integers(-5, 1 << 40)
+    | st.floats()
+    | st.text(max_size=5)
+    | st.just([])
+    | st.just({})
 )
 
 
@@ -212,11 +305,15 @@ def test_whatever_stands_in_a_model_is_held_or_said(data):
         made = sunspec.SunSpec().read("some.json", json.dumps(models).encode())
     except Findings:
         return
-    assert isinstance(made, Definitions) and made.total >= len(made.networks[0].messages)
+    assert isinstance(made, Definitions) and made.total >= len(
+        made.networks[0].messages
+    )
 
 
 def _objects(of):
     if isinstance(of, dict):
         yield of
-    for one in of.values() if isinstance(of, dict) else of if isinstance(of, list) else ():
+    for one in (
+        of.values() if isinstance(of, dict) else of if isinstance(of, list) else ()
+    ):
         yield from _objects(one)

@@ -1,6 +1,8 @@
-"""XTCE becomes ICDs: space packets with their header as envelope, what inherits, what is told by values, and commands.
+"""XTCE becomes ICDs: space packets with their header as envelope, what inherits, what
+is told by values, and commands.
 
-What is read of random packets is compared with space-packet-parser's reading in tests/devices.
+What is read of random packets is compared with space-packet-parser's reading in
+tests/devices.
 """
 
 from __future__ import annotations
@@ -37,39 +39,79 @@ def test_the_primary_header_is_the_envelope_and_the_application_process_the_id(p
     assert [(one["at"], one["bits"], one["role"]) for one in header if one["role"] in ("id", "length", "sequence")] == [
         (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
     ]  # fmt: skip
-    assert (tree["node"]["id_bits"], [one["id"] for one in tree["messages"]]) == (11, [100, 100, 101])
+    assert (tree["node"]["id_bits"], [one["id"] for one in tree["messages"]]) == (
+        11,
+        [100, 100, 101],
+    )
 
 
 def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
     told = '<xtce:Comparison parameterRef="SECONDARY" value="1"/><xtce:Comparison parameterRef="APID" value="100"'
-    text = (FILES / "probe.xml").read_text().replace('<xtce:Comparison parameterRef="APID" value="100"', told)
+    text = (
+        (FILES / "probe.xml")
+        .read_text()
+        .replace('<xtce:Comparison parameterRef="APID" value="100"', told)
+    )
     (tmp_path / "probe.xml").write_text(
-        text.replace(text[text.index('      <xtce:SequenceContainer name="Dumped"') :], END)
+        text.replace(
+            text[text.index('      <xtce:SequenceContainer name="Dumped"') :], END
+        )
     )
     read = run.read(tmp_path / "probe.xml", xtce.Xtce())
     header = read.trees["probe"]["protocol"]["stream"]["header"]
-    assert read.imported == 2 and header[2]["value"] == {"telecommand": 0, "telemetry": 1}
+    assert read.imported == 2 and header[2]["value"] == {
+        "telecommand": 0,
+        "telemetry": 1,
+    }
 
 
 def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(probe):
-    assert [one["name"] for one in message(probe, "Housekeeping")["fields"]] == ["Time", "Mode", "Valid", "Spare"]
-    assert "const" not in field(probe, "Housekeeping", "Mode") and field(probe, "Safe", "Mode")["const"] == 5
-    assert field(probe, "Safe", "Mode")["enum"] == "Mode" and field(probe, "Safe", "Key")["at"] == 176
+    assert [one["name"] for one in message(probe, "Housekeeping")["fields"]] == [
+        "Time",
+        "Mode",
+        "Valid",
+        "Spare",
+    ]
+    assert (
+        "const" not in field(probe, "Housekeeping", "Mode")
+        and field(probe, "Safe", "Mode")["const"] == 5
+    )
+    assert (
+        field(probe, "Safe", "Mode")["enum"] == "Mode"
+        and field(probe, "Safe", "Key")["at"] == 176
+    )
 
 
 def test_calibrations_are_formulas_or_tables(probe):
-    said = {name: field(probe, "Safe", name) for name in ("Temperature", "Pressure", "Level", "Curve", "Rate")}
-    assert said["Temperature"]["formula"] == "raw*0.0125 - 40.5" and said["Temperature"]["below"] == 85.5
+    said = {
+        name: field(probe, "Safe", name)
+        for name in ("Temperature", "Pressure", "Level", "Curve", "Rate")
+    }
+    assert (
+        said["Temperature"]["formula"] == "raw*0.0125 - 40.5"
+        and said["Temperature"]["below"] == 85.5
+    )
     assert said["Pressure"]["formula"] == "raw^2*0.0002 - raw*0.5 + 3"
-    assert said["Level"]["formula"] == "raw*5/12 - 5/2" and said["Rate"]["unit"] == "deg/s"
-    assert said["Curve"]["points"] == [[0.5, "-1e-9"], [10, 5], [90, 6]] and said["Curve"]["unit"] == "V"
-    assert said["Curve"]["outside"] == "refuse" and probe.definitions.import_findings == []
+    assert (
+        said["Level"]["formula"] == "raw*5/12 - 5/2" and said["Rate"]["unit"] == "deg/s"
+    )
+    assert (
+        said["Curve"]["points"] == [[0.5, "-1e-9"], [10, 5], [90, 6]]
+        and said["Curve"]["unit"] == "V"
+    )
+    assert (
+        said["Curve"]["outside"] == "refuse" and probe.definitions.import_findings == []
+    )
 
 
 @pytest.mark.parametrize(
     ("old", "new", "why"),
     [
-        ('order="1">', 'order="0">', "it is calibrated by a table of 3 points that are not joined by lines"),
+        (
+            'order="1">',
+            'order="0">',
+            "it is calibrated by a table of 3 points that are not joined by lines",
+        ),
         (
             'raw="0.5"',
             'raw="90"',
@@ -78,7 +120,9 @@ def test_calibrations_are_formulas_or_tables(probe):
         ('calibrated="-1e-9"', 'calibrated="much"', "a coefficient is `much`"),
     ],
 )
-def test_what_no_formula_and_no_table_says_is_held_raw_and_said(tmp_path, old, new, why):
+def test_what_no_formula_and_no_table_says_is_held_raw_and_said(
+    tmp_path, old, new, why
+):
     text = (FILES / "probe.xml").read_text()
     assert text.count(old) == 1
     (tmp_path / "probe.xml").write_text(text.replace(old, new))
@@ -86,12 +130,19 @@ def test_what_no_formula_and_no_table_says_is_held_raw_and_said(tmp_path, old, n
     held = field(read, "Safe", "Curve")
     assert held.keys().isdisjoint(("points", "outside", "formula", "unit"))
     (import_finding,) = read.definitions.import_findings
-    assert import_finding.code == "IMP078" and import_finding.message.startswith(f"`Curve` (message `Safe`): {why}")
+    assert import_finding.code == "IMP078" and import_finding.message.startswith(
+        f"`Curve` (message `Safe`): {why}"
+    )
 
 
 def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):
     dump = field(probe, "Dumped", "Dump")
-    assert (dump["at"], dump["size"], dump["up_to"], "bits" in dump) == (40, "rest", 65_530, False)
+    assert (dump["at"], dump["size"], dump["up_to"], "bits" in dump) == (
+        40,
+        "rest",
+        65_530,
+        False,
+    )
 
 
 def test_without_such_a_header_the_id_is_what_tells_all_messages(lander):
@@ -108,16 +159,28 @@ def test_arrays_aggregates_flags_and_times_of_1_1_arrive(lander):
         "at": 8, "bits": 16, "name": "Cells", "type": "int", "count": 3, "unit": "mV", "byte_order": "little",
         "summary": "",
     }  # fmt: skip
-    assert [field(lander, "Arm Power", name)["at"] for name in ("Wind x", "Wind y")] == [8, 24]
+    assert [
+        field(lander, "Arm Power", name)["at"] for name in ("Wind x", "Wind y")
+    ] == [8, 24]
     assert (
-        field(lander, "Power", "At")["formula"] == "raw*0.001 + 10" and field(lander, "Power", "Door")["enum"] == "Door"
+        field(lander, "Power", "At")["formula"] == "raw*0.001 + 10"
+        and field(lander, "Power", "Door")["enum"] == "Door"
     )
-    assert field(lander, "Places", "Low")["at"] == 40 and field(lander, "Places", "Door")["view"] is True
+    assert (
+        field(lander, "Places", "Low")["at"] == 40
+        and field(lander, "Places", "Door")["view"] is True
+    )
 
 
-def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_give_them(lander):
+def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_give_them(
+    lander,
+):
     stretch = message(lander, "Stretch")
-    assert (stretch["length"], stretch["hazard"], stretch["group"]) == (11, "It may hit the mast.", "Arm")
+    assert (stretch["length"], stretch["hazard"], stretch["group"]) == (
+        11,
+        "It may hit the mast.",
+        "Arm",
+    )
     assert [(one["name"], one.get("const")) for one in stretch["fields"]] == [
         ("sync", 0xEB90), ("opcode", 3), ("angle", None),
     ]  # fmt: skip
@@ -127,9 +190,11 @@ def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_giv
 
 
 def test_what_is_held_raw_is_said_with_the_reason(lander):
-    assert [one.message for one in lander.definitions.import_findings if one.code == "IMP078"] == [
-        "`Digits` (message `Clock`): an integer is encoded as `BCD`"
-    ]
+    assert [
+        one.message
+        for one in lander.definitions.import_findings
+        if one.code == "IMP078"
+    ] == ["`Digits` (message `Clock`): an integer is encoded as `BCD`"]
 
 
 BYTE = '<IntegerParameterType name="byte"><IntegerDataEncoding/></IntegerParameterType>'
@@ -138,7 +203,9 @@ ENTRY = '<ParameterRefEntry parameterRef="P"/>'
 
 
 def container(name: str, entries: str = ENTRY, base: str = "", of: str = "") -> str:
-    inherits = f'<BaseContainer containerRef="{base}">{of}</BaseContainer>' if base else ""
+    inherits = (
+        f'<BaseContainer containerRef="{base}">{of}</BaseContainer>' if base else ""
+    )
     return f'<SequenceContainer name="{name}"><EntryList>{entries}</EntryList>{inherits}</SequenceContainer>'
 
 
@@ -160,20 +227,18 @@ def type_(kind: str, inner: str) -> str:
 
 INCLUDED = '<ContainerRefEntry containerRef="{}"/>'
 NO_SIZE = '<StringDataEncoding><SizeInBits><LeadingSize sizeInBitsOfSizeTag="8"/></SizeInBits></StringDataEncoding>'
-LABELS = (
-    '<IntegerDataEncoding/><EnumerationList><Enumeration value="0" maxValue="99999999999" label="A"/></EnumerationList>'
-)
+LABELS = '<IntegerDataEncoding/><EnumerationList><Enumeration value="0" maxValue="99999999999" label="A"/></EnumerationList>'
 MANY = "<RepeatEntry><Count><FixedValue>99999</FixedValue></Count></RepeatEntry>"
 ITSELF = '<MemberList><Member name="x" typeRef="byte"/></MemberList>'
 
 
 def nested(depth: int, times: int) -> str:
-    return "".join(container(f"C{n}", INCLUDED.format(f"C{n + 1}") * times) for n in range(depth))
+    return "".join(
+        container(f"C{n}", INCLUDED.format(f"C{n + 1}") * times) for n in range(depth)
+    )
 
 
-GREATER = (
-    '<RestrictionCriteria><Comparison parameterRef="P" value="1" comparisonOperator="&gt;"/></RestrictionCriteria>'
-)
+GREATER = '<RestrictionCriteria><Comparison parameterRef="P" value="1" comparisonOperator="&gt;"/></RestrictionCriteria>'
 MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
 
 
@@ -195,16 +260,24 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
         (nested(99, 1), "more than 50 containers inherit or contain each other"),
     ],
 )  # fmt: skip
-def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_path, monkeypatch):
+def test_containers_that_cannot_be_held_are_left_out_and_end(
+    text, says, tmp_path, monkeypatch
+):
     most = xtce_types.Types.most_steps if "things" not in says else 20_000
     monkeypatch.setattr(xtce_types.Types, "most_steps", most)
     assert says.replace("1,000,000", "20,000") in refused(system(text), tmp_path)
 
 
-def test_a_condition_is_on_the_value_of_a_repeated_parameter_that_was_sent_last(tmp_path):
-    condition = '<IncludeCondition><Comparison parameterRef="P" value="1"/></IncludeCondition>'
+def test_a_condition_is_on_the_value_of_a_repeated_parameter_that_was_sent_last(
+    tmp_path,
+):
+    condition = (
+        '<IncludeCondition><Comparison parameterRef="P" value="1"/></IncludeCondition>'
+    )
     behind = '<LocationInContainerInBits referenceLocation="containerStart"><FixedValue>24</FixedValue></LocationInContainerInBits>'
-    (tmp_path / "twice.xml").write_text(system(container("A", ENTRY * 2 + entry(condition) + entry(behind))))
+    (tmp_path / "twice.xml").write_text(
+        system(container("A", ENTRY * 2 + entry(condition) + entry(behind)))
+    )
     read = run.read(tmp_path / "twice.xml", xtce.Xtce())
     assert [(one["at"], one["name"], one.get("when")) for one in message(read, "A")["fields"]] == [
         (0, "P", None), (8, "P 2", None), (16, "P 3", {"P 2": 1}), (24, "P 4", None),
@@ -236,7 +309,9 @@ def test_types_that_cannot_be_held_are_said_and_end(types, says, tmp_path):
         (BYTE.replace("Encoding", 'Encoding sizeInBits="24" encoding="BCD"'), 24, "an integer is encoded as `BCD`"),
     ],
 )  # fmt: skip
-def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(types, bits, says, tmp_path):
+def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(
+    types, bits, says, tmp_path
+):
     (tmp_path / "a.xml").write_text(system(container("A"), types))
     read = run.read(tmp_path / "a.xml", xtce.Xtce())
     (import_finding,) = read.definitions.import_findings
@@ -244,17 +319,29 @@ def test_a_number_of_known_size_and_unknown_encoding_costs_its_meaning_alone(typ
         "IMP078",
         f"`P` (message `A`): {says}",
     ) and "raw bits" in import_finding.help
-    assert message(read, "A")["fields"] == [{"at": 0, "bits": bits, "name": "P", "type": "uint"}]
+    assert message(read, "A")["fields"] == [
+        {"at": 0, "bits": bits, "name": "P", "type": "uint"}
+    ]
 
 
 def test_a_number_of_unknown_encoding_tells_no_message_apart(tmp_path):
     of = '<RestrictionCriteria><Comparison parameterRef="P" value="12"/></RestrictionCriteria>'
     containers = container("A") + container("B", "", "A", of)
-    why = refused(system(containers, BYTE.replace("Encoding", 'Encoding encoding="BCD"')), tmp_path)
-    assert "message `B` is not imported: it depends on `P`, of which only the raw bits are imported" in why
+    why = refused(
+        system(containers, BYTE.replace("Encoding", 'Encoding encoding="BCD"')),
+        tmp_path,
+    )
+    assert (
+        "message `B` is not imported: it depends on `P`, of which only the raw bits are imported"
+        in why
+    )
 
 
-BOMB = "<!DOCTYPE x [" + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)) + '<!ENTITY e0 "ha">]>'
+BOMB = (
+    "<!DOCTYPE x ["
+    + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10))
+    + '<!ENTITY e0 "ha">]>'
+)
 OUTSIDE = '<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/passwd">]>'
 
 
@@ -284,7 +371,10 @@ def refused(text, folder):
 def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):
     (tmp_path / "two.xml").write_text(system(container("A") + container("B")))
     read = run.read(tmp_path / "two.xml", xtce.Xtce())
-    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [("A", 1), ("B", 2)]
+    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [
+        ("A", 1),
+        ("B", 2),
+    ]
     assert [(one.code, one.message) for one in read.definitions.import_findings] == [
         ("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")
     ]
@@ -292,17 +382,26 @@ def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path
 
 def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tmp_path):
     size = "<SizeInBits><DynamicValue><ParameterInstanceRef parameterRef='P'/></DynamicValue></SizeInBits>"
-    types = (
-        f"{BYTE}<BinaryParameterType name='data'><BinaryDataEncoding>{size}</BinaryDataEncoding></BinaryParameterType>"
+    types = f"{BYTE}<BinaryParameterType name='data'><BinaryDataEncoding>{size}</BinaryDataEncoding></BinaryParameterType>"
+    text = system(
+        container("A", f'{ENTRY}<ParameterRefEntry parameterRef="D"/>'), types
     )
-    text = system(container("A", f'{ENTRY}<ParameterRefEntry parameterRef="D"/>'), types)
-    text = text.replace("</ParameterSet>", '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>')
+    text = text.replace(
+        "</ParameterSet>",
+        '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>',
+    )
     (tmp_path / "one.xml").write_text(text)
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
     assert [(one.code, one.message) for one in read.definitions.import_findings] == [
         ("IMP080", "message `A`: `D` is as long as `P` says")
     ]
-    assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
+    assert field(read, "A", "D") == {
+        "at": 8,
+        "name": "D",
+        "type": "bytes",
+        "size": "rest",
+        "up_to": 65_534,
+    }
 
 
 def counted(dynamic, kind="array"):
@@ -317,7 +416,10 @@ def counted(dynamic, kind="array"):
         type_ = f"<BinaryParameterType name='data'>{encoding}</BinaryParameterType>"
         entry = f'{ENTRY}<ParameterRefEntry parameterRef="D"/>'
     text = system(container("A", entry), BYTE + type_)
-    return text.replace("</ParameterSet>", '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>')
+    return text.replace(
+        "</ParameterSet>",
+        '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>',
+    )
 
 
 def value(slope, intercept):
@@ -328,13 +430,36 @@ def value(slope, intercept):
 @pytest.mark.parametrize(
     ("text", "held"),
     [
-        (counted(value(1, -1)), {"bits": 8, "type": "uint", "count": "P", "up_to": 255}),
-        (counted(value(1, 1)), {"bits": 8, "type": "uint", "count": {"field": "P", "plus": 2}, "up_to": 257}),
+        (
+            counted(value(1, -1)),
+            {"bits": 8, "type": "uint", "count": "P", "up_to": 255},
+        ),
+        (
+            counted(value(1, 1)),
+            {
+                "bits": 8,
+                "type": "uint",
+                "count": {"field": "P", "plus": 2},
+                "up_to": 257,
+            },
+        ),
         (counted(value(8, 0), "bytes"), {"type": "bytes", "size": "P", "up_to": 255}),
-        (counted(value("8.0", -32), "bytes"), {"type": "bytes", "size": {"field": "P", "plus": -4}, "up_to": 251}),
-        (counted(value(8, 4), "bytes"), {"type": "bytes", "size": "rest", "up_to": 65_534}),
-        (counted(value(8, -8 * 255), "bytes"), {"type": "bytes", "size": "rest", "up_to": 65_534}),
-        (counted(value("x", 0), "bytes"), {"type": "bytes", "size": "rest", "up_to": 65_534}),
+        (
+            counted(value("8.0", -32), "bytes"),
+            {"type": "bytes", "size": {"field": "P", "plus": -4}, "up_to": 251},
+        ),
+        (
+            counted(value(8, 4), "bytes"),
+            {"type": "bytes", "size": "rest", "up_to": 65_534},
+        ),
+        (
+            counted(value(8, -8 * 255), "bytes"),
+            {"type": "bytes", "size": "rest", "up_to": 65_534},
+        ),
+        (
+            counted(value("x", 0), "bytes"),
+            {"type": "bytes", "size": "rest", "up_to": 65_534},
+        ),
     ],
 )
 def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
@@ -344,13 +469,25 @@ def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
 
 
 @pytest.mark.parametrize("dynamic", [value(2, 0), value(1, 0.5), "<DynamicValue/>"])
-def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(dynamic, tmp_path):
+def test_an_array_that_no_parameter_counts_is_held_as_bytes_to_the_end(
+    dynamic, tmp_path
+):
     (tmp_path / "one.xml").write_text(counted(dynamic))
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
-    (lost,) = [one for one in read.definitions.import_findings if one.severity == "error"]
-    assert lost.code == "IMP081" and lost.message.startswith("message `A`: from `D` on only bytes are imported: ")
+    (lost,) = [
+        one for one in read.definitions.import_findings if one.severity == "error"
+    ]
+    assert lost.code == "IMP081" and lost.message.startswith(
+        "message `A`: from `D` on only bytes are imported: "
+    )
     assert "no parameter counts" in lost.message and read.failed
-    assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
+    assert field(read, "A", "D") == {
+        "at": 8,
+        "name": "D",
+        "type": "bytes",
+        "size": "rest",
+        "up_to": 65_534,
+    }
 
 
 @pytest.mark.parametrize("bits", [8 * 65_536, 10**12])
@@ -365,14 +502,20 @@ def test_a_place_beyond_every_frame_costs_the_message_and_no_memory(bits, tmp_pa
 
 @pytest.mark.parametrize("scale", ["x", "1e9999"])
 def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
-    text = (FILES / "lander.xml").read_text().replace('scale="0.001"', f'scale="{scale}"')
+    text = (
+        (FILES / "lander.xml").read_text().replace('scale="0.001"', f'scale="{scale}"')
+    )
     (tmp_path / "lander.xml").write_text(text)
     read = run.read(tmp_path / "lander.xml", xtce.Xtce())
-    assert "formula" not in field(read, "Power", "At") and "unit" not in field(read, "Power", "At")
+    assert "formula" not in field(read, "Power", "At") and "unit" not in field(
+        read, "Power", "At"
+    )
     assert f"`At` (message `Power`): a coefficient is `{scale}`" in [
         one.message for one in read.definitions.import_findings
     ]
 
 
 def test_messages_of_one_name_are_told_apart(lander):
-    assert [one["name"] for one in lander.trees["lander"]["messages"]].count("Power") == 1
+    assert [one["name"] for one in lander.trees["lander"]["messages"]].count(
+        "Power"
+    ) == 1

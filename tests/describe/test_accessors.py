@@ -1,4 +1,7 @@
-"""Accessors of physical values. Every language generates the same ones, as far as it has types for them."""
+"""Accessors of physical values.
+
+Every language generates the same ones, as far as it has types for them.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +19,18 @@ ALL = ("text", "double", "single", "integer", "long integer")
     [
         ("bits: 16, type: uint", {}),
         ("bits: 16, type: text", {"text": "rate_text"}),
-        ("bits: 8, type: uint, formula: raw / 3", {"double": "rate_physical", "single": "rate_physical_f32"}),
+        (
+            "bits: 8, type: uint, formula: raw / 3",
+            {"double": "rate_physical", "single": "rate_physical_f32"},
+        ),
         ("bits: 8, type: uint, formula: raw^2", {"double": "rate_physical"}),
         (
             "bits: 16, type: int, unit: deg/s, formula: raw / 1000",
-            {"double": "rate_deg_per_s", "single": "rate_deg_per_s_f32", "integer": "rate_mdeg_per_s"},
+            {
+                "double": "rate_deg_per_s",
+                "single": "rate_deg_per_s_f32",
+                "integer": "rate_mdeg_per_s",
+            },
         ),
         (
             "bits: 64, type: uint, unit: m, formula: raw * 5",
@@ -28,12 +38,20 @@ ALL = ("text", "double", "single", "integer", "long integer")
         ),
     ],
 )
-def test_a_field_has_accessors_for_the_types_that_can_store_its_values(tmp_path, field, expected):
+def test_a_field_has_accessors_for_the_types_that_can_store_its_values(
+    tmp_path, field, expected
+):
     result = loaded(tmp_path, status(f"at: 0, name: Rate, {field}", length=8))
     (rate,) = describe(result.icd).nodes[0].messages[0].members
-    assert {accessor.kind: accessor.name for accessor in accessors_of(rate, *ALL)} == expected
-    assert {accessor.kind for accessor in accessors_of(rate, *ALL) if accessor.is_settable} == {*expected} - {"single"}
-    assert [accessor.kind for accessor in accessors_of(rate, "single")] == ["single"] * ("single" in expected)
+    assert {
+        accessor.kind: accessor.name for accessor in accessors_of(rate, *ALL)
+    } == expected
+    assert {
+        accessor.kind for accessor in accessors_of(rate, *ALL) if accessor.is_settable
+    } == {*expected} - {"single"}
+    assert [accessor.kind for accessor in accessors_of(rate, "single")] == [
+        "single"
+    ] * ("single" in expected)
 
 
 def test_an_overlay_field_has_no_setters(tmp_path):
@@ -41,7 +59,11 @@ def test_an_overlay_field_has_no_setters(tmp_path):
         "at: 0, name: Rate, bits: 16, type: uint",
         "at: 0, name: Low, bits: 8, type: uint, view: true, formula: raw * 2",
     )
-    message = describe(loaded(tmp_path, status(*fields, length=2)).icd).nodes[0].messages[0]
+    message = (
+        describe(loaded(tmp_path, status(*fields, length=2)).icd).nodes[0].messages[0]
+    )
     (low,) = message.overlays
-    kinds = {accessor.kind: accessor.is_settable for accessor in accessors_of(low, *ALL)}
+    kinds = {
+        accessor.kind: accessor.is_settable for accessor in accessors_of(low, *ALL)
+    }
     assert kinds == {"double": False, "single": False, "integer": False}

@@ -15,17 +15,29 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
 
 fractions = st.fractions(min_value=-(1 << 40), max_value=1 << 40, max_denominator=10**7)
-decimals = st.builds(Fraction, st.integers(-(10**6), 10**6), st.sampled_from([1, 10, 1000, 10**6]))
+decimals = st.builds(
+    Fraction, st.integers(-(10**6), 10**6), st.sampled_from([1, 10, 1000, 10**6])
+)
 factors = (fractions | decimals).filter(bool)
 
 
-def arithmetic(kind: str, bits: int, factor: Fraction, offset: Fraction = Fraction(0)) -> Arithmetic:
-    scale = steps(Scalar(name="Rate", bits=bits, type=kind, scale=Scale(factor, offset)))
+def arithmetic(
+    kind: str, bits: int, factor: Fraction, offset: Fraction = Fraction(0)
+) -> Arithmetic:
+    scale = steps(
+        Scalar(name="Rate", bits=bits, type=kind, scale=Scale(factor, offset))
+    )
     assert scale is not None
     return arithmetic_of(scale, storage_of(bits, kind == "int"))
 
 
-cases = st.builds(arithmetic, st.sampled_from(["uint", "int"]), st.integers(1, 64), factors, fractions | decimals)
+cases = st.builds(
+    arithmetic,
+    st.sampled_from(["uint", "int"]),
+    st.integers(1, 64),
+    factors,
+    fractions | decimals,
+)
 
 
 def raws(case: Arithmetic) -> list[int]:
@@ -40,11 +52,15 @@ def single(value: float) -> float:
 
 @given(cases)
 @example(arithmetic("uint", 16, Fraction(1, 100), Fraction(-40)))
-def test_a_division_of_doubles_is_the_correctly_rounded_value_where_the_arithmetic_is_exact(case):
+def test_a_division_of_doubles_is_the_correctly_rounded_value_where_the_arithmetic_is_exact(
+    case,
+):
     p, c, q = case.steps.terms
     for raw in raws(case):
         if case.is_exact_in_doubles:
-            assert (float(raw) * float(p) + float(c)) / float(q) == case.steps.double(raw)
+            assert (float(raw) * float(p) + float(c)) / float(q) == case.steps.double(
+                raw
+            )
         if case.is_exact_in_int64:
             assert -(1 << 63) <= raw * p + c < 1 << 63
             assert float(raw * p + c) / float(q) == case.steps.double(raw)
@@ -52,7 +68,9 @@ def test_a_division_of_doubles_is_the_correctly_rounded_value_where_the_arithmet
 
 @given(cases)
 @example(arithmetic("uint", 8, Fraction(1, 10), Fraction(3)))
-def test_a_division_of_singles_is_the_nearest_single_where_the_arithmetic_is_exact(case):
+def test_a_division_of_singles_is_the_nearest_single_where_the_arithmetic_is_exact(
+    case,
+):
     p, c, q = case.steps.terms
     if case.is_exact_in_singles:
         for raw in raws(case):
@@ -67,7 +85,9 @@ def test_no_language_has_to_convert_an_integer_of_64_bits_to_a_double_or_of_32_b
     assert arithmetic("uint", 32, Fraction(1, 2)).is_exact_in_doubles
     assert not arithmetic("uint", 33, Fraction(1, 2)).is_exact_in_doubles
     assert arithmetic("uint", 32, Fraction(1, 2)).is_exact_in_int64
-    assert not arithmetic("uint", 33, Fraction(1, 2)).is_exact_in_int64  # its storage holds 2**64 - 1
+    assert not arithmetic(
+        "uint", 33, Fraction(1, 2)
+    ).is_exact_in_int64  # its storage holds 2**64 - 1
 
 
 @given(cases)
@@ -92,10 +112,17 @@ def test_integer_accessors_overflow_for_no_raw_value_and_no_value_that_is_set(ca
     low, high = -(1 << access.bits - 1), (1 << access.bits - 1) - 1
     for raw in (case.storage.min, case.storage.max):
         assert low <= raw * factor <= high and low <= raw * factor + offset <= high
-    for value in (low if access.least is None else access.least, high if access.most is None else access.most):
+    for value in (
+        low if access.least is None else access.least,
+        high if access.most is None else access.most,
+    ):
         assert abs(value - offset) < 1 << access.setter_bits - 1
         nearest = round(Fraction(value - offset, factor))  # to even, as setters round
         assert case.steps.raw_min <= nearest <= case.steps.raw_max
     for value in (access.least and access.least - 1, access.most and access.most + 1):
         if value is not None:
-            assert not case.steps.raw_min <= round(Fraction(value - offset, factor)) <= case.steps.raw_max
+            assert (
+                not case.steps.raw_min
+                <= round(Fraction(value - offset, factor))
+                <= case.steps.raw_max
+            )

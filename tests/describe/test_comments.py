@@ -1,4 +1,6 @@
-"""What comments say, in every language: of errata once with the reason, of parts of units by the name of the part."""
+"""What comments say, in every language: of errata once with the reason, of parts of
+units by the name of the part.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,12 @@ def test_an_erratum_is_told_with_its_reason_where_it_is_met_first_and_else_where
     for whole, things in parts():
         full: dict[str, str] = {}
         for thing in things:
-            for erratum, text in zip(thing.model.errata, thing.comment.errata, strict=True):
-                assert text.startswith(f"{erratum.label} {erratum.id}{erratum.sureness}: ")
+            for erratum, text in zip(
+                thing.model.errata, thing.comment.errata, strict=True
+            ):
+                assert text.startswith(
+                    f"{erratum.label} {erratum.id}{erratum.sureness}: "
+                )
                 if erratum.id in full:
                     assert text.endswith(f": see {full[erratum.id]}."), whole.model.name
                     repeated += 1
@@ -36,7 +42,9 @@ def test_an_erratum_is_told_with_its_reason_where_it_is_met_first_and_else_where
 
 def test_the_reason_stands_with_the_title():
     message = next(
-        one for one in describe(shipped()).node("cubeacp").messages if one.model.name == "ADCS Configuration"
+        one
+        for one in describe(shipped()).node("cubeacp").messages
+        if one.model.name == "ADCS Configuration"
     )
     (radius,) = (one for one in message.members if one.model.name == "Nadir Max Radius")
     assert radius.comment.errata == (
@@ -64,12 +72,17 @@ def test_a_part_of_a_unit_is_called_what_people_call_it(symbol, per, name, words
 
 
 def test_a_unit_of_the_icd_itself_is_not_taken_apart():
-    field = Scalar(name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length"))
+    field = Scalar(
+        name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length")
+    )
     assert part_of_unit(field, 1000) == ("m", "thousandths of klick")
 
 
 def test_an_enumeration_says_which_fields_hold_it(tmp_path):
-    fields = "".join(f"      - {{at: {at * 2}, bits: 2, name: F{at}, type: enum, enum: Mode}}\n" for at in range(4))
+    fields = "".join(
+        f"      - {{at: {at * 2}, bits: 2, name: F{at}, type: enum, enum: Mode}}\n"
+        for at in range(4)
+    )
     one = "fields: [{{at: 0, bits: 2, name: F0, type: enum, enum: Mode}}]"
     heads = f"  - {{{{name: {{0}}, id: {{1}}, kind: telemetry, length: 1, {one}}}}}\n"
     (tmp_path / "demo.yaml").write_text(

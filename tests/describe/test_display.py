@@ -1,4 +1,6 @@
-"""Values are shown with the digits that the resolution of their field warrants, alike on the command line and on the site."""
+"""Values are shown with the digits that the resolution of their field warrants, alike
+on the command line and on the site.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,16 @@ messages:
     derived:
       - {name: Sum, formula: "0.1*Hundredths + 0.2*Sixteenths"}
 """
-BY_NUMBER = ["Quadratic", "Thirds", "Fahrenheit", "Binary", "Hundredths", "Sixteenths", "Table", "Large"]
+BY_NUMBER = [
+    "Quadratic",
+    "Thirds",
+    "Fahrenheit",
+    "Binary",
+    "Hundredths",
+    "Sixteenths",
+    "Table",
+    "Large",
+]
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +102,10 @@ def test_values_have_the_digits_that_their_resolution_warrants(fields, name, raw
 
 
 def test_digits_of_the_arithmetic_in_doubles_are_not_shown(fields):
-    assert Row(fields["Double Float"], float_raw(fields["Double Float"], 30.013888)).text == "30.013888"
+    assert (
+        Row(fields["Double Float"], float_raw(fields["Double Float"], 30.013888)).text
+        == "30.013888"
+    )
     assert Row(fields["Single Float"], float_raw(fields["Single Float"], 1)).text == "1"
     assert Row(fields["Plain"], float_raw(fields["Plain"], 0.1)).text == "0.1"
 
@@ -104,13 +118,17 @@ def test_json_has_the_full_precision(fields):
 @pytest.mark.parametrize("name", BY_NUMBER)
 def test_a_value_that_is_shown_leads_back_to_its_raw_value(fields, name):
     field = fields[name]
-    low, high = max(field.raw_min, field.settable_raws[0]), min(field.raw_max, field.settable_raws[1])
+    low, high = max(field.raw_min, field.settable_raws[0]), min(
+        field.raw_max, field.settable_raws[1]
+    )
     for raw in Random(1).sample(range(low, high + 1), min(500, high - low + 1)):
         assert from_physical(field, Row(field, raw).text) == raw
 
 
 def in_page(function: str, argument: object) -> Any:
-    """Return the result of a JavaScript function that uses `codec` and `values` of the site."""
+    """Return the result of a JavaScript function that uses `codec` and `values` of the
+    site.
+    """
     folder = ROOT / "templates" / "html"
     code = f"""
         const load = (name) => require("node:path").join({json.dumps(str(folder))}, name);
@@ -120,7 +138,12 @@ def in_page(function: str, argument: object) -> Any:
         const values = new Function(`${{fs.readFileSync(load("values.js"), "utf8")}}; return icdgenValues;`)();
         process.stdout.write(JSON.stringify({function}(JSON.parse(fs.readFileSync(0, "utf8")))));
     """
-    done = subprocess.run([program("node"), "-e", code], input=json.dumps(argument), capture_output=True, text=True)
+    done = subprocess.run(
+        [program("node"), "-e", code],
+        input=json.dumps(argument),
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -128,15 +151,21 @@ def in_page(function: str, argument: object) -> Any:
 def test_the_page_shows_the_same_digits(tmp_path):
     icd = icd_of(SENSOR, tmp_path)
     message, source = icd.nodes[0].messages[0], Random(2)
-    frames = [source.randbytes(message.length) for _ in range(300)] + [bytes(message.length)]
+    frames = [source.randbytes(message.length) for _ in range(300)] + [
+        bytes(message.length)
+    ]
     expected = []
     for frame in frames:
         raw = codec.decode(icd.nodes[0], message, frame)
-        expected.append([Row(one, raw[one.name]).text for one in message.fields if one.has_formula])
+        expected.append(
+            [Row(one, raw[one.name]).text for one in message.fields if one.has_formula]
+        )
     shown = """(([plan, frames]) => frames.map((hex) => codec.decode(plan, Uint8Array.from(Buffer.from(hex, "hex")))
       .map((raw, at) => [plan.fields[at], raw]).filter(([field]) => field.scale || field.curve)
       .map(([field, raw]) => values.physicalText(field, raw))))"""
-    on_page = in_page(shown, [message_plan(message, icd.nodes[0]), [frame.hex() for frame in frames]])
+    on_page = in_page(
+        shown, [message_plan(message, icd.nodes[0]), [frame.hex() for frame in frames]]
+    )
     spelt = [[_as_python(one) for one in row] for row in on_page]
     assert spelt == [[_as_python(one) for one in row] for row in expected]
 
@@ -147,7 +176,11 @@ def _as_python(text: str) -> str:
 
 
 def test_an_exact_fraction_and_its_double_are_shown_alike(fields):
-    assert number_text(fields["Thirds"], Fraction(2, 3)) == number_text(fields["Thirds"], 2 / 3) == "0.7"
+    assert (
+        number_text(fields["Thirds"], Fraction(2, 3))
+        == number_text(fields["Thirds"], 2 / 3)
+        == "0.7"
+    )
 
 
 FORMATS = """\
@@ -203,7 +236,9 @@ def raw_of(field: NodePlace, number: float) -> int:
 
 
 @pytest.mark.parametrize(("name", "number", "text"), EXPECTED)
-def test_a_value_is_displayed_in_the_format_that_its_field_states(charger, name, number, text):
+def test_a_value_is_displayed_in_the_format_that_its_field_states(
+    charger, name, number, text
+):
     field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
     assert Row(field, raw_of(field, number)).text == text
 
@@ -212,10 +247,14 @@ def test_json_has_the_full_precision_whatever_the_display_format(charger):
     fields = {one.name: one for one in charger.nodes[0].messages[0].fields}
     assert Row(fields["Voltage"], 65).to_json()["physical"] == 65 / 3
     assert Row(fields["Faults"], 0xF1).to_json()["value"] == 0xF1
-    assert Row(fields["Bias"], raw_of(fields["Bias"], -0.04)).to_json()["value"] == -0.04
+    assert (
+        Row(fields["Bias"], raw_of(fields["Bias"], -0.04)).to_json()["value"] == -0.04
+    )
 
 
-@pytest.mark.parametrize(("name", "number"), [("Faults", 0xF1), ("Outputs", 5), ("Mask", 1 << 63)])
+@pytest.mark.parametrize(
+    ("name", "number"), [("Faults", 0xF1), ("Outputs", 5), ("Mask", 1 << 63)]
+)
 def test_a_displayed_bit_pattern_can_be_entered_again(charger, name, number):
     field = next(one for one in charger.nodes[0].messages[0].fields if one.name == name)
     assert from_physical(field, Row(field, number).text) == number
@@ -234,7 +273,9 @@ def test_the_site_displays_values_in_the_format_of_their_fields(charger):
     ]
     function = "(([cases, enums]) => cases.map(([field, raw]) => values.shortText(field, BigInt(raw), enums)))"
     shown = in_page(function, [cases, enums])
-    expected = [text + (" V" if name == "Voltage" else "") for name, _, text in EXPECTED]
+    expected = [
+        text + (" V" if name == "Voltage" else "") for name, _, text in EXPECTED
+    ]
     assert shown == [text if text != "unknown 0xC8" else "0xC8?" for text in expected]
 
 
@@ -242,14 +283,21 @@ def test_show_states_the_display_format_and_its_json_reads_back(charger, tmp_pat
     tree = to_json(charger)
     jsonschema_rs.validator_for(json.loads(SCHEMA.read_text("utf-8"))).validate(tree)
     (message,) = tree["nodes"][0]["messages"]
-    assert [one.get("display") for one in message["fields"]][:4] == [{"decimals": 2}, "hex", "binary", {"digits": 4}]
+    assert [one.get("display") for one in message["fields"]][:4] == [
+        {"decimals": 2},
+        "hex",
+        "binary",
+        {"digits": 4},
+    ]
     assert message["derived"][0]["display"] == {"decimals": 3}
     text = to_text(charger, ["charger", "State"])
     assert "displayed with 2 decimals" in text and "displayed in hexadecimal" in text
     shown = tmp_path / "charger.json"
     shown.write_text(json.dumps(tree), "utf-8")
     fields = shown_input.from_file(shown).icd.nodes[0].messages[0].fields
-    assert [one.display for one in fields] == [one.display for one in charger.nodes[0].messages[0].fields]
+    assert [one.display for one in fields] == [
+        one.display for one in charger.nodes[0].messages[0].fields
+    ]
 
 
 def test_generated_code_does_not_depend_on_the_display_format(charger, tmp_path):
@@ -257,5 +305,8 @@ def test_generated_code_does_not_depend_on_the_display_format(charger, tmp_path)
     assert "display" not in json.dumps(to_json(plain))
     nodes = [replace(icd.nodes[0], digest="") for icd in (charger, plain)]
     for name in ("c", "python", "rust"):
-        files = [dict(backends.get(name).files(Icd((node,)), renderer(name))) for node in nodes]
+        files = [
+            dict(backends.get(name).files(Icd((node,)), renderer(name)))
+            for node in nodes
+        ]
         assert files[0] and files[0] == files[1]

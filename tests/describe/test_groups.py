@@ -28,7 +28,11 @@ SMALL, LARGE = Thresholds(flags=(4,), row=3), Thresholds(flags=(8, 4), row=8)
 
 
 def messages(path: str) -> list[MessageDescription]:
-    return [message for node in describe(read(ROOT / path)).nodes for message in node.messages]
+    return [
+        message
+        for node in describe(read(ROOT / path)).nodes
+        for message in node.messages
+    ]
 
 
 def message(folder, *fields: str, length: int) -> MessageDescription:
@@ -49,36 +53,53 @@ def scalars_of(group: Group) -> list[FieldDescription]:
 
 @pytest.mark.parametrize("thresholds", [SMALL, LARGE], ids=["small", "large"])
 @pytest.mark.parametrize("path", SETS)
-def test_every_field_is_in_one_group_and_groups_keep_the_order_of_fields(path, thresholds):
+def test_every_field_is_in_one_group_and_groups_keep_the_order_of_fields(
+    path, thresholds
+):
     for one in messages(path):
-        grouped = [field.model.name for group in groups(one, thresholds) for field in scalars_of(group)]
+        grouped = [
+            field.model.name
+            for group in groups(one, thresholds)
+            for field in scalars_of(group)
+        ]
         assert grouped == [field.model.name for field in grouped_fields(one)], one.name
 
 
 @pytest.mark.parametrize("thresholds", [SMALL, LARGE], ids=["small", "large"])
 @pytest.mark.parametrize("path", SETS)
-def test_flags_of_a_group_are_neighbouring_bits_of_a_byte_and_words_of_a_row_follow_each_other(path, thresholds):
+def test_flags_of_a_group_are_neighbouring_bits_of_a_byte_and_words_of_a_row_follow_each_other(
+    path, thresholds
+):
     for one in messages(path):
         for group in groups(one, thresholds):
             if isinstance(group, Flags):
                 bits = range(group.shift, group.shift + len(group.fields))
-                wanted = [(group.byte, bit) for bit in (reversed(bits) if group.is_falling else bits)]
+                wanted = [
+                    (group.byte, bit)
+                    for bit in (reversed(bits) if group.is_falling else bits)
+                ]
                 assert [field.pieces[0][:2] for field in group.fields] == wanted
                 assert len(group.fields) in thresholds.flags
             elif isinstance(group, Row):
                 step = group.fields[0].model.bits
                 starts = [field.model.at for field in group.fields]
-                assert starts == list(range(8 * group.byte, 8 * (group.byte + group.length), step))
+                assert starts == list(
+                    range(8 * group.byte, 8 * (group.byte + group.length), step)
+                )
                 assert len({field.byte_order for field in group.fields}) == 1
 
 
-def test_members_are_a_row_from_the_threshold_on_and_elements_of_an_array_always(tmp_path):
+def test_members_are_a_row_from_the_threshold_on_and_elements_of_an_array_always(
+    tmp_path,
+):
     fields = [f"name: W{n}, at: {16 * n}, bits: 16, type: uint" for n in range(3)]
     fields.append("name: Levels, at: 48, bits: 8, type: uint, count: 2")
     one = message(tmp_path, *fields, length=8)
     kinds = [type(group) for group in groups(one, SMALL)]
     assert kinds == [Row, Row]
-    assert [type(group) for group in groups(one, LARGE)] == [FieldDescription] * 3 + [Row]
+    assert [type(group) for group in groups(one, LARGE)] == [FieldDescription] * 3 + [
+        Row
+    ]
 
 
 def test_a_loop_reads_all_elements_of_an_array_or_none(tmp_path):
@@ -90,7 +111,12 @@ def test_a_loop_reads_all_elements_of_an_array_or_none(tmp_path):
         length=17,
     )
     halves, odd, words = map(loop_of, one.members)
-    assert halves is not None and (halves.per_iteration, halves.iterations, halves.begin, halves.step) == (2, 4, 0, 1)
+    assert halves is not None and (
+        halves.per_iteration,
+        halves.iterations,
+        halves.begin,
+        halves.step,
+    ) == (2, 4, 0, 1)
     assert odd is None and words is None  # an element is left over; words are copied
 
 
@@ -101,7 +127,13 @@ def test_bytes_of_flags_are_those_with_enough_flags(tmp_path):
     assert bytes_of_flags(one, at_least=4) == {0}
 
 
-@given(st.lists(st.tuples(st.integers(0, 3), st.sampled_from(["whole", "part", "gap"])), max_size=12), st.randoms())
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 3), st.sampled_from(["whole", "part", "gap"])),
+        max_size=12,
+    ),
+    st.randoms(),
+)
 def test_every_byte_of_a_frame_is_written_once_in_order(parts, random):
     frame_length = sum(length or 1 for length, _ in parts)
     frame, added, byte = FrameBytes(frame_length), [], 0
@@ -110,14 +142,21 @@ def test_every_byte_of_a_frame_is_written_once_in_order(parts, random):
         if kind == "whole":
             added.append((frame.add_whole, (byte, length, f"whole {byte}")))
         elif kind == "part":
-            added += [(frame.add_part, (byte + n, shift, f"bit {shift}")) for n in range(length) for shift in (0, 5)]
+            added += [
+                (frame.add_part, (byte + n, shift, f"bit {shift}"))
+                for n in range(length)
+                for shift in (0, 5)
+            ]
         byte += length
     random.shuffle(added)
     for add, arguments in added:
         add(*arguments)
     segments = list(frame.segments())
-    assert [n for one in segments for n in range(one.byte, one.byte + one.length)] == list(range(frame_length))
+    assert [
+        n for one in segments for n in range(one.byte, one.byte + one.length)
+    ] == list(range(frame_length))
     assert all(one.terms in ((), ("bit 0", "bit 5")) for one in segments)
     assert [one.statement for one in segments if one.statement] == sorted(
-        (arguments[2] for add, arguments in added if add == frame.add_whole), key=lambda text: int(text.split()[1])
+        (arguments[2] for add, arguments in added if add == frame.add_whole),
+        key=lambda text: int(text.split()[1]),
     )

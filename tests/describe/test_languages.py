@@ -1,4 +1,6 @@
-"""What comments say of an ICD is the same in every language, and so are the names of constants."""
+"""What comments say of an ICD is the same in every language, and so are the names of
+constants.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ def text(language: str) -> str:
     """All that is generated, without comment signs, escapes and line breaks."""
     files = backends.get(language).files(shipped(), Renderer(language))
     whole = "\n".join(text for _, text in files)
-    return _plain(re.sub(r"^\s*(/\*\*|\*/|\*|///|//!|#)", "", whole, flags=re.MULTILINE))
+    return _plain(
+        re.sub(r"^\s*(/\*\*|\*/|\*|///|//!|#)", "", whole, flags=re.MULTILINE)
+    )
 
 
 def _plain(text: str) -> str:
@@ -35,25 +39,42 @@ def messages(icd: Icd) -> list[MessageDescription]:
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_paragraph_about_messages_fields_and_enumerations_is_there(language):
     found = text(language)
-    things = [thing for message in messages(shipped()) for thing in (message, *message.fields)]
+    things = [
+        thing for message in messages(shipped()) for thing in (message, *message.fields)
+    ]
     things += [enum for node in describe(shipped()).nodes for enum in node.enums]
     if language == "c":  # a note says that it is one by its command
         found = found.replace("@note", "Note")
         found += found.replace("NoteErratum", "Erratum")
-    missing = [p for thing in things for p in thing.comment.paragraphs if _plain(p) not in found]
+    missing = [
+        p
+        for thing in things
+        for p in thing.comment.paragraphs
+        if _plain(p) not in found
+    ]
     assert len(things) > 1400 and missing == []
 
 
 @pytest.mark.parametrize("language", ["c", "rust"])
 def test_every_constant_is_declared_by_its_name(language):
     found = text(language)
-    constants = [one for message in messages(shipped()) for field in message.fields for one in field.constants]
-    assert constants and [one.name for one in constants if one.name.upper() not in found] == []
+    constants = [
+        one
+        for message in messages(shipped())
+        for field in message.fields
+        for one in field.constants
+    ]
+    assert (
+        constants
+        and [one.name for one in constants if one.name.upper() not in found] == []
+    )
 
 
 def test_constants_on_physical_values_name_the_unit():
     fields = {f.name: f for message in messages(shipped()) for f in message.fields}
-    assert [one.name for one in fields["reference_spin_rate"].constants] == ["reference_spin_rate_deg_per_s_below"]
+    assert [one.name for one in fields["reference_spin_rate"].constants] == [
+        "reference_spin_rate_deg_per_s_below"
+    ]
 
 
 def test_the_backends_of_a_run_share_one_description():

@@ -41,23 +41,40 @@ def test_a_test_is_left_out_only_if_what_is_known_implies_it(known, more, step):
 
 def test_messages_with_parts_of_variable_length_accept_the_lengths_of_their_last_part():
     icd = read(ROOT / "tests/conformance/odd_icds")
-    messages = [message.model for node in describe(icd).nodes for message in node.messages]
-    single = [message.layout for message in messages if message.layout.parts and not message.layout.has_gaps]
+    messages = [
+        message.model for node in describe(icd).nodes for message in node.messages
+    ]
+    single = [
+        message.layout
+        for message in messages
+        if message.layout.parts and not message.layout.has_gaps
+    ]
     assert single
     for layout in single:
         tests = length_tests_of_frame(layout.lengths)
-        accepted = [length for length in range(layout.longest + 9) if all(passes(test, length) for test in tests)]
+        accepted = [
+            length
+            for length in range(layout.longest + 9)
+            if all(passes(test, length) for test in tests)
+        ]
         assert accepted == list(layout.parts[0].lengths) == list(layout.lengths)
 
 
 def test_a_decoder_accepts_exactly_the_counters_of_a_variable_part():
     icd = read(ROOT / "tests/conformance/odd_icds")
     messages = [message for node in describe(icd).nodes for message in node.messages]
-    parts = [part for message in messages for part in message.variable_parts if not part.is_rest]
+    parts = [
+        part
+        for message in messages
+        for part in message.variable_parts
+        if not part.is_rest
+    ]
     assert parts
     for part in parts:
         low, high = part.model.low, part.model.high
         for value in {0, low - 1, low, high, high + 1, part.counter.storage.max}:
             if 0 <= value <= part.counter.storage.max:
                 accepted = all(passes(test, value) for test in part.counter_tests)
-                assert accepted == (part.model.fewest <= value + part.model.plus <= part.model.most)
+                assert accepted == (
+                    part.model.fewest <= value + part.model.plus <= part.model.most
+                )

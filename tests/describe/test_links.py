@@ -1,4 +1,7 @@
-"""What is described of a link: its assumptions stand in every language; what an ICD does not describe whole is not there."""
+"""What is described of a link: its assumptions stand in every language.
+
+What an ICD does not describe whole is not there.
+"""
 
 from __future__ import annotations
 
@@ -33,9 +36,13 @@ def without(section: str, key: str) -> LinkDescription:
     protocol = copy.deepcopy(icd.protocol_of(node))
     for name, rows in protocol[section].items():
         if isinstance(rows, list):
-            protocol[section][name] = [one for one in rows if key not in (one.get("role"), one.get("name"))]
+            protocol[section][name] = [
+                one for one in rows if key not in (one.get("role"), one.get("name"))
+            ]
     changed = dataclasses.replace(node, protocol=protocol)
-    return links_of(describe(Icd(tuple(changed if one is node else one for one in icd.nodes))))["cubeacp"]
+    return links_of(
+        describe(Icd(tuple(changed if one is node else one for one in icd.nodes)))
+    )["cubeacp"]
 
 
 def plain(text: str) -> str:
@@ -48,46 +55,69 @@ def test_every_assumption_stands_in_the_link_of_every_language(language):
     texts = {str(path): text for path, text in files if LINKS[language] in f"/{path}"}
     for name, link in described().items():
         (text,) = (
-            plain(re.sub(r"^\s*(\*|///?|#)", "", one, flags=re.M)) for path, one in texts.items() if name in path
+            plain(re.sub(r"^\s*(\*|///?|#)", "", one, flags=re.M))
+            for path, one in texts.items()
+            if name in path
         )
-        assert [one for one in link.facts.assumptions if plain(one.why) not in text] == []
+        assert [
+            one for one in link.facts.assumptions if plain(one.why) not in text
+        ] == []
 
 
 def test_an_assumption_is_told_once():
     facts = described()["cubeacp"].facts
     assumed = Assumptions(facts)
-    assert assumed.why("can.extended", "fill") and not assumed.why("can.extended", "fill")
-    assert [key for key, _ in assumed.of_section("can.extended")] == ["packet_timeout_ms"]
+    assert assumed.why("can.extended", "fill") and not assumed.why(
+        "can.extended", "fill"
+    )
+    assert [key for key, _ in assumed.of_section("can.extended")] == [
+        "packet_timeout_ms"
+    ]
     assert not assumed.of_section("can.extended")
     assert len(assumed.others()) == len(facts.assumptions) - 2 and not assumed.others()
 
 
 @pytest.mark.parametrize(
     ("section", "key", "part"),
-    [("can", "source", "can"), ("msdos_time", "hour", "time"), ("index_file", "meta", "index")],
+    [
+        ("can", "source", "can"),
+        ("msdos_time", "hour", "time"),
+        ("index_file", "meta", "index"),
+    ],
 )
 def test_a_part_that_is_not_described_whole_is_not_there(section, key, part):
-    assert getattr(described()["cubeacp"], part) and not getattr(without(section, key), part)
+    assert getattr(described()["cubeacp"], part) and not getattr(
+        without(section, key), part
+    )
 
 
 def test_places_are_those_of_known_roles_and_the_fresh_frame_holds_the_constants():
     for link in described().values():
-        steps = [link.step(step) for step in (link.facts.files.steps.values() if link.facts.files else ())]
+        steps = [
+            link.step(step)
+            for step in (link.facts.files.steps.values() if link.facts.files else ())
+        ]
         assert all(role in ROLES for step in steps for role, _ in step.places)
         for step in steps:
             raw = codec.decode(link.facts.node, step.message, step.initial_frame)
-            assert {field.const or 0 for field in step.message.fields if not field.is_bytes} == {
+            assert {
+                field.const or 0 for field in step.message.fields if not field.is_bytes
+            } == {
                 raw[field.name] for field in step.message.fields if not field.is_bytes
             }
-        assert link.longest_step >= max((len(step.initial_frame) for step in steps), default=0)
+        assert link.longest_step >= max(
+            (len(step.initial_frame) for step in steps), default=0
+        )
 
 
 def test_literals_are_laid_out_without_counting_columns():
     flat = Brackets("Pair { ", (Item("1", "one: "), Item("2", "two: ")), " }", True)
-    whole = Brackets("Whole {", (Item(flat, "pair: ", ("why",)), Item(Brackets("[", (), "]"))), "}")
-    assert written(whole.within("Some(", ")"), lambda note, indent: f"{indent}// {note}") == (
-        "Some(Whole {\n    // why\n    pair: Pair { one: 1, two: 2 },\n    [],\n})"
+    whole = Brackets(
+        "Whole {", (Item(flat, "pair: ", ("why",)), Item(Brackets("[", (), "]"))), "}"
     )
+    assert written(
+        whole.within("Some(", ")"), lambda note, indent: f"{indent}// {note}"
+    ) == ("Some(Whole {\n    // why\n    pair: Pair { one: 1, two: 2 },\n    [],\n})")
     assert in_rows("abcde", 2) == ["a, b,", "c, d,", "e,"]
 
 
@@ -100,4 +130,8 @@ def test_no_line_of_a_comment_begins_a_list_a_heading_or_a_quotation():
         "a - b",
     ]
     assert commented(["word - word"], 8, "// ") == ["// word", "// \\-", "// word"]
-    assert commented(["one", "", "two"], 80, "/// ", is_spaced=True) == ["/// one", "///", "/// two"]
+    assert commented(["one", "", "two"], 80, "/// ", is_spaced=True) == [
+        "/// one",
+        "///",
+        "/// two",
+    ]

@@ -10,7 +10,13 @@ from hypothesis import strategies as st
 
 from icdgen import codec
 from icdgen.describe.bounds import allowed_ends, bounds
-from icdgen.describe.numbers import bit_range, byte_range, exact_text, factor_text, value_text
+from icdgen.describe.numbers import (
+    bit_range,
+    byte_range,
+    exact_text,
+    factor_text,
+    value_text,
+)
 from icdgen.describe.steps import steps
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.formula import Scale
@@ -35,7 +41,9 @@ def test_the_steps_give_what_the_reference_codec_gives(case):
     field, raw = case
     found = steps(field)
     assert found is not None and found.q > 0
-    assert found.physical(raw) == field.scale.physical(raw) == codec.physical(field, raw)
+    assert (
+        found.physical(raw) == field.scale.physical(raw) == codec.physical(field, raw)
+    )
     assert found.double(raw) == codec.physical_double(field, raw)
 
 
@@ -44,7 +52,9 @@ def test_where_they_are_called_exact_doubles_give_the_same(case):
     field, raw = case
     found = steps(field)
     if found.exact_in_doubles:
-        assert (float(raw) * float(found.p) + float(found.c)) / float(found.q) == found.double(raw)
+        assert (float(raw) * float(found.p) + float(found.c)) / float(
+            found.q
+        ) == found.double(raw)
 
 
 @given(scaled())
@@ -52,18 +62,26 @@ def test_no_value_lies_outside_the_span(case):
     field, raw = case
     low, high = steps(field).span
     assert low <= steps(field).physical(raw) <= high
-    assert {low, high} == {steps(field).physical(end) for end in (field.raw_min, field.raw_max)}
+    assert {low, high} == {
+        steps(field).physical(end) for end in (field.raw_min, field.raw_max)
+    }
 
 
 def test_what_no_double_holds_is_not_called_exact():
-    assert not steps(Scalar(name="wide", at=0, bits=64, type="uint", scale=Scale(Fraction(3)))).exact_in_doubles
-    assert steps(Scalar(name="small", at=0, bits=16, type="int", scale=Scale(Fraction(1, 100)))).exact_in_doubles
+    assert not steps(
+        Scalar(name="wide", at=0, bits=64, type="uint", scale=Scale(Fraction(3)))
+    ).exact_in_doubles
+    assert steps(
+        Scalar(name="small", at=0, bits=16, type="int", scale=Scale(Fraction(1, 100)))
+    ).exact_in_doubles
 
 
 LIMITS = Limits(min=Fraction(1), below=Fraction(3))
 
 
-@pytest.mark.parametrize(("value", "kept"), [(0.5, [False, True]), (1, [True, True]), (3, [True, False])])
+@pytest.mark.parametrize(
+    ("value", "kept"), [(0.5, [False, True]), (1, [True, True]), (3, [True, False])]
+)
 def test_each_limit_tells_whether_a_value_keeps_it(value, kept):
     found = bounds(LIMITS)
     assert [bound.key for bound in found] == ["min", "below"]
@@ -116,4 +134,9 @@ def test_places_and_values():
     assert (bit_range(3, 1), bit_range(4, 4), byte_range(0, 1), byte_range(2, 3)) == (
         "bit 3", "bits 4 to 7", "byte 0", "bytes 2 to 4",
     )  # fmt: skip
-    assert [value_text(raw) for raw in (-1, 9, 10, 0x5A)] == ["-1", "9", "10 (0xA)", "90 (0x5A)"]
+    assert [value_text(raw) for raw in (-1, 9, 10, 0x5A)] == [
+        "-1",
+        "9",
+        "10 (0xA)",
+        "90 (0x5A)",
+    ]

@@ -1,4 +1,6 @@
-"""Raw values that an encoder has to refuse because their type holds more bits than the field."""
+"""Raw values that an encoder has to refuse because their type holds more bits than the
+field.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +11,27 @@ from tests.conformance.icds import read
 from tests.conftest import ROOT
 
 
-@pytest.mark.parametrize("path", ["icd", "examples/devices/ublox", "tests/conformance/odd_icds"])
+@pytest.mark.parametrize(
+    "path", ["icd", "examples/devices/ublox", "tests/conformance/odd_icds"]
+)
 def test_an_encoder_checks_what_its_types_hold_and_the_fields_do_not(path):
     for node in describe(read(ROOT / path)).nodes:
         for message in node.composites:
             narrow = [
                 field
                 for field in message.fields
-                if field.model.type in ("uint", "int", "enum") and field.model.bits < field.storage.bits
+                if field.model.type in ("uint", "int", "enum")
+                and field.model.bits < field.storage.bits
             ]
-            checked = [field for member in message.members if member.needs_range_check for field in member.scalars]
-            assert {field.model.name for field in narrow} <= {field.model.name for field in checked}
-            assert message.range_check_bits == max((field.storage.bits for field in narrow), default=0), message.name
+            checked = [
+                field
+                for member in message.members
+                if member.needs_range_check
+                for field in member.scalars
+            ]
+            assert {field.model.name for field in narrow} <= {
+                field.model.name for field in checked
+            }
+            assert message.range_check_bits == max(
+                (field.storage.bits for field in narrow), default=0
+            ), message.name

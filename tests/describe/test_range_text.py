@@ -15,7 +15,10 @@ HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order
     [
         ("bits: 8, type: uint", "0 to 255"),
         ("bits: 8, type: uint, max: 60, unit: s", "0 to 60 s"),
-        ("bits: 16, type: int, formula: raw*0.1, min: -40, below: 125, unit: C", "-40 to below 125 C"),
+        (
+            "bits: 16, type: int, formula: raw*0.1, min: -40, below: 125, unit: C",
+            "-40 to below 125 C",
+        ),
         ("bits: 8, type: uint, above: 0", "above 0 to 255"),
         ("bits: 8, type: uint, points: [[0, 10], [255, 20]], max: 15", "10 to 15"),
         ("bits: 32, type: float, above: 0", "above 0"),
@@ -27,7 +30,9 @@ def test_the_range_is_that_of_type_and_limits(tmp_path, keys, text):
     file = tmp_path / "demo.yaml"
     length = 4 if "32" in keys else 2 if "16" in keys else 1
     field = f"{{at: 0, name: Value, {keys}}}"
-    file.write_text(f"{HEAD}  - {{name: Set, id: 1, kind: telecommand, length: {length}, fields: [{field}]}}\n")
+    file.write_text(
+        f"{HEAD}  - {{name: Set, id: 1, kind: telecommand, length: {length}, fields: [{field}]}}\n"
+    )
     loaded = load([file])
     assert [one.message for one in loaded.findings] == []
     assert range_text(loaded.icd.nodes[0].messages[0].fields[0]) == text

@@ -1,4 +1,6 @@
-"""``python -m tests.devices``: a table of what the format holds of other protocols, and of how the values agree."""
+"""``python -m tests.devices``: a table of what the format holds of other protocols, and
+of how the values agree.
+"""
 
 from __future__ import annotations
 
@@ -37,13 +39,22 @@ class Row:
 
     @property
     def unread(self) -> Counter[str]:
-        """What stands in the library's tables and is not counted, for the library itself reads no frame of it."""
-        return Counter(one.unread for node in self.nodes for one in node.definitions.messages if one.unread)
+        """What stands in the library's tables and is not counted, for the library
+        itself reads no frame of it.
+        """
+        return Counter(
+            one.unread
+            for node in self.nodes
+            for one in node.definitions.messages
+            if one.unread
+        )
 
     @property
     def raw_only(self) -> Counter[str]:
         """Of what is held, why some physical values are not."""
-        return Counter(one.raw_only for node in self.nodes for one in node.messages if one.raw_only)
+        return Counter(
+            one.raw_only for node in self.nodes for one in node.messages if one.raw_only
+        )
 
 
 def measure(
@@ -55,14 +66,18 @@ def measure(
     sample: int | None = None,
     nodes: int | None = None,
 ) -> Row:  # fmt: skip
-    """What the format holds of a protocol, and how it agrees with the library; of ``nodes`` nodes, ``sample`` messages of each.
+    """What the format holds of a protocol, and how it agrees with the library.
+
+    Of ``nodes`` nodes, ``sample`` messages of each.
 
     Raises `BuildError`, and `ImportError` where the library is not installed.
     """
     row, taken = Row(by_language={language: Agreement() for language in languages}), []
     for definitions in islice(PROTOCOLS[name].load(), nodes):
         if sample is not None and len(definitions.messages) > sample:
-            definitions.messages = random.Random(seed).sample(definitions.messages, sample)
+            definitions.messages = random.Random(seed).sample(
+                definitions.messages, sample
+            )
         one = held(definitions, folder)
         row.total += sum(not one.unread for one in definitions.messages)
         row.causes.update(one.causes.values())
@@ -82,28 +97,56 @@ def _compare(nodes: list[Held], row: Row, frames: int, seed: int, folder: Path) 
     files = [folder / f"{node.definitions.name}.yaml" for node in nodes]
     icd = load(files).icd
     for language, agreement in row.by_language.items():
-        testee = Testee(build(all_languages()[language], icd, folder / "build"), timeout=600)
+        testee = Testee(
+            build(all_languages()[language], icd, folder / "build"), timeout=600
+        )
         for node in nodes:
-            compare(node.definitions.name, node.messages, testee, frames, seed, agreement)
+            compare(
+                node.definitions.name, node.messages, testee, frames, seed, agreement
+            )
         testee.close()
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.devices", description=__doc__)
-    parser.add_argument(
-        "protocols", nargs="*", default=list(PROTOCOLS), help=f"of {', '.join(PROTOCOLS)} (default: all)"
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.devices", description=__doc__
     )
-    parser.add_argument("--lang", default="c,python", help="comma-separated, empty for none (default: %(default)s)")
-    parser.add_argument("--frames", type=int, default=20, help="of each message (default: %(default)s)")
-    parser.add_argument("--sample", type=int, help="so many messages of each node, at random (default: all)")
+    parser.add_argument(
+        "protocols",
+        nargs="*",
+        default=list(PROTOCOLS),
+        help=f"of {', '.join(PROTOCOLS)} (default: all)",
+    )
+    parser.add_argument(
+        "--lang",
+        default="c,python",
+        help="comma-separated, empty for none (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--frames", type=int, default=20, help="of each message (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--sample",
+        type=int,
+        help="so many messages of each node, at random (default: all)",
+    )
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args(arguments)
     languages = [name for name in options.lang.split(",") if name]
     differences = 0
     for name in options.protocols:
         with tempfile.TemporaryDirectory() as folder:
-            row = measure(name, languages, Path(folder), options.frames, options.seed, options.sample)
-        print(f"{name} ({PROTOCOLS[name].library}): {row.held} of {row.total} messages held")
+            row = measure(
+                name,
+                languages,
+                Path(folder),
+                options.frames,
+                options.seed,
+                options.sample,
+            )
+        print(
+            f"{name} ({PROTOCOLS[name].library}): {row.held} of {row.total} messages held"
+        )
         for cause, count in row.causes.most_common():
             print(f"    {count:5} {cause}")
         for cause, count in row.unread.most_common():
@@ -113,7 +156,11 @@ def main(arguments: list[str] | None = None) -> int:
         for language, one in row.by_language.items():
             differences += len(one.differences)
             print(f"  {language}: {one}")
-            print("".join(f"    {text}\n" for text in one.differences[:10]), end="", flush=True)
+            print(
+                "".join(f"    {text}\n" for text in one.differences[:10]),
+                end="",
+                flush=True,
+            )
     return 1 if differences else 0
 
 

@@ -1,4 +1,6 @@
-"""Which definitions the format holds: an ICD is written, and what `icdgen check` refuses goes, with the code that did it."""
+"""Which definitions the format holds: an ICD is written, and what `icdgen check`
+refuses goes, with the code that did it.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,12 @@ from icdgen.loading import load
 from tests.devices.definition import Definition, Definitions
 
 ROUNDS = 20  # a rule may speak only after another is satisfied
-NAMES = {"ICD054", "ICD070", "ICD071", "ICD072"}  # a name that cannot be an identifier, or not beside another
+NAMES = {
+    "ICD054",
+    "ICD070",
+    "ICD071",
+    "ICD072",
+}  # a name that cannot be an identifier, or not beside another
 
 
 @dataclass
@@ -54,13 +61,28 @@ def held(definitions: Definitions, folder: Path) -> Held:
     return Held(definitions, None, [], causes)
 
 
-def _imported(definitions: Definitions, tree: dict, file: Path, left: list[Definition], causes: dict[str, str]) -> Held:
-    """A node that `icdgen import` made: all that stands in it is held, and as `icdgen fmt` has it."""
+def _imported(
+    definitions: Definitions,
+    tree: dict,
+    file: Path,
+    left: list[Definition],
+    causes: dict[str, str],
+) -> Held:
+    """A node that `icdgen import` made: all that stands in it is held, and as `icdgen
+    fmt` has it.
+    """
     names, tree = {one.name for one in left}, dict(tree)
     tree["messages"] = [one for one in tree["messages"] if one["name"] in names]
     if "checksums" in tree.get("protocol", {}):
         checksums = {
-            name: {**one, "seeds": {owner: seed for owner, seed in one["seeds"].items() if owner in names}}
+            name: {
+                **one,
+                "seeds": {
+                    owner: seed
+                    for owner, seed in one["seeds"].items()
+                    if owner in names
+                },
+            }
             for name, one in tree["protocol"]["checksums"].items()
         }
         tree["protocol"] = {**tree["protocol"], "checksums": checksums}
@@ -73,7 +95,11 @@ def _imported(definitions: Definitions, tree: dict, file: Path, left: list[Defin
 
 def _quoted(file: Path, finding: Finding) -> str:
     """The name that a finding points at."""
-    assert finding.place is not None and finding.place.line is not None and finding.place.column is not None
+    assert (
+        finding.place is not None
+        and finding.place.line is not None
+        and finding.place.column is not None
+    )
     line = file.read_text(encoding="utf-8").split("\n")[finding.place.line - 1]
     try:
         return str(json.JSONDecoder().raw_decode(line[finding.place.column - 1 :])[0])
@@ -84,7 +110,10 @@ def _quoted(file: Path, finding: Finding) -> str:
 def _renamed(owner: Definition, name: str) -> bool:
     """Gives a field, member or message an identifier of its own; whether that is new."""
     members = [member for enum in owner.enums for member in enum["members"]]
-    fields = [*owner.fields, *(field for struct in owner.structs for field in struct["fields"])]
+    fields = [
+        *owner.fields,
+        *(field for struct in owner.structs for field in struct["fields"]),
+    ]
     for one, number in (
         *((f, f["at"]) for f in fields),
         *((struct, owner.id) for struct in owner.structs),
@@ -92,8 +121,16 @@ def _renamed(owner: Definition, name: str) -> bool:
         (owner.more, owner.id),
     ):
         if one.get("name", owner.name) == name and "identifier" not in one:
-            plain = name if re.match(r"[^A-Za-z0-9]*[A-Za-z]", name) and name.isascii() else f"item {name}"
-            one["identifier"] = f"{plain if plain.isascii() else 'item'} {number}".replace("-", "minus ")
+            plain = (
+                name
+                if re.match(r"[^A-Za-z0-9]*[A-Za-z]", name) and name.isascii()
+                else f"item {name}"
+            )
+            one["identifier"] = (
+                f"{plain if plain.isascii() else 'item'} {number}".replace(
+                    "-", "minus "
+                )
+            )
             return True
     return False
 
@@ -104,9 +141,17 @@ def _write(file: Path, node: dict, messages: list[Definition]) -> dict[int, Defi
     enums = [(json.dumps(enum), one) for one in messages for enum in one.enums]
     structs = [(json.dumps(struct), one) for one in messages for struct in one.structs]
     times = Counter((one.kind, one.id) for one in messages)
-    shared = {key: {"shares_id": True} if number > 1 else {} for key, number in times.items()}
-    trees = [(json.dumps(one.tree() | shared[one.kind, one.id]), one) for one in messages]
-    for group, after in ((enums, '], "structs": ['), (structs, '], "messages": ['), (trees, "]}")):
+    shared = {
+        key: {"shares_id": True} if number > 1 else {} for key, number in times.items()
+    }
+    trees = [
+        (json.dumps(one.tree() | shared[one.kind, one.id]), one) for one in messages
+    ]
+    for group, after in (
+        (enums, '], "structs": ['),
+        (structs, '], "messages": ['),
+        (trees, "]}"),
+    ):
         for number, (text, one) in enumerate(group):
             lines.append(text + ("," if number + 1 < len(group) else ""))
             owners[len(lines)] = one

@@ -1,4 +1,6 @@
-"""Frames of satellites that `satnogs-decoders` reads, as `icdgen import` reads their .ksy; what kaitaistruct runs judges."""
+"""Frames of satellites that `satnogs-decoders` reads, as `icdgen import` reads their
+.ksy; what kaitaistruct runs judges.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,7 @@ _BEHIND = 4096  # bytes of zeros
 
 def satellites() -> Iterator[Definitions]:
     """A node for each format."""
-    import kaitaistruct  # noqa: F401  (that it is there)
+    import kaitaistruct  # noqa: F401
 
     spec = find_spec("satnogsdecoders")
     if spec is None or not spec.submodule_search_locations:
@@ -61,13 +63,21 @@ def node(path: Path) -> Definitions | None:
             return None
     (tree,) = read.trees.values()
     judge = _judge(module)
-    missing = [one.message for one in read.definitions.import_findings if one.code == "IMP070"]
+    missing = [
+        one.message for one in read.definitions.import_findings if one.code == "IMP070"
+    ]
     orders = {key: tree["node"][key] for key in ("byte_order", "bit_order")}
-    structs = [{**one, "fields": [{**orders, **part} for part in one["fields"]]} for one in tree.get("structs", ())]
+    structs = [
+        {**one, "fields": [{**orders, **part} for part in one["fields"]]}
+        for one in tree.get("structs", ())
+    ]
     for one in tree["messages"]:  # of bytes of any number the judge may make something
         one["fields"] = [part for part in one["fields"] if "up_to" not in part]
     messages = [_definition(judge, one, orders, structs) for one in tree["messages"]]
-    messages += [Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[-1]) for said in missing]
+    messages += [
+        Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[-1])
+        for said in missing
+    ]
     return Definitions(tree["node"], messages, tree)
 
 
@@ -76,24 +86,46 @@ class _Unchecked(ast.NodeTransformer):
 
     def visit_If(self, node: ast.If) -> ast.AST | None:
         self.generic_visit(node)
-        return None if isinstance(node.body[0], ast.Raise) and "Validation" in ast.unparse(node.body[0]) else node
+        return (
+            None
+            if isinstance(node.body[0], ast.Raise)
+            and "Validation" in ast.unparse(node.body[0])
+            else node
+        )
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
         self.generic_visit(node)
-        return node.func.value if isinstance(node.func, ast.Attribute) and node.func.attr == "decode" else node
+        return (
+            node.func.value
+            if isinstance(node.func, ast.Attribute) and node.func.attr == "decode"
+            else node
+        )
 
 
 def _judge(module: ast.Module) -> Any:
     names: dict[str, Any] = {}
-    exec(compile(ast.fix_missing_locations(_Unchecked().visit(module)), "<compiled>", "exec"), names)
+    exec(
+        compile(
+            ast.fix_missing_locations(_Unchecked().visit(module)), "<compiled>", "exec"
+        ),
+        names,
+    )
     root = next(one.name for one in module.body if isinstance(one, ast.ClassDef))
     return names[root]
 
 
-def _definition(judge: Any, held: dict, orders: dict, structs: list[dict]) -> Definition:
+def _definition(
+    judge: Any, held: dict, orders: dict, structs: list[dict]
+) -> Definition:
     fields = [{**orders, **one} for one in held["fields"]]
     return Definition(
-        held["name"], held["id"], "telemetry", held["length"], fields, raw=_reader(judge, fields), structs=structs
+        held["name"],
+        held["id"],
+        "telemetry",
+        held["length"],
+        fields,
+        raw=_reader(judge, fields),
+        structs=structs,
     )
 
 
@@ -107,10 +139,17 @@ def _reader(judge: Any, fields: list[dict]) -> Callable[[bytes], Values]:
             raise NotSupported(str(error)) from None
         made: Values = {}
         for part in fields:
-            same = [path for path in found if " ".join(path[-1 - part["name"].count(" ") :]) == part["name"]]
+            same = [
+                path
+                for path in found
+                if " ".join(path[-1 - part["name"].count(" ") :]) == part["name"]
+            ]
             if len(same) == 1:
                 made |= _values(part, found[same[0]])
-            elif part["type" if "type" in part else "struct"] != "bytes" and " bit" not in part["name"]:
+            elif (
+                part["type" if "type" in part else "struct"] != "bytes"
+                and " bit" not in part["name"]
+            ):
                 raise NotSupported(f"there is no {part['name']}")
         return made
 
@@ -122,7 +161,11 @@ def _flat(owner: Any, path: tuple[str, ...]) -> dict[tuple[str, ...], Any]:
     for name, value in vars(owner).items():
         if name.startswith("_"):
             continue
-        found |= _flat(value, (*path, name)) if hasattr(value, "_io") else {(*path, name): value}
+        found |= (
+            _flat(value, (*path, name))
+            if hasattr(value, "_io")
+            else {(*path, name): value}
+        )
     return found
 
 
@@ -135,8 +178,16 @@ def _values(part: dict, value: Any) -> Values:
         }
     if isinstance(value, bytes) and part["type"] == "uint":
         return {part["name"]: int.from_bytes(value, "big")}
-    return {part["name"]: [_plain(one) for one in value] if isinstance(value, list) else _plain(value)}
+    return {
+        part["name"]: (
+            [_plain(one) for one in value] if isinstance(value, list) else _plain(value)
+        )
+    }
 
 
 def _plain(value: Any) -> Any:
-    return value.value if isinstance(value, Enum) else int(value) if isinstance(value, bool) else value
+    return (
+        value.value
+        if isinstance(value, Enum)
+        else int(value) if isinstance(value, bool) else value
+    )

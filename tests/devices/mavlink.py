@@ -26,7 +26,10 @@ def dialects_of_version_1() -> Iterator[Definitions]:
 
 def _all(version: str, reader: mavlink.MavLink2) -> Iterator[Definitions]:
     package = import_module(f"pymavlink.dialects.{version}")
-    files = sorted(Path(str(package.__path__[0])).glob("*.xml"), key=lambda path: (path.stem != FIRST, path.stem))
+    files = sorted(
+        Path(str(package.__path__[0])).glob("*.xml"),
+        key=lambda path: (path.stem != FIRST, path.stem),
+    )
     for file in files:
         dialect = import_module(f"{package.__name__}.{file.stem}")
         if not dialect.mavlink_map:
@@ -34,7 +37,10 @@ def _all(version: str, reader: mavlink.MavLink2) -> Iterator[Definitions]:
         (tree,) = run.read(file, reader).trees.values()
         tree["node"]["name"] = f"{reader.name}_{file.stem.lower()}"
         held = {one["name"]: one for one in tree["messages"]}
-        messages = [_definition(dialect, one, held.get(one.msgname)) for one in dialect.mavlink_map.values()]
+        messages = [
+            _definition(dialect, one, held.get(one.msgname))
+            for one in dialect.mavlink_map.values()
+        ]
         yield Definitions(tree["node"], messages, tree)
 
 
@@ -43,7 +49,12 @@ def _definition(dialect: Any, message: Any, held: dict | None) -> Definition:
     if held is None:
         return Definition(*head, [], cause="not imported")
     is_cut = "may_end_early" in held
-    return Definition(*head, held["fields"], raw=lambda data: _read(dialect, message, data), may_end_early=is_cut)
+    return Definition(
+        *head,
+        held["fields"],
+        raw=lambda data: _read(dialect, message, data),
+        may_end_early=is_cut,
+    )
 
 
 def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
@@ -51,10 +62,14 @@ def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
     if dialect.WIRE_PROTOCOL_VERSION == "1.0":
         start, head = b"\xfe", bytes([len(data), 0, 1, 1, message.id])
     else:
-        start, head = b"\xfd", bytes([len(data), 0, 0, 0, 1, 1]) + message.id.to_bytes(3, "little")
+        start, head = b"\xfd", bytes([len(data), 0, 0, 0, 1, 1]) + message.id.to_bytes(
+            3, "little"
+        )
     crc = dialect.x25crc(head + data)
     crc.accumulate(bytes([message.crc_extra]))
-    found = dialect.MAVLink(None).decode(bytearray(start + head + data + struct.pack("<H", crc.crc)))
+    found = dialect.MAVLink(None).decode(
+        bytearray(start + head + data + struct.pack("<H", crc.crc))
+    )
     names = message.ordered_fieldnames
     return {
         name: getattr(found, f"_{name}_raw", getattr(found, name)) for name in names

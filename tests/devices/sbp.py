@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, NotSupported, node, open_end, open_structs
+from tests.devices.definition import (
+    Definition,
+    Definitions,
+    NotSupported,
+    node,
+    open_end,
+    open_structs,
+)
 
 LONGEST = 255  # bytes of a payload
 
@@ -26,15 +33,31 @@ def _definition(id: int, message: Any) -> Definition:
     fields: list[dict] = []
     structs: list[dict] = []
     try:
-        end = _fields(parser.subcons, fields, 0, "", structs, message.__name__) if parser is not None else 0
+        end = (
+            _fields(parser.subcons, fields, 0, "", structs, message.__name__)
+            if parser is not None
+            else 0
+        )
     except NotSupported as error:
         return Definition(message.__name__, id, "telemetry", 0, [], cause=str(error))
     read = lambda data: _read(parser, data, fields[-1]) if fields else {}  # noqa: E731
-    return Definition(message.__name__, id, "telemetry", end // 8, fields, raw=read, structs=structs)
+    return Definition(
+        message.__name__, id, "telemetry", end // 8, fields, raw=read, structs=structs
+    )
 
 
-def _fields(parts: list[Any], fields: list[dict], at: int, before: str, structs: list[dict], owner: str) -> int:
-    """Appends the parts' fields, and the struct of what is open at the end; where they end. Raises `NotSupported`."""
+def _fields(
+    parts: list[Any],
+    fields: list[dict],
+    at: int,
+    before: str,
+    structs: list[dict],
+    owner: str,
+) -> int:
+    """Appends the parts' fields, and the struct of what is open at the end.
+
+    Where they end. Raises `NotSupported`.
+    """
     for part in parts:
         name, inner = before + part.name, part.subcon
         kind = type(inner).__name__
@@ -45,15 +68,32 @@ def _fields(parts: list[Any], fields: list[dict], at: int, before: str, structs:
             fields.append({"at": at, "bits": bits, "name": name, "type": type_})
             at += bits
         elif kind == "Bytes":
-            fields.append({"at": at, "bits": 8 * inner.length, "name": name, "type": "bytes"})
+            fields.append(
+                {"at": at, "bits": 8 * inner.length, "name": name, "type": "bytes"}
+            )
             at += 8 * inner.length
         elif kind == "Array" and type(inner.subcon).__name__ == "FormatField":
             type_, bits = LETTERS[inner.subcon.fmtstr[-1]]
-            fields.append({"at": at, "bits": bits, "name": name, "type": type_, "count": inner.count})
+            fields.append(
+                {
+                    "at": at,
+                    "bits": bits,
+                    "name": name,
+                    "type": type_,
+                    "count": inner.count,
+                }
+            )
             at += bits * inner.count
         elif kind == "Array":
             for number in range(inner.count):
-                at = _fields(inner.subcon.subcons, fields, at, f"{name} {number + 1} ", structs, owner)
+                at = _fields(
+                    inner.subcon.subcons,
+                    fields,
+                    at,
+                    f"{name} {number + 1} ",
+                    structs,
+                    owner,
+                )
         elif kind.startswith("Greedy"):
             if part is not parts[-1] or before:
                 raise NotSupported("more behind what goes up to the end")
@@ -63,7 +103,9 @@ def _fields(parts: list[Any], fields: list[dict], at: int, before: str, structs:
     return at
 
 
-def _end(name: str, kind: str, inner: Any, at: int, structs: list[dict], owner: str) -> dict:
+def _end(
+    name: str, kind: str, inner: Any, at: int, structs: list[dict], owner: str
+) -> dict:
     """What goes up to the end of a frame. Raises `NotSupported`."""
     left = LONGEST - at // 8
     if kind == "GreedyBytes":
@@ -94,6 +136,15 @@ def _flat(values: Any, before: str, found: dict[str, object], end: dict) -> None
             _flat(value, f"{whole} ", found, end)
         elif isinstance(value, list) and value and hasattr(value[0], "items"):
             for number, one in enumerate(value):
-                _flat(one, f"{whole}[{number}]." if whole == end["name"] else f"{whole} {number + 1} ", found, end)
+                _flat(
+                    one,
+                    (
+                        f"{whole}[{number}]."
+                        if whole == end["name"]
+                        else f"{whole} {number + 1} "
+                    ),
+                    found,
+                    end,
+                )
         else:
             found[whole] = list(value) if isinstance(value, list) else value

@@ -1,4 +1,7 @@
-"""Models of SunSpec (Modbus) as `icdgen import` reads those that pysunspec2 ships; pysunspec2 judges."""
+"""Models of SunSpec (Modbus) as `icdgen import` reads those that pysunspec2 ships.
+
+Pysunspec2 judges.
+"""
 
 from __future__ import annotations
 
@@ -29,16 +32,23 @@ def trees() -> list[dict]:
 
     folder = importlib.resources.files(sunspec2) / "models" / "json"
     assert isinstance(folder, Path)
-    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("model_*.json"))]
+    return [
+        json.loads(path.read_text(encoding="utf-8"))
+        for path in sorted(folder.glob("model_*.json"))
+    ]
 
 
 def with_fixed_count(tree: dict, counter: str, count: int) -> dict:
-    """A copy of a model for a device that has always so many of the groups that a point counts."""
+    """A copy of a model for a device that has always so many of the groups that a point
+    counts.
+    """
     tree = copy.deepcopy(tree)
     for group in _groups(tree["group"]):
         if group.get("count") == counter:
             group["count"] = count
-    next(point for point in tree["group"]["points"] if point["name"] == counter)["value"] = count
+    next(point for point in tree["group"]["points"] if point["name"] == counter)[
+        "value"
+    ] = count
     return tree
 
 
@@ -49,21 +59,41 @@ def imported(trees: list[dict]) -> Definitions:
         file.write_text(json.dumps(trees), encoding="utf-8")
         read = run.read(file, SunSpec())
     (tree,) = read.trees.values()
-    structs = [{**one, "fields": [{**ORDERS, **part} for part in one["fields"]]} for one in tree["structs"]]
+    structs = [
+        {**one, "fields": [{**ORDERS, **part} for part in one["fields"]]}
+        for one in tree["structs"]
+    ]
     held = {one["id"]: one for one in tree["messages"]}
     why = {
         one.message.split("`")[1]: one.message.split(": ", 1)[1]
         for one in read.definitions.import_findings
         if one.severity == "error"
     }
-    return Definitions(tree["node"], [_definition(one, held.get(one["id"]), structs, why) for one in trees], tree)
+    return Definitions(
+        tree["node"],
+        [_definition(one, held.get(one["id"]), structs, why) for one in trees],
+        tree,
+    )
 
 
-def _definition(tree: dict, held: dict | None, structs: list[dict], why: dict[str, str]) -> Definition:
+def _definition(
+    tree: dict, held: dict | None, structs: list[dict], why: dict[str, str]
+) -> Definition:
     if held is None:
-        return Definition(f"Model {tree['id']}", tree["id"], "telemetry", 0, [], cause=why[tree["group"]["name"]])
+        return Definition(
+            f"Model {tree['id']}",
+            tree["id"],
+            "telemetry",
+            0,
+            [],
+            cause=why[tree["group"]["name"]],
+        )
     fields = [{**ORDERS, **one} for one in held["fields"]]
-    scaled = any(isinstance(point.get("sf"), str) for one in _groups(tree["group"]) for point in one["points"])
+    scaled = any(
+        isinstance(point.get("sf"), str)
+        for one in _groups(tree["group"])
+        for point in one["points"]
+    )
     return Definition(
         held["name"], held["id"], "telemetry", held["length"], fields, structs=structs,
         raw=lambda data: _read(tree, data, False),
@@ -80,7 +110,10 @@ def _groups(group: dict) -> Iterator[dict]:
 
 
 def _read(tree: dict, data: bytes, scaled: bool) -> dict[str, object]:
-    """What pysunspec2 makes of the block, raw or those that have a factor of their own; None is 'not implemented'."""
+    """What pysunspec2 makes of the block, raw or those that have a factor of their own.
+
+    None is 'not implemented'.
+    """
     from sunspec2.device import Model
 
     model: Any = Model(model_id=tree["id"], model_len=len(data) // 2 - 2, data=data)
@@ -90,7 +123,13 @@ def _read(tree: dict, data: bytes, scaled: bool) -> dict[str, object]:
 def _values(group: Any, before: str, scaled: bool) -> Iterator[tuple[str, object]]:
     for name, point in group.points.items():
         kind = point.pdef["type"]
-        if name in NOT_COMPARED or kind in ("string", "pad", "ipaddr", "ipv6addr", "eui48"):
+        if name in NOT_COMPARED or kind in (
+            "string",
+            "pad",
+            "ipaddr",
+            "ipv6addr",
+            "eui48",
+        ):
             continue
         if not scaled:
             yield before + name, point.value

@@ -1,4 +1,6 @@
-"""Two requests at once on a framed link, one of them lost: C and Rust as docs/reference/wire-framing.md shows them."""
+"""Two requests at once on a framed link, one of them lost: C and Rust as
+docs/reference/wire-framing.md shows them.
+"""
 
 from __future__ import annotations
 
@@ -160,7 +162,9 @@ def shown(language: str, first: str, last: str) -> str:
 
 def test_c_asks_and_is_answered(tmp_path):
     folder = c.generate(ICD, tmp_path)
-    body = C_BEGIN + shown("c", "receiver_client_t receiver", "receiver_send_set_message_rate")
+    body = C_BEGIN + shown(
+        "c", "receiver_client_t receiver", "receiver_send_set_message_rate"
+    )
     (tmp_path / "ask.c").write_text(C % body)
     options = ("-std=c99", *c.WARNINGS, *c.SANITIZERS, f"-I{folder}")
     program = c.compile(tmp_path / "ask.c", *options, output=tmp_path / "ask")
@@ -170,6 +174,10 @@ def test_c_asks_and_is_answered(tmp_path):
 
 def test_rust_asks_and_is_answered(tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
-    (tmp_path / "ask.rs").write_text(RUST % shown("rust", "stream::Client::<", "client.request::<"))
-    program = tools.program(tmp_path / "ask.rs", tools.library(crate, "0"), tmp_path / "ask")
+    (tmp_path / "ask.rs").write_text(
+        RUST % shown("rust", "stream::Client::<", "client.request::<")
+    )
+    program = tools.program(
+        tmp_path / "ask.rs", tools.library(crate, "0"), tmp_path / "ask"
+    )
     assert run(program).splitlines() == EXPECTED

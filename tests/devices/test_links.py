@@ -1,6 +1,9 @@
-"""What C, Python and Rust put on a link, the protocol's own library takes; and what that sends, they find.
+"""What C, Python and Rust put on a link, the protocol's own library takes.
 
-The links are those of `examples/links`. Each language is asked by pipe, as in the conformance run.
+And what that sends, they find.
+
+The links are those of `examples/links`. Each language is asked by pipe, as in the
+conformance run.
 """
 
 from __future__ import annotations
@@ -27,7 +30,10 @@ Sent = tuple[int, bytes]  # id and data
 
 
 class Peer(NamedTuple):
-    """A protocol's own library. ``made`` are a message's bytes as it sends them, ``read`` what it finds in a stream."""
+    """A protocol's own library.
+
+    ``made`` are a message's bytes as it sends them, ``read`` what it finds in a stream.
+    """
 
     node: str
     made: Callable[[str, int, bytes, int], bytes]
@@ -38,15 +44,23 @@ class Peer(NamedTuple):
 def ubx_made(direction: str, id: int, data: bytes, _: int) -> bytes:
     import pyubx2
 
-    mode = pyubx2.GET if direction == "telemetry" else pyubx2.SET if data else pyubx2.POLL
-    return bytes(pyubx2.UBXMessage(bytes([id >> 8]), bytes([id & 0xFF]), mode, payload=data).serialize())
+    mode = (
+        pyubx2.GET if direction == "telemetry" else pyubx2.SET if data else pyubx2.POLL
+    )
+    return bytes(
+        pyubx2.UBXMessage(
+            bytes([id >> 8]), bytes([id & 0xFF]), mode, payload=data
+        ).serialize()
+    )
 
 
 def ubx_read(direction: str, line: bytes) -> list[Sent]:
     import pyubx2
 
     mode = pyubx2.GET if direction == "telemetry" else pyubx2.SETPOLL
-    reader = pyubx2.UBXReader(io.BytesIO(line), protfilter=pyubx2.UBX_PROTOCOL, msgmode=mode, quitonerror=2)
+    reader = pyubx2.UBXReader(
+        io.BytesIO(line), protfilter=pyubx2.UBX_PROTOCOL, msgmode=mode, quitonerror=2
+    )
     found = []
     for raw, one in reader:
         assert one is not None
@@ -65,7 +79,9 @@ def sbp_read(direction: str, line: bytes) -> list[Sent]:
     from sbp.msg import SBP
 
     stream = io.BytesIO(line)
-    framer = Framer(lambda size: stream.read(size) or None, None, dispatcher=lambda message: message)
+    framer = Framer(
+        lambda size: stream.read(size) or None, None, dispatcher=lambda message: message
+    )
     found: list[Sent] = []
     while stream.tell() < len(line):
         message = framer._receive()
@@ -79,7 +95,9 @@ def _dialect(version: int) -> Any:
     return import_module(f"pymavlink.dialects.v{version}0.common")
 
 
-def mavlink_made(direction: str, id: int, data: bytes, number: int, version: int = 2) -> bytes:
+def mavlink_made(
+    direction: str, id: int, data: bytes, number: int, version: int = 2
+) -> bytes:
     common = _dialect(version)
     kind = common.mavlink_map[id]
     values = dict(zip(kind.ordered_fieldnames, kind.unpacker.unpack(data), strict=True))
@@ -120,7 +138,9 @@ def ccsds_read(direction: str, line: bytes) -> list[Sent]:
     found, at = [], 0
     while at < len(line):
         header = SpHeader.unpack(line[at:])
-        assert header.packet_type == (PacketType.TC if direction == "telecommand" else PacketType.TM)
+        assert header.packet_type == (
+            PacketType.TC if direction == "telecommand" else PacketType.TM
+        )
         found.append((header.apid, line[at + 6 : at + header.packet_len]))
         at += header.packet_len
     return found
@@ -149,7 +169,11 @@ def kiss_made(direction: str, id: int, data: bytes, _: int) -> bytes:
 
 
 def kiss_read(direction: str, line: bytes) -> list[Sent]:
-    return [(data[0], data[1:]) for command, data in slip_read(direction, line) if command == 0]
+    return [
+        (data[0], data[1:])
+        for command, data in slip_read(direction, line)
+        if command == 0
+    ]
 
 
 def _crc32c(data: bytes) -> int:
@@ -163,7 +187,9 @@ def _crc32c(data: bytes) -> int:
 
 def _csp_head(direction: str, id: int) -> bytes:
     source, destination = (10, 2) if direction == "telecommand" else (2, 10)
-    return (2 << 30 | source << 25 | destination << 20 | id << 14 | 33 << 8 | 1).to_bytes(4, "big")
+    return (
+        2 << 30 | source << 25 | destination << 20 | id << 14 | 33 << 8 | 1
+    ).to_bytes(4, "big")
 
 
 def csp_made(direction: str, id: int, data: bytes, _: int) -> bytes:
@@ -192,7 +218,10 @@ def _fcs(data: bytes) -> bytes:
 
 def hdlc_made(direction: str, id: int, data: bytes, _: int) -> bytes:
     frame = b"\xff\x03" + id.to_bytes(2, "big") + data
-    escaped = b"".join(bytes([0x7D, one ^ 0x20]) if one in b"\x7d\x7e" else bytes([one]) for one in frame + _fcs(frame))
+    escaped = b"".join(
+        bytes([0x7D, one ^ 0x20]) if one in b"\x7d\x7e" else bytes([one])
+        for one in frame + _fcs(frame)
+    )
     return b"\x7e" + escaped + b"\x7e"
 
 
@@ -238,7 +267,13 @@ PEERS = {
 }
 
 
-ENDS = {"logger": b"\xc0", "tnc": b"\xc0", "power": b"\xc0", "modem": b"\x7e", "probe": b"\0"}
+ENDS = {
+    "logger": b"\xc0",
+    "tnc": b"\xc0",
+    "power": b"\xc0",
+    "modem": b"\x7e",
+    "probe": b"\0",
+}
 """What ends a message on links that are not delimited by a length."""
 
 
@@ -249,7 +284,9 @@ def links():
 
 @pytest.fixture(scope="module", params=["python", "c", "rust"])
 def testee(request, links, tmp_path_factory) -> Iterator[Testee]:
-    one = Testee(build(all_languages()[request.param], links, tmp_path_factory.mktemp("links")))
+    one = Testee(
+        build(all_languages()[request.param], links, tmp_path_factory.mktemp("links"))
+    )
     yield one
     one.close()
 
@@ -262,22 +299,35 @@ def answer(testee: Testee, **request: object) -> dict[str, Any]:
 
 
 def received(events: list[dict[str, Any]], sent: list[Sent]) -> list[Sent]:
-    """What came, with the zeros that MAVLink 2 cuts off: whoever decodes the message fills them in."""
+    """What came, with the zeros that MAVLink 2 cuts off: whoever decodes the message
+    fills them in.
+    """
     sizes = [len(data) for _, data in sent]
     return [
-        (one["id"], bytes.fromhex(one["bytes"]).ljust(size, b"\0")) for one, size in zip(events, sizes, strict=True)
+        (one["id"], bytes.fromhex(one["bytes"]).ljust(size, b"\0"))
+        for one, size in zip(events, sizes, strict=True)
     ]
 
 
 def data_of(message: Any, source: random.Random) -> bytes:
-    """Data that a library takes too: a number that is not one does not survive pymavlink."""
+    """Data that a library takes too: a number that is not one does not survive
+    pymavlink.
+    """
     if any(field.type == "float" for field in message.fields):
-        return b"".join(source.randrange(1 << 30).to_bytes(4, "little") for _ in range(message.length // 4))
+        return b"".join(
+            source.randrange(1 << 30).to_bytes(4, "little")
+            for _ in range(message.length // 4)
+        )
     return bytes(source.choices(range(256), weights=[40, *[1] * 255], k=message.length))
 
 
-def messages_of(links: Any, node: str, direction: str, source: random.Random) -> list[Sent]:
-    known = {getattr(one, f"{direction}_id"): one for one in links.messages_of(links.node(node))}
+def messages_of(
+    links: Any, node: str, direction: str, source: random.Random
+) -> list[Sent]:
+    known = {
+        getattr(one, f"{direction}_id"): one
+        for one in links.messages_of(links.node(node))
+    }
     ids = sorted(id for id in known if id is not None)
     return [(id, data_of(known[id], source)) for id in source.choices(ids, k=MESSAGES)]
 
@@ -290,7 +340,13 @@ def test_the_library_takes_what_is_sent(name, direction, testee, links):
     line = b""
     for number, (id, data) in enumerate(sent):
         values = {peer.sequence: number} if peer.sequence else {}
-        about = {"node": peer.node, "direction": direction, "id": id, "bytes": data.hex(), "values": values}
+        about = {
+            "node": peer.node,
+            "direction": direction,
+            "id": id,
+            "bytes": data.hex(),
+            "values": values,
+        }
         made = bytes.fromhex(answer(testee, op="stream_encode", **about)["bytes"])
         assert made.strip(b"\xc0") == peer.made(direction, id, data, number).strip(
             b"\xc0"
@@ -301,38 +357,73 @@ def test_the_library_takes_what_is_sent(name, direction, testee, links):
 
 @pytest.mark.parametrize("direction", ["telemetry", "telecommand"])
 @pytest.mark.parametrize("name", PEERS)
-def test_what_the_library_sends_is_found_after_noise_and_in_pieces(name, direction, testee, links):
+def test_what_the_library_sends_is_found_after_noise_and_in_pieces(
+    name, direction, testee, links
+):
     peer, source = PEERS[name], random.Random(name)
     sent = messages_of(links, peer.node, direction, source)
-    line = b"".join(peer.made(direction, id, data, number) for number, (id, data) in enumerate(sent))
-    noise = source.randbytes(50) + ENDS.get(peer.node, b"") if peer.node != "payload" else b"\xff" * 50
+    line = b"".join(
+        peer.made(direction, id, data, number) for number, (id, data) in enumerate(sent)
+    )
+    noise = (
+        source.randbytes(50) + ENDS.get(peer.node, b"")
+        if peer.node != "payload"
+        else b"\xff" * 50
+    )
     if ENDS.get(peer.node) == b"\xc0":
         noise = noise.replace(b"\xdb", b"") + b"\xc0"
     cuts = sorted(source.sample(range(len(noise + line)), 30))
-    pieces = [(noise + line)[a:b].hex() for a, b in zip([0, *cuts], [*cuts, None], strict=True)]
-    found = answer(testee, op="stream_events", node=peer.node, direction=direction, chunks=pieces)
+    pieces = [
+        (noise + line)[a:b].hex()
+        for a, b in zip([0, *cuts], [*cuts, None], strict=True)
+    ]
+    found = answer(
+        testee, op="stream_events", node=peer.node, direction=direction, chunks=pieces
+    )
     events = [one for one in found["events"] if one["event"] == "message"]
     assert received(events, sent) == sent
     if peer.sequence == "sequence" and peer.node != "payload":
-        assert [one["sequence"] for one in events] == [number & 0xFF for number in range(len(sent))]
+        assert [one["sequence"] for one in events] == [
+            number & 0xFF for number in range(len(sent))
+        ]
         assert not [one for one in found["events"] if one["event"] == "gap"]
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in PEERS if "space" not in name and "SLIP" not in name and "KISS, s" not in name]
+    "name",
+    [
+        name
+        for name in PEERS
+        if "space" not in name and "SLIP" not in name and "KISS, s" not in name
+    ],
 )
-def test_a_message_that_was_damaged_on_the_way_is_told_of_and_the_others_are_found(name, testee, links):
+def test_a_message_that_was_damaged_on_the_way_is_told_of_and_the_others_are_found(
+    name, testee, links
+):
     peer, source = PEERS[name], random.Random(name)
     sent = messages_of(links, peer.node, "telemetry", source)[:9]
-    lines = [peer.made("telemetry", id, data, number) for number, (id, data) in enumerate(sent)]
+    lines = [
+        peer.made("telemetry", id, data, number)
+        for number, (id, data) in enumerate(sent)
+    ]
     damaged = bytearray(lines[4])
-    damaged[-3 if peer.node != "probe" else -4] ^= 0x01 if damaged[-3 if peer.node != "probe" else -4] > 1 else 0x02
+    damaged[-3 if peer.node != "probe" else -4] ^= (
+        0x01 if damaged[-3 if peer.node != "probe" else -4] > 1 else 0x02
+    )
     lines[4] = bytes(damaged)
-    found = answer(testee, op="stream_events", node=peer.node, direction="telemetry", chunks=[b"".join(lines).hex()])
+    found = answer(
+        testee,
+        op="stream_events",
+        node=peer.node,
+        direction="telemetry",
+        chunks=[b"".join(lines).hex()],
+    )
     events = [one for one in found["events"] if one["event"] == "message"]
     taken = [*sent[:4], *sent[5:]]
     assert received(events, taken) == taken
     dropped = {one["event"] for one in found["events"]} - {"message", "gap"}
     assert dropped and dropped <= {"checksum", "length", "unknown_id", "framing"}
     if peer.sequence:
-        assert [one["missing"] for one in found["events"] if one["event"] == "gap"] == [1]
+        assert [one["missing"] for one in found["events"] if one["event"] == "gap"] == [
+            1
+        ]

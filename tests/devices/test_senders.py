@@ -1,4 +1,6 @@
-"""What is sent one after the other is counted, and has the values that were chosen: the same bytes in C, Rust and Python."""
+"""What is sent one after the other is counted, and has the values that were chosen: the
+same bytes in C, Rust and Python.
+"""
 
 from __future__ import annotations
 
@@ -109,12 +111,19 @@ def expected() -> list[str]:
     from icdgen_runtime.wire.sender import Sender  # which `icdgen` makes importable
 
     def sender(node: str, **values: int) -> Sender:
-        return Sender(link_of(ICD, facts.of(ICD, ICD.node(node))), "telecommand", values)
+        return Sender(
+            link_of(ICD, facts.of(ICD, ICD.node(node))), "telecommand", values
+        )
 
     mode, exposure = sender("autopilot", source=9, sequence=254), sender("payload")
     lines = [mode.encode(11, bytes([0, 0, 0, 0, 1, 0])) for _ in range(3)]
-    assert [line[4] for line in lines] == [254, 255, 0] and {line[5] for line in lines} == {9}
-    return [line.hex() for line in (*lines, *(exposure.encode(0x64, bytes([0, 7])) for _ in range(2)))]
+    assert [line[4] for line in lines] == [254, 255, 0] and {
+        line[5] for line in lines
+    } == {9}
+    return [
+        line.hex()
+        for line in (*lines, *(exposure.encode(0x64, bytes([0, 7])) for _ in range(2)))
+    ]
 
 
 def test_c_counts_what_it_sends(expected, tmp_path):
@@ -129,5 +138,7 @@ def test_c_counts_what_it_sends(expected, tmp_path):
 def test_rust_counts_what_it_sends(expected, tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
     (tmp_path / "send.rs").write_text(RUST)
-    program = tools.program(tmp_path / "send.rs", tools.library(crate, "0"), tmp_path / "send")
+    program = tools.program(
+        tmp_path / "send.rs", tools.library(crate, "0"), tmp_path / "send"
+    )
     assert run(program).split() == expected

@@ -1,4 +1,6 @@
-"""The devices of examples/devices: generated code reads random frames as the libraries of others do, or as a data sheet says."""
+"""The devices of examples/devices: generated code reads random frames as the libraries
+of others do, or as a data sheet says.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,17 @@ from tests.devices.agree import Agreement, compare
 from tests.devices.definition import Definition, NotSupported, Values
 from tests.devices.mavlink import _read as mavlink_reads
 
-DEVICES = {path.stem: path for path in sorted((ROOT / "examples" / "devices").glob("*/*.yaml"))}
-LANGUAGES = ["python", *(name for name, tool in (("c", "gcc"), ("rust-debug", "cargo")) if shutil.which(tool))]
+DEVICES = {
+    path.stem: path for path in sorted((ROOT / "examples" / "devices").glob("*/*.yaml"))
+}
+LANGUAGES = [
+    "python",
+    *(
+        name
+        for name, tool in (("c", "gcc"), ("rust-debug", "cargo"))
+        if shutil.which(tool)
+    ),
+]
 FRAMES = 40
 
 
@@ -41,16 +52,35 @@ def devices() -> Icd:
 
 
 @pytest.fixture(scope="module", params=LANGUAGES)
-def testee(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Testee]:
-    """What answers for all devices, built at once with the strictest flags of the conformance run."""
-    found = Testee(build(all_languages()[request.param], devices(), tmp_path_factory.mktemp("devices")), timeout=300)
+def testee(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Testee]:
+    """What answers for all devices, built at once with the strictest flags of the
+    conformance run.
+    """
+    found = Testee(
+        build(
+            all_languages()[request.param],
+            devices(),
+            tmp_path_factory.mktemp("devices"),
+        ),
+        timeout=300,
+    )
     yield found
     found.close()
 
 
 def decoded(testee: Testee, node: str, kind: str, id: int, data: bytes) -> Values:
-    """The raw values of a frame, which is what encoding gives again but for reserved bits."""
-    request = {"op": "decode", "node": node, "kind": kind, "id": id, "bytes": data.hex()}
+    """The raw values of a frame, which is what encoding gives again but for reserved
+    bits.
+    """
+    request = {
+        "op": "decode",
+        "node": node,
+        "kind": kind,
+        "id": id,
+        "bytes": data.hex(),
+    }
     answer = json.loads(testee.ask([json.dumps(request).encode()])[0] or b"{}")
     assert answer["ok"], answer
     return answer["raw"]  # type: ignore[no-any-return]
@@ -67,25 +97,51 @@ def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Defini
     """The messages of one length each of an ICD, with the library's reading of them."""
     found = []
     for message in devices().node(node).messages:
-        fields = [plain(one.source) for one in places_in(message.layout) if not one.is_read_only]
+        fields = [
+            plain(one.source)
+            for one in places_in(message.layout)
+            if not one.is_read_only
+        ]
         scaled = {one["name"] for one in fields if "formula" in one}
 
         def read(data: bytes, name: str = message.name) -> Values:
             return reads(name, data)
 
-        def raw(data: bytes, read: Callable[[bytes], Values] = read, scaled: set[str] = scaled) -> Values:
-            return {key: value for key, value in read(data).items() if key not in scaled}
+        def raw(
+            data: bytes,
+            read: Callable[[bytes], Values] = read,
+            scaled: set[str] = scaled,
+        ) -> Values:
+            return {
+                key: value for key, value in read(data).items() if key not in scaled
+            }
 
-        def physical(data: bytes, read: Callable[[bytes], Values] = read, scaled: set[str] = scaled) -> Values:
+        def physical(
+            data: bytes,
+            read: Callable[[bytes], Values] = read,
+            scaled: set[str] = scaled,
+        ) -> Values:
             return {key: value for key, value in read(data).items() if key in scaled}
 
         if not message.layout.parts:
             id = message.ids[0]
-            found.append(Definition(message.name, id, message.kind, message.length, fields, raw=raw, physical=physical))
+            found.append(
+                Definition(
+                    message.name,
+                    id,
+                    message.kind,
+                    message.length,
+                    fields,
+                    raw=raw,
+                    physical=physical,
+                )
+            )
     return found
 
 
-def agreed(node: str, testee: Testee, reads: Callable[[str, bytes], Values]) -> Agreement:
+def agreed(
+    node: str, testee: Testee, reads: Callable[[str, bytes], Values]
+) -> Agreement:
     agreement = Agreement()
     compare(node, definitions(node, reads), testee, FRAMES, 1, agreement)
     assert agreement.differences == []
@@ -100,23 +156,39 @@ FACTORS = {"lat": 1e7, "lon": 1e7, "alt": 1e3, "eph": 100, "epv": 100, "vel": 10
 
 
 PARAMETERS = {
-    "COMMAND_LONG, NAV_TAKEOFF": {"pitch": 1, "yaw": 4, "latitude": 5, "longitude": 6, "altitude": 7},
+    "COMMAND_LONG, NAV_TAKEOFF": {
+        "pitch": 1,
+        "yaw": 4,
+        "latitude": 5,
+        "longitude": 6,
+        "altitude": 7,
+    },
     "COMMAND_LONG, DO_SET_MODE": {"mode": 1, "custom_mode": 2, "custom_submode": 3},
     "COMMAND_LONG, COMPONENT_ARM_DISARM": {"arm": 1, "force": 2},
-    "COMMAND_LONG, SET_MESSAGE_INTERVAL": {"message_id": 1, "interval": 2, "response_target": 7},
+    "COMMAND_LONG, SET_MESSAGE_INTERVAL": {
+        "message_id": 1,
+        "interval": 2,
+        "response_target": 7,
+    },
 }
 
 
 def mavlink_values(name: str, data: bytes) -> Values:
     from pymavlink.dialects.v20 import common
 
-    message = next(one for one in common.mavlink_map.values() if one.msgname == name.partition(",")[0])
+    message = next(
+        one
+        for one in common.mavlink_map.values()
+        if one.msgname == name.partition(",")[0]
+    )
     found = mavlink_reads(common, message, data)
     if name == "GPS_RAW_INT":
         return {key: value / FACTORS[key] if key in FACTORS else value for key, value in found.items()}  # type: ignore[operator]
     if name == "COMMAND_LONG":
         found["param"] = [found[f"param{number}"] for number in range(1, 8)]
-    return found | {key: found[f"param{number}"] for key, number in PARAMETERS.get(name, {}).items()}
+    return found | {
+        key: found[f"param{number}"] for key, number in PARAMETERS.get(name, {}).items()
+    }
 
 
 def test_mavlink_is_read_as_by_pymavlink(testee: Testee) -> None:
@@ -127,7 +199,9 @@ def test_mavlink_is_read_as_by_pymavlink(testee: Testee) -> None:
 def test_the_commands_of_mavlink_have_the_numbers_of_pymavlink() -> None:
     from pymavlink.dialects.v20 import common
 
-    commands = [one for one in devices().node("mavlink").messages if one.name in PARAMETERS]
+    commands = [
+        one for one in devices().node("mavlink").messages if one.name in PARAMETERS
+    ]
     assert len(commands) == len(PARAMETERS) == 4
     for one in commands:
         number = next(field.const for field in one.fields if field.name == "command")
@@ -136,7 +210,10 @@ def test_the_commands_of_mavlink_have_the_numbers_of_pymavlink() -> None:
 
 def test_mavlink_frames_end_before_their_zeros(testee: Testee) -> None:
     assert decoded(testee, "mavlink", "telemetry", 30, b"\1")["time_boot_ms"] == 1
-    assert decoded(testee, "mavlink", "telemetry", 253, b"\4low")["text"] == b"low".ljust(50, b"\0").hex()
+    assert (
+        decoded(testee, "mavlink", "telemetry", 253, b"\4low")["text"]
+        == b"low".ljust(50, b"\0").hex()
+    )
 
 
 # u-blox, by pyubx2
@@ -151,17 +228,33 @@ def ubx_message(name: str, data: bytes) -> Values:
     found = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
     if found.identity != name:
         raise NotSupported(found.identity)
-    return {key: value for key, value in found.__dict__.items() if not key.startswith("_")}
+    return {
+        key: value for key, value in found.__dict__.items() if not key.startswith("_")
+    }
 
 
 def ubx_values(name: str, data: bytes) -> Values:
     found = ubx_message(name, data)
     if name == "MON-HW":
         found["VP"] = [_number(found[f"VP_{number:02}"]) for number in range(1, 18)]
-        found |= {key: _number(value) for key, value in found.items() if isinstance(value, bytes)}
+        found |= {
+            key: _number(value)
+            for key, value in found.items()
+            if isinstance(value, bytes)
+        }
     if name == "NAV-HPPOSLLH":  # it gives coarse and fine parts together
-        places = {"lon": (8, "i", 1e7), "lat": (12, "i", 1e7), "height": (16, "i", 0), "hMSL": (20, "i", 0)}
-        places |= {"lonHp": (24, "b", 1e9), "latHp": (25, "b", 1e9), "heightHp": (26, "b", 10), "hMSLHp": (27, "b", 10)}
+        places = {
+            "lon": (8, "i", 1e7),
+            "lat": (12, "i", 1e7),
+            "height": (16, "i", 0),
+            "hMSL": (20, "i", 0),
+        }
+        places |= {
+            "lonHp": (24, "b", 1e9),
+            "latHp": (25, "b", 1e9),
+            "heightHp": (26, "b", 10),
+            "hMSLHp": (27, "b", 10),
+        }
         for key, (at, form, per) in places.items():
             (raw,) = struct.unpack_from(f"<{form}", data, at)
             found[key] = raw / per if per else raw
@@ -187,12 +280,16 @@ def test_positions_of_high_precision_are_derived_as_by_pyubx2(testee: Testee) ->
     }
     for _ in range(FRAMES):
         data = chance.randbytes(36)
-        theirs, ours = ubx_message("NAV-HPPOSLLH", data), decoded(testee, "ublox", "telemetry", 0x0114, data)
+        theirs, ours = ubx_message("NAV-HPPOSLLH", data), decoded(
+            testee, "ublox", "telemetry", 0x0114, data
+        )
         for name, (key, digits) in names.items():
             assert round(_double(ours[name]), digits) == round(theirs[key], digits)  # type: ignore[call-overload]
 
 
-def test_the_time_of_a_receiver_is_derived_from_weeks_and_what_is_more(testee: Testee) -> None:
+def test_the_time_of_a_receiver_is_derived_from_weeks_and_what_is_more(
+    testee: Testee,
+) -> None:
     data = struct.pack("<IihbBI", 302400000, -250000000, 2300, 18, 7, 20)
     ours = decoded(testee, "ublox", "telemetry", 0x0120, data)
     assert _double(ours["GPS Time"]) == 2300 * 604800 + 302400 - 0.25
@@ -205,14 +302,18 @@ def _double(bits: object) -> float:
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 32, 64])
-def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(testee: Testee, count: int) -> None:
+def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(
+    testee: Testee, count: int
+) -> None:
     chance = random.Random(count)
     data = chance.randbytes(5) + bytes([count]) + chance.randbytes(2 + 12 * count)
-    theirs, ours = ubx_message("NAV-SAT", data), decoded(testee, "ublox", "telemetry", 0x0135, data)
+    theirs, ours = ubx_message("NAV-SAT", data), decoded(
+        testee, "ublox", "telemetry", 0x0135, data
+    )
     names = [one.name for one in scalars_in(devices().node("ublox").structs[0].layout)]
-    assert len(names) == 26 and {key: ours[key] for key in ("iTOW", "version", "numSvs")} == {
-        key: theirs[key] for key in ("iTOW", "version", "numSvs")
-    }
+    assert len(names) == 26 and {
+        key: ours[key] for key in ("iTOW", "version", "numSvs")
+    } == {key: theirs[key] for key in ("iTOW", "version", "numSvs")}
     for index in range(64):
         mine = {name: ours[f"satellites[{index}].{name}"] for name in names}
         if index < count:
@@ -223,10 +324,18 @@ def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(testee: Testee, cou
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 30])
-def test_the_extensions_of_a_ubx_version_are_read_as_by_pyubx2(testee: Testee, count: int) -> None:
+def test_the_extensions_of_a_ubx_version_are_read_as_by_pyubx2(
+    testee: Testee, count: int
+) -> None:
     rows = [f"MOD=ANY-{number}".encode().ljust(30, b"\0") for number in range(count)]
-    data = b"EXT CORE 1.00".ljust(30, b"\0") + b"00190000".ljust(10, b"\0") + b"".join(rows)
-    theirs, ours = ubx_message("MON-VER", data), decoded(testee, "ublox", "telemetry", 0x0A04, data)
+    data = (
+        b"EXT CORE 1.00".ljust(30, b"\0")
+        + b"00190000".ljust(10, b"\0")
+        + b"".join(rows)
+    )
+    theirs, ours = ubx_message("MON-VER", data), decoded(
+        testee, "ublox", "telemetry", 0x0A04, data
+    )
     for key in ("swVersion", "hwVersion"):
         assert bytes.fromhex(str(ours[key])).rstrip(b"\0") == theirs[key].rstrip(b"\0")  # type: ignore[attr-defined]
     assert ours["extension Count"] == count
@@ -235,12 +344,21 @@ def test_the_extensions_of_a_ubx_version_are_read_as_by_pyubx2(testee: Testee, c
         assert theirs[f"extension_{index:02}"].rstrip(b"\0") == row.rstrip(b"\0")  # type: ignore[attr-defined]
 
 
-def test_the_keys_of_a_ubx_configuration_are_the_bytes_that_pyubx2_makes_of_them(testee: Testee) -> None:
+def test_the_keys_of_a_ubx_configuration_are_the_bytes_that_pyubx2_makes_of_them(
+    testee: Testee,
+) -> None:
     import pyubx2
 
-    made = pyubx2.UBXMessage.config_set(5, 1, [("CFG_RATE_MEAS", 250), ("CFG_NAVSPG_DYNMODEL", 4)])
+    made = pyubx2.UBXMessage.config_set(
+        5, 1, [("CFG_RATE_MEAS", 250), ("CFG_NAVSPG_DYNMODEL", 4)]
+    )
     ours = decoded(testee, "ublox", "telecommand", 0x068A, made.payload)
-    assert [ours[key] for key in ("ram", "bbr", "flash", "action")] == [True, False, True, 1]
+    assert [ours[key] for key in ("ram", "bbr", "flash", "action")] == [
+        True,
+        False,
+        True,
+        1,
+    ]
     data = b"\x01\x00\x21\x30\xfa\x00" + b"\x21\x00\x11\x20\x04"
     assert bytes.fromhex(str(ours["cfgData"]))[: int(str(ours["cfgData Size"]))] == data
 
@@ -258,7 +376,14 @@ def test_the_bme280_is_read_as_its_data_sheet_says(testee: Testee) -> None:
             "Humidity": b[6] << 8 | b[7],
         }
         b = chance.randbytes(26)
-        names = ["T1", "T2", "T3", "P1", *(f"P2 to P9[{number}]" for number in range(8)), "H1"]
+        names = [
+            "T1",
+            "T2",
+            "T3",
+            "P1",
+            *(f"P2 to P9[{number}]" for number in range(8)),
+            "H1",
+        ]
         assert decoded(testee, "bme280", "telemetry", 0x88, b) == dict(
             zip(names, struct.unpack("<HhhH8hxB", b), strict=True)
         )
@@ -273,19 +398,29 @@ def test_the_bme280_is_read_as_its_data_sheet_says(testee: Testee) -> None:
         }
 
 
-def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(tmp_path: Path) -> None:
-    """That of docs/guides/example-devices.md, at the example that the data sheet of the sensor before it gives: 25.08 degrees."""
+def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(
+    tmp_path: Path,
+) -> None:
+    """That of docs/guides/example-devices.md, at the example that the data sheet of the
+    sensor before it gives: 25.08 degrees.
+    """
     formula = re.search(
-        r"^formula: (.*)$", (ROOT / "docs" / "guides" / "example-devices.md").read_text("utf-8"), re.MULTILINE
+        r"^formula: (.*)$",
+        (ROOT / "docs" / "guides" / "example-devices.md").read_text("utf-8"),
+        re.MULTILINE,
     )
     assert formula
     tree = yaml.safe_load(DEVICES["bme280"].read_text("utf-8"))
-    field = next(one for one in tree["messages"] if one["name"] == "Measurement")["fields"][1]
+    field = next(one for one in tree["messages"] if one["name"] == "Measurement")[
+        "fields"
+    ][1]
     field |= {"formula": formula[1], "unit": "C"}
     (tmp_path / "bme280.yaml").write_text(json.dumps(tree), "utf-8")
     loaded = load([tmp_path / "bme280.yaml"])
     assert loaded.findings == []
-    found = next(one for one in loaded.icd.node("bme280").messages if one.name == "Measurement").fields[1]
+    found = next(
+        one for one in loaded.icd.node("bme280").messages if one.name == "Measurement"
+    ).fields[1]
     assert found.name == "Temperature"
     physical = codec.physical_double(found, 519888)
     assert physical is not None and round(physical, 2) == 25.08
@@ -296,10 +431,18 @@ def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(t
 POWER = ["Converters[0]", "Converters[1]", "Converters[2]", "Battery", "Inputs[0]", "Inputs[1]", "Inputs[2]",
          "From Panels", "From Battery"]  # fmt: skip
 COUNTS = {"Currents": 6, "States": 8, "Time to On": 8, "Time to Off": 8, "Latch-ups": 6}
-OUTPUTS = [f"{name}[{number}]" for name, count in COUNTS.items() for number in range(count)]
+OUTPUTS = [
+    f"{name}[{number}]" for name, count in COUNTS.items() for number in range(count)
+]
 WATCHDOGS = ["Time Left of I2C", "Time Left of Ground", "Pings Left[0]", "Pings Left[1]", "Resets by I2C",
              "Resets by Ground", "Resets by Pings[0]", "Resets by Pings[1]"]  # fmt: skip
-BASICS = ["Boots", *(f"Temperatures[{number}]" for number in range(6)), "Boot Cause", "Battery Mode", "Tracking"]
+BASICS = [
+    "Boots",
+    *(f"Temperatures[{number}]" for number in range(6)),
+    "Boot Cause",
+    "Battery Mode",
+    "Tracking",
+]
 PARTS = {
     1: ("Power", ">9H2x", POWER),
     2: ("Outputs", ">6H8B8H8H6H", OUTPUTS),
@@ -312,19 +455,38 @@ def test_the_p31u_is_read_as_its_bytes_were_laid_out(testee: Testee) -> None:
     chance, whole, expected = random.Random(1), b"", {}
     for number, (part, form, names) in PARTS.items():
         data = chance.randbytes(struct.calcsize(form))
-        values = {f"{part}.{name}": value for name, value in zip(names, struct.unpack(form, data), strict=True)}
+        values = {
+            f"{part}.{name}": value
+            for name, value in zip(names, struct.unpack(form, data), strict=True)
+        }
         assert decoded(testee, "p31u", "telemetry", 0x0800 | number, data) == values
         whole, expected = whole + data, expected | values
     assert decoded(testee, "p31u", "telemetry", 0x0800, whole) == expected
     nominal = bytes.fromhex("0fa0 0fa0 0fa0 1f40 0000 012c 0000 012c 0064 0000")
     power = decoded(testee, "p31u", "telemetry", 0x0801, nominal)
-    assert (power["Power.Converters[0]"], power["Power.Battery"], power["Power.Inputs[1]"]) == (4000, 8000, 300)
+    assert (
+        power["Power.Converters[0]"],
+        power["Power.Battery"],
+        power["Power.Inputs[1]"],
+    ) == (4000, 8000, 300)
 
 
 def test_telecommands_of_the_p31u_are_the_bytes_that_it_takes(testee: Testee) -> None:
     on = decoded(testee, "p31u", "telecommand", 0x0900, b"\x41")
-    assert {name for name, value in on.items() if value} == {"Battery Heater", "Channel 1"}
-    assert decoded(testee, "p31u", "telecommand", 0x0A00, b"\2\1\xff\xfe") == {"Channel": 2, "State": 1, "Delay": -2}
+    assert {name for name, value in on.items() if value} == {
+        "Battery Heater",
+        "Channel 1",
+    }
+    assert decoded(testee, "p31u", "telecommand", 0x0A00, b"\2\1\xff\xfe") == {
+        "Channel": 2,
+        "State": 1,
+        "Delay": -2,
+    }
     assert decoded(testee, "p31u", "telecommand", 0x1000, b"\x78") == {"Key": 0x78}
-    values = struct.unpack(">BBbb8B8B8H8H3H", settings := random.Random(2).randbytes(58))
-    assert tuple(decoded(testee, "p31u", "configuration", 0x1300, settings).values()) == values
+    values = struct.unpack(
+        ">BBbb8B8B8H8H3H", settings := random.Random(2).randbytes(58)
+    )
+    assert (
+        tuple(decoded(testee, "p31u", "configuration", 0x1300, settings).values())
+        == values
+    )

@@ -1,4 +1,7 @@
-"""Packets that XTCE defines, as `icdgen import` reads it; space-packet-parser judges, which reads telemetry."""
+"""Packets that XTCE defines, as `icdgen import` reads it.
+
+Space-packet-parser judges, which reads telemetry.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,9 @@ from tests.conftest import ROOT
 from tests.devices.definition import Definition, Definitions, NotSupported, Values
 
 OWN = ROOT / "tests" / "definitions" / "files"
-OTHERS = "XTCE_FILES"  # in the environment: a folder with files of others, such as the tests of space-packet-parser
+# In the environment: a folder with files of others, such as the tests of
+# space-packet-parser.
+OTHERS = "XTCE_FILES"
 
 
 def packets() -> Iterator[Definitions]:
@@ -30,13 +35,28 @@ def packets() -> Iterator[Definitions]:
         except Findings:
             continue
         (tree,) = read.trees.values()
-        open_ = "".join(one.message for one in read.definitions.import_findings if one.code == xtce_layout.OPEN)
-        for one in tree["messages"]:  # of random sizes the library reads something else than all that is there
+        open_ = "".join(
+            one.message
+            for one in read.definitions.import_findings
+            if one.code == xtce_layout.OPEN
+        )
+        for one in tree[
+            "messages"
+        ]:  # of random sizes the library reads something else than all that is there
             if f"message `{one['name']}`" in open_:
                 one["fields"] = [part for part in one["fields"] if "size" not in part]
-        missing = [one.message for one in read.definitions.import_findings if one.severity == "error"]
-        # a message that ends in bytes for fields which are not imported counts as one that is missing
-        tree["messages"] = [one for one in tree["messages"] if not any(_is_cut(one, text) for text in missing)]
+        missing = [
+            one.message
+            for one in read.definitions.import_findings
+            if one.severity == "error"
+        ]
+        # a message that ends in bytes for fields which are not imported counts as one
+        # that is missing
+        tree["messages"] = [
+            one
+            for one in tree["messages"]
+            if not any(_is_cut(one, text) for text in missing)
+        ]
         try:
             yield _definitions(path, tree, missing)
         except NotImplementedError:
@@ -59,7 +79,9 @@ def _definitions(path: Path, tree: dict, missing: list[str]) -> Definitions:
     from space_packet_parser.xtce.definitions import XtcePacketDefinition
 
     judge = XtcePacketDefinition.from_xtce(path)
-    for type_ in judge.parameter_types.values():  # of which it would refuse random values
+    for (
+        type_
+    ) in judge.parameter_types.values():  # of which it would refuse random values
         if hasattr(type_, "enumeration"):
             type_.enumeration = _Any(type_.enumeration)
         if hasattr(type_.encoding, "leading_length_size"):
@@ -67,10 +89,17 @@ def _definitions(path: Path, tree: dict, missing: list[str]) -> Definitions:
         if hasattr(getattr(type_.encoding, "default_calibrator", None), "extrapolate"):
             type_.encoding.default_calibrator.extrapolate = True
     tree["messages"] = [one for one in tree["messages"] if one["kind"] == "telemetry"]
-    used = {one.get("enum") for message in tree["messages"] for one in message.get("fields", ())}
+    used = {
+        one.get("enum")
+        for message in tree["messages"]
+        for one in message.get("fields", ())
+    }
     tree["enums"] = [one for one in tree.get("enums", ()) if one["name"] in used]
     messages = [_definition(judge, one, tree) for one in tree["messages"]]
-    messages += [Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[1]) for said in missing]
+    messages += [
+        Definition(said, 0, "telemetry", 0, [], cause=said.split(": ", 1)[1])
+        for said in missing
+    ]
     return Definitions(tree["node"], messages, tree)
 
 
@@ -85,8 +114,10 @@ def _definition(judge: Any, held: dict, tree: dict) -> Definition:
 
 
 def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], Values]:
-    """The library's reading of a frame, in the packet that it wants, from the outermost container on; of a parameter that stands
-    there more than once it keeps only the last value."""
+    """The library's reading of a frame, in the packet that it wants, from the outermost
+    container on; of a parameter that stands there more than once it keeps only the last
+    value.
+    """
     from space_packet_parser.exceptions import UnrecognizedPacketTypeError
 
     root = judge.containers[held["name"]]
@@ -96,7 +127,11 @@ def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], 
     parts = {name: one for name, one in parts.items() if f"{name} 2" not in parts}
 
     def read(data: bytes, raw: bool) -> Values:
-        head = struct.pack(">HHH", held["id"], 0xC000, len(data) - 1 & 0xFFFF) if is_packet else b""
+        head = (
+            struct.pack(">HHH", held["id"], 0xC000, len(data) - 1 & 0xFFFF)
+            if is_packet
+            else b""
+        )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of bits behind the last field
             try:
@@ -107,8 +142,14 @@ def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], 
             ) as error:  # a frame that ends before those of its constants
                 raise NotSupported(str(error)) from None
         if raw:
-            return {name: _raw(found[name].raw_value) for name in parts if name in found}
-        return {name: float(found[name]) for name, part in parts.items() if name in found and "formula" in part}
+            return {
+                name: _raw(found[name].raw_value) for name in parts if name in found
+            }
+        return {
+            name: float(found[name])
+            for name, part in parts.items()
+            if name in found and "formula" in part
+        }
 
     return read
 
@@ -116,4 +157,8 @@ def _reader(judge: Any, held: dict, is_packet: bool) -> Callable[[bytes, bool], 
 def _raw(value: Any) -> object:
     if isinstance(value, str):
         return value.encode("latin-1")
-    return bytes(value) if isinstance(value, bytes) else float(value) if isinstance(value, float) else int(value)
+    return (
+        bytes(value)
+        if isinstance(value, bytes)
+        else float(value) if isinstance(value, float) else int(value)
+    )

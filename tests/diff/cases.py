@@ -1,4 +1,6 @@
-"""The fixture pairs: ``rules/<code>/previous`` and ``current``, and the exact report in ``expected.txt``."""
+"""The fixture pairs: ``rules/<code>/previous`` and ``current``, and the exact report in
+``expected.txt``.
+"""
 
 from __future__ import annotations
 

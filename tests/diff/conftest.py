@@ -6,10 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import icdgen  # noqa: F401  (a fixture of ours too)
+from tests.cli.conftest import icdgen  # noqa: F401
 from tests.conftest import DEMO
 
-LATER = DEMO.replace("formula: raw*0.01", "formula: raw*0.001", 1).replace("id: 20", "id: 21")
+LATER = DEMO.replace("formula: raw*0.01", "formula: raw*0.001", 1).replace(
+    "id: 20", "id: 21"
+)
 
 
 @pytest.fixture

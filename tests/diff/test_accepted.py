@@ -1,4 +1,6 @@
-"""``.icdgen-accepted.yaml``: what was accepted does not fail again, and an entry that no longer applies is told."""
+"""``.icdgen-accepted.yaml``: what was accepted does not fail again, and an entry that
+no longer applies is told.
+"""
 
 from __future__ import annotations
 
@@ -23,17 +25,27 @@ def test_what_was_accepted_does_not_fail(icdgen, releases, tmp_path):
     assert icdgen("diff", "old", "new", "--fail-on", "wire,meaning,source").status == 0
 
 
-def test_it_is_listed_with_its_reason_and_still_counts_for_the_version(icdgen, releases, tmp_path):
+def test_it_is_listed_with_its_reason_and_still_counts_for_the_version(
+    icdgen, releases, tmp_path
+):
     accept(tmp_path, ID, FACTOR)
     out = icdgen("diff", "old", "new").out
-    assert "accepted: 2 changes" in out and "Agreed in review 7. (.icdgen-accepted.yaml:3:12)" in out
+    assert (
+        "accepted: 2 changes" in out
+        and "Agreed in review 7. (.icdgen-accepted.yaml:3:12)" in out
+    )
     assert "generated packages: major" in out
     document = json.loads(icdgen("diff", "old", "new", "--format", "json").out)
-    assert [change["accepted"] for change in document["changes"]] == ["Agreed in review 7.", "The new sensor."]
+    assert [change["accepted"] for change in document["changes"]] == [
+        "Agreed in review 7.",
+        "The new sensor.",
+    ]
     assert document["counts"] == {"wire": 0, "meaning": 0, "source": 0, "text": 0}
 
 
-def test_the_file_is_found_upwards_and_no_further_than_the_repository(icdgen, releases, tmp_path, monkeypatch):
+def test_the_file_is_found_upwards_and_no_further_than_the_repository(
+    icdgen, releases, tmp_path, monkeypatch
+):
     accept(tmp_path, ID)
     inner = tmp_path / "deep" / "er"
     inner.mkdir(parents=True)
@@ -49,7 +61,12 @@ def icdgen_in(monkeypatch, folder, icdgen) -> int:
 
 def test_another_file_can_be_named(icdgen, releases, tmp_path):
     (tmp_path / "ours.yaml").write_text(HEAD + ID)
-    assert icdgen("diff", "old", "new", "--fail-on", "wire", "--accepted", "ours.yaml").status == 0
+    assert (
+        icdgen(
+            "diff", "old", "new", "--fail-on", "wire", "--accepted", "ours.yaml"
+        ).status
+        == 0
+    )
 
 
 @pytest.mark.parametrize(
@@ -62,11 +79,16 @@ def test_another_file_can_be_named(icdgen, releases, tmp_path):
         ("was: '20'", "was: '19'"),
     ],
 )
-def test_an_entry_that_no_longer_applies_accepts_nothing_and_is_told(icdgen, releases, tmp_path, change):
+def test_an_entry_that_no_longer_applies_accepts_nothing_and_is_told(
+    icdgen, releases, tmp_path, change
+):
     accept(tmp_path, ID.replace(*change))
     result = icdgen("diff", "old", "new", "--fail-on", "wire")
     assert result.status == 1
-    assert ".icdgen-accepted.yaml:3:12: warning[DIF901]: this accepted change does not happen" in result.out
+    assert (
+        ".icdgen-accepted.yaml:3:12: warning[DIF901]: this accepted change does not happen"
+        in result.out
+    )
     for form, said in (
         ("markdown", "does not happen"),
         ("html", "does not happen"),
@@ -83,7 +105,9 @@ def test_it_is_told_too_where_nothing_changed(icdgen, releases, tmp_path):
     assert "does not happen" in icdgen("diff", "old", "old").out
 
 
-def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(icdgen, releases, tmp_path):
+def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(
+    icdgen, releases, tmp_path
+):
     accept(tmp_path, "  - {code: dif103, node: demo, reason: All ids are new.}\n")
     assert icdgen("diff", "old", "new", "--fail-on", "wire").status == 0
 
@@ -91,10 +115,22 @@ def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(icdgen, rele
 @pytest.mark.parametrize(
     "text, said",
     [
-        ("accepted: 1\nchanges:\n  - {code: DIF103, node: demo}\n", "`reason` is missing"),
-        ("accepted: 1\nchanges:\n  - {code: DIF103, reason: R.}\n", "`node` is missing"),
-        ("accepted: 1\nchanges:\n  - {code: DIF999, node: demo, reason: R.}\n", "there is no rule `DIF999`"),
-        ("accepted: 1\nchanges:\n  - {code: DIF103, node: demo, reason: R., messag: X}\n", "did you mean `message`?"),
+        (
+            "accepted: 1\nchanges:\n  - {code: DIF103, node: demo}\n",
+            "`reason` is missing",
+        ),
+        (
+            "accepted: 1\nchanges:\n  - {code: DIF103, reason: R.}\n",
+            "`node` is missing",
+        ),
+        (
+            "accepted: 1\nchanges:\n  - {code: DIF999, node: demo, reason: R.}\n",
+            "there is no rule `DIF999`",
+        ),
+        (
+            "accepted: 1\nchanges:\n  - {code: DIF103, node: demo, reason: R., messag: X}\n",
+            "did you mean `message`?",
+        ),
         ("accepted: 2\nchanges: []\n", "`accepted`"),
         ("accepted: [\n", "not YAML"),
         ("", "the file is empty"),
@@ -103,4 +139,8 @@ def test_an_entry_about_a_whole_node_covers_all_changes_of_its_kind(icdgen, rele
 def test_a_bad_file_is_a_finding(icdgen, releases, tmp_path, text, said):
     (tmp_path / ".icdgen-accepted.yaml").write_text(text)
     result = icdgen("diff", "old", "new")
-    assert result.status == 2 and said in result.err and ".icdgen-accepted.yaml:" in result.err
+    assert (
+        result.status == 2
+        and said in result.err
+        and ".icdgen-accepted.yaml:" in result.err
+    )

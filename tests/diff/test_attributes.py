@@ -1,4 +1,6 @@
-"""No attribute of an ICD changes without a word: each is given another value, and the comparison reports it."""
+"""No attribute of an ICD changes without a word: each is given another value, and the
+comparison reports it.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,12 @@ from icdgen.icd.curve import table
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Array, Condition, Orders, Scalar, StructRef
-from icdgen.icd.layout_copies import with_attributes, with_enum, with_node, with_struct_layout
+from icdgen.icd.layout_copies import (
+    with_attributes,
+    with_enum,
+    with_node,
+    with_struct_layout,
+)
 from icdgen.icd.meanings import Limits, Special
 from icdgen.icd.model import Enum, Icd, Member, Message, Part
 from icdgen.icd.units import STANDARD
@@ -75,8 +82,12 @@ def icd(tmp_path_factory) -> Icd:
     return load([write(tmp_path_factory.mktemp("attributes"), ICD)]).icd
 
 
-def reported(icd: Icd, *, message: Message | None = None, enum: Enum | None = None) -> set[str]:
-    """Codes of the changes between an ICD and the same with another message or enumeration."""
+def reported(
+    icd: Icd, *, message: Message | None = None, enum: Enum | None = None
+) -> set[str]:
+    """Codes of the changes between an ICD and the same with another message or
+    enumeration.
+    """
     node = icd.nodes[0]
     if enum is not None:
         layout = with_enum(node.messages[0].layout, node.enums[0], enum)
@@ -94,12 +105,16 @@ def names(kind: type) -> list[str]:
 def test_another_value_of_any_attribute_of_a_field_is_reported(icd, name):
     message = icd.nodes[0].messages[0]
     level, mode = message.layout.fixed[1], message.layout.fixed[-1]
-    old, value = (mode, icd.nodes[0].enums[1]) if name == "enum" else (level, OTHER[name])
+    old, value = (
+        (mode, icd.nodes[0].enums[1]) if name == "enum" else (level, OTHER[name])
+    )
     layout = with_node(message.layout, old, with_attributes(old, **{name: value}))
     assert reported(icd, message=replace(message, layout=layout))
 
 
-@pytest.mark.parametrize("name", [name for name in names(Array) if name not in ("item", "present_if")])
+@pytest.mark.parametrize(
+    "name", [name for name in names(Array) if name not in ("item", "present_if")]
+)
 def test_another_value_of_any_attribute_of_an_array_is_reported(icd, name):
     message = icd.nodes[0].messages[0]
     old = message.layout.fixed[2]
@@ -108,7 +123,9 @@ def test_another_value_of_any_attribute_of_an_array_is_reported(icd, name):
     assert reported(icd, message=replace(message, layout=layout))
 
 
-@pytest.mark.parametrize("name", [name for name in names(StructRef) if name not in ("layout", "present_if")])
+@pytest.mark.parametrize(
+    "name", [name for name in names(StructRef) if name not in ("layout", "present_if")]
+)
 def test_another_value_of_any_attribute_of_an_array_of_structs_is_reported(icd, name):
     message = icd.nodes[0].messages[0]
     old = message.layout.fixed[3]
@@ -117,14 +134,21 @@ def test_another_value_of_any_attribute_of_an_array_of_structs_is_reported(icd, 
     assert reported(icd, message=replace(message, layout=layout))
 
 
-@pytest.mark.parametrize("name", [name for name in names(Scalar) if name not in ("present_if", "identifier")])
+@pytest.mark.parametrize(
+    "name", [name for name in names(Scalar) if name not in ("present_if", "identifier")]
+)
 def test_another_value_of_any_attribute_of_a_field_of_a_struct_is_reported(icd, name):
     message = icd.nodes[0].messages[0]
     struct = icd.nodes[0].structs[0].layout
     old = struct.fixed[0]
     value = {"at": 4, "enum": icd.nodes[0].enums[1]}.get(name) or OTHER[name]
     changed = with_node(struct, old, with_attributes(old, **{name: value}))
-    assert reported(icd, message=replace(message, layout=with_struct_layout(message.layout, struct, changed)))
+    assert reported(
+        icd,
+        message=replace(
+            message, layout=with_struct_layout(message.layout, struct, changed)
+        ),
+    )
 
 
 OF_MESSAGE = {
@@ -146,7 +170,9 @@ OF_MESSAGE = {
 """Another value for each attribute of a message that the ICD states."""
 
 NOT_OF_MESSAGE = {
-    **dict.fromkeys(("length", "fields", "tail", "inner", "node"), "computed from others"),
+    **dict.fromkeys(
+        ("length", "fields", "tail", "inner", "node"), "computed from others"
+    ),
     **dict.fromkeys(("set_id", "get_id"), "of configuration messages"),
     "layout": "see the tests of fields",
     "errata": NO_CHANGE["errata"],
@@ -157,7 +183,9 @@ NOT_OF_MESSAGE = {
 """Attributes of a message that are compared elsewhere, or not at all on purpose."""
 
 
-@pytest.mark.parametrize("name", [one.name for one in fields(Message) if one.name not in NOT_OF_MESSAGE])
+@pytest.mark.parametrize(
+    "name", [one.name for one in fields(Message) if one.name not in NOT_OF_MESSAGE]
+)
 def test_another_value_of_any_attribute_of_a_message_is_reported(icd, name):
     message = icd.nodes[0].messages[0]
     assert reported(icd, message=replace(message, **{name: OF_MESSAGE[name]}))
@@ -165,7 +193,9 @@ def test_another_value_of_any_attribute_of_a_message_is_reported(icd, name):
 
 def test_another_length_of_a_message_is_reported(icd):
     message = icd.nodes[0].messages[0]
-    assert reported(icd, message=replace(message, layout=replace(message.layout, length=17)))
+    assert reported(
+        icd, message=replace(message, layout=replace(message.layout, length=17))
+    )
 
 
 OF_ENUM = {
@@ -180,11 +210,19 @@ OF_ENUM = {
 @pytest.mark.parametrize("name", OF_ENUM)
 def test_another_value_of_any_attribute_of_an_enumeration_is_reported(icd, name):
     old = icd.nodes[0].enums[0]
-    assert {one.name for one in fields(Enum)} == {*OF_ENUM, "members", "node", "errata", "source"}
+    assert {one.name for one in fields(Enum)} == {
+        *OF_ENUM,
+        "members",
+        "node",
+        "errata",
+        "source",
+    }
     assert reported(icd, enum=replace(old, **{name: OF_ENUM[name]}))
 
 
-@pytest.mark.parametrize("name", [one.name for one in fields(Member) if one.name not in ("errata", "source")])
+@pytest.mark.parametrize(
+    "name", [one.name for one in fields(Member) if one.name not in ("errata", "source")]
+)
 def test_another_value_of_any_attribute_of_a_member_is_reported(icd, name):
     old = icd.nodes[0].enums[0]
     value = OF_ENUM | {"value": 5, "to": 9}
@@ -197,4 +235,6 @@ def test_other_words_about_a_struct_are_reported(icd, name):
     node = icd.nodes[0]
     struct = replace(node.structs[0], **{name: OTHER[name]})
     changes = compare(icd, Icd((replace(node, structs=(struct,)),))).changes
-    assert [(change.code, change.where.node) for change in changes] == [("DIF401", "demo")]
+    assert [(change.code, change.where.node) for change in changes] == [
+        ("DIF401", "demo")
+    ]

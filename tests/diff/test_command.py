@@ -37,18 +37,30 @@ class TestExitStatus:
         assert icdgen("diff", "old", "new", "--fail-on", layers).status == status
 
     def test_fail_on_may_be_repeated(self, icdgen, releases):
-        assert icdgen("diff", "old", "new", "--fail-on", "text", "--fail-on", "wire").status == 1
+        assert (
+            icdgen(
+                "diff", "old", "new", "--fail-on", "text", "--fail-on", "wire"
+            ).status
+            == 1
+        )
 
     def test_an_addition_counts_only_if_asked_for(self, icdgen, releases):
         more = "  - name: More\n    id: 150\n    kind: telemetry\n    length: 0\n"
         (releases[1] / "demo.yaml").write_text(DEMO + more)
-        assert icdgen("diff", "old", "new", "--fail-on", "wire,meaning,source,text").status == 0
+        assert (
+            icdgen("diff", "old", "new", "--fail-on", "wire,meaning,source,text").status
+            == 0
+        )
         assert icdgen("diff", "old", "new", "--fail-on", "additions").status == 1
         assert icdgen("diff", "old", "new", "--fail-on", "wire,additions").status == 1
 
     def test_words_fail_only_if_words_are_asked_for(self, icdgen, releases):
-        (releases[1] / "demo.yaml").write_text(DEMO.replace("title: Demo", "title: A demo"))
-        assert icdgen("diff", "old", "new", "--fail-on", "wire,meaning,source").status == 0
+        (releases[1] / "demo.yaml").write_text(
+            DEMO.replace("title: Demo", "title: A demo")
+        )
+        assert (
+            icdgen("diff", "old", "new", "--fail-on", "wire,meaning,source").status == 0
+        )
         assert icdgen("diff", "old", "new", "--fail-on", "text").status == 1
 
     @pytest.mark.parametrize(
@@ -58,7 +70,10 @@ class TestExitStatus:
             (("old",), "name what to compare with"),
             (("old", "nowhere"), "there is no nowhere"),
             (("old", "new", "old"), "3 arguments"),
-            (("old", "new", "--fail-on", "wires"), "'wires' is not one of wire, meaning"),
+            (
+                ("old", "new", "--fail-on", "wires"),
+                "'wires' is not one of wire, meaning",
+            ),
             (("old", "new", "--format", "xml"), "xml"),
             (("old", "new", "--uses", "nowhere"), "there is no nowhere"),
             (("old", "new", "--accepted", "nowhere.yaml"), "cannot read the file"),
@@ -75,7 +90,11 @@ class TestBadIcds:
     def test_an_icd_with_errors_is_not_compared(self, icdgen, releases):
         (releases[1] / "demo.yaml").write_text(LATER.replace("length: 3", "length: 2"))
         result = icdgen("diff", "old", "new")
-        assert result.status == 2 and "error[ICD020]" in result.err and "new/demo.yaml:" in result.err
+        assert (
+            result.status == 2
+            and "error[ICD020]" in result.err
+            and "new/demo.yaml:" in result.err
+        )
         assert result.out == ""
 
     def test_what_only_breaks_a_rule_can_be_passed_over(self, icdgen, releases):
@@ -90,12 +109,16 @@ class TestBadIcds:
 
     def test_twins_do_not_confuse_an_unchecked_comparison(self, icdgen, releases):
         twice = "      - {at: 20, bits: 4, name: Roll Angle, type: uint}\n  - name: Set Roll"
-        (releases[1] / "demo.yaml").write_text(LATER.replace("  - name: Set Roll", twice))
+        (releases[1] / "demo.yaml").write_text(
+            LATER.replace("  - name: Set Roll", twice)
+        )
         result = icdgen("diff", "old", "new", "--unchecked")
         assert result.status == 0 and "DIF114" in result.out
 
     def test_an_unknown_enumeration_does_not_confuse_it_either(self, icdgen, releases):
-        (releases[1] / "demo.yaml").write_text(LATER.replace("enum: Mode", "enum: Mood"))
+        (releases[1] / "demo.yaml").write_text(
+            LATER.replace("enum: Mode", "enum: Mood")
+        )
         result = icdgen("diff", "old", "new", "--unchecked")
         assert result.status == 0 and "DIF204" in result.out
 
@@ -113,48 +136,82 @@ class TestOutput:
         assert result.status == 0 and "DIF" not in result.out
 
     def test_a_report_can_be_written_to_a_file(self, icdgen, releases, tmp_path):
-        result = icdgen("diff", "old", "new", "--format", "html", "--out", "pages/diff.html", "--fail-on", "wire")
+        result = icdgen(
+            "diff",
+            "old",
+            "new",
+            "--format",
+            "html",
+            "--out",
+            "pages/diff.html",
+            "--fail-on",
+            "wire",
+        )
         assert (result.status, result.out) == (1, "")
         assert (tmp_path / "pages/diff.html").read_text().startswith("<!DOCTYPE html>")
 
     def test_output_is_the_same_every_time(self, icdgen, releases):
         for form in FORMATS:
             assert (
-                icdgen("diff", "old", "new", "--format", form).out == icdgen("diff", "old", "new", "--format", form).out
+                icdgen("diff", "old", "new", "--format", form).out
+                == icdgen("diff", "old", "new", "--format", form).out
             )
 
     def test_words_are_cut_short_but_for_all(self, icdgen, releases):
-        rows = "".join(f"      - {{value: {n}, name: Mode {n}, summary: S}}\n" for n in range(2, 40))
-        old = DEMO.replace("messages:\n", rows + "messages:\n", 1).replace("bits: 4", "bits: 8")
+        rows = "".join(
+            f"      - {{value: {n}, name: Mode {n}, summary: S}}\n"
+            for n in range(2, 40)
+        )
+        old = DEMO.replace("messages:\n", rows + "messages:\n", 1).replace(
+            "bits: 4", "bits: 8"
+        )
         (releases[0] / "demo.yaml").write_text(old)
         (releases[1] / "demo.yaml").write_text(old.replace("summary: S", "summary: T"))
-        short, long = icdgen("diff", "old", "new").out, icdgen("diff", "old", "new", "--all").out
+        short, long = (
+            icdgen("diff", "old", "new").out,
+            icdgen("diff", "old", "new", "--all").out,
+        )
         assert "and 28 more changes of words, which --all lists" in short
         assert long.count("DIF401") == 38
 
     def test_hostile_names_act_upon_nothing(self, icdgen, releases):
-        evil = LATER.replace("name: Roll Angle", 'name: "Roll\\e[31m<script>alert(1)</script>|`x`\\u202e Angle"', 1)
+        evil = LATER.replace(
+            "name: Roll Angle",
+            'name: "Roll\\e[31m<script>alert(1)</script>|`x`\\u202e Angle"',
+            1,
+        )
         (releases[1] / "demo.yaml").write_text(evil)
         for form in FORMATS:
             out = icdgen("diff", "old", "new", "--format", form).out
             assert "\x1b" not in out and "\u202e" not in out, form
-            if form in ("markdown", "html"):  # in Markdown a code span is nothing but text
-                assert "<script>alert" not in (re.sub("`[^`]*`", "", out) if form == "markdown" else out)
+            if form in (
+                "markdown",
+                "html",
+            ):  # in Markdown a code span is nothing but text
+                assert "<script>alert" not in (
+                    re.sub("`[^`]*`", "", out) if form == "markdown" else out
+                )
 
     @pytest.mark.pty
     def test_colour_is_for_terminals(self, releases, tmp_path):
         command = [sys.executable, "-m", "icdgen", "diff", "old", "new"]
-        plain = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+        plain = subprocess.run(
+            command, cwd=tmp_path, capture_output=True, text=True, check=True
+        )
         assert "\x1b[" not in plain.stdout
         environment = {**os.environ, "TERM": "xterm"}
         environment.pop("NO_COLOR", None)
         assert b"\x1b[1;31m" in in_terminal(command, tmp_path, environment)
-        assert b"\x1b[1;31m" not in in_terminal(command, tmp_path, {**environment, "NO_COLOR": "1"})
+        assert b"\x1b[1;31m" not in in_terminal(
+            command, tmp_path, {**environment, "NO_COLOR": "1"}
+        )
 
 
 def in_terminal(command, folder, environment) -> bytes:
     ours, theirs = pty.openpty()
-    process = subprocess.Popen(command, cwd=folder, stdout=theirs, stderr=theirs, env=environment)
+    process = subprocess.Popen(
+        command, cwd=folder, stdout=theirs, stderr=theirs, env=environment
+    )
     os.close(theirs)
     found = b""
     while True:
@@ -181,4 +238,9 @@ class TestRule:
         assert any(line.startswith("DIF101  ") for line in lines)
 
     def test_json_is_json(self, icdgen, releases):
-        assert json.loads(icdgen("diff", "old", "new", "--format", "json").out)["counts"]["meaning"] == 1
+        assert (
+            json.loads(icdgen("diff", "old", "new", "--format", "json").out)["counts"][
+                "meaning"
+            ]
+            == 1
+        )

@@ -58,7 +58,10 @@ def compared(tmp_path, old: str, new: str):
 
 def answers(tmp_path, change: tuple[str, str], base: str = BASE) -> dict:
     assert change[0] in base
-    return {one.key: one for one in directions(compared(tmp_path, base, base.replace(*change)))}
+    return {
+        one.key: one
+        for one in directions(compared(tmp_path, base, base.replace(*change)))
+    }
 
 
 @pytest.mark.parametrize(
@@ -85,13 +88,25 @@ def answers(tmp_path, change: tuple[str, str], base: str = BASE) -> dict:
 def test_each_direction_has_its_answer(tmp_path, change, telemetry, telecommands, logs):
     change = change if change[0] != "summary" else ("length: 3", "length: 3")
     found = answers(tmp_path, change)
-    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == [telemetry, telecommands, logs]
+    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == [
+        telemetry,
+        telecommands,
+        logs,
+    ]
 
 
 def test_a_new_field_is_no_harm_to_old_telemetry_but_to_old_telecommands(tmp_path):
-    new = BASE.replace("name: Last", "name: Final").replace("{at: 12, bits: 3,", "{at: 12, bits: 2,")
-    (frame,) = {one.key: one for one in directions(compared(tmp_path, BASE, new))}["telecommands"].frames
-    assert frame.message == "Set Mode" and frame.verdict == "partly" and frame.reasons == ("other bits: `Level`",)
+    new = BASE.replace("name: Last", "name: Final").replace(
+        "{at: 12, bits: 3,", "{at: 12, bits: 2,"
+    )
+    (frame,) = {one.key: one for one in directions(compared(tmp_path, BASE, new))}[
+        "telecommands"
+    ].frames
+    assert (
+        frame.message == "Set Mode"
+        and frame.verdict == "partly"
+        and frame.reasons == ("other bits: `Level`",)
+    )
 
 
 def test_an_id_that_means_another_message_is_a_no_with_its_reason(tmp_path):
@@ -105,19 +120,33 @@ def test_an_id_that_means_another_message_is_a_no_with_its_reason(tmp_path):
 
 
 def test_only_frames_that_can_be_logged_matter_to_logs(tmp_path):
-    found = answers(tmp_path, ("name: Current, type: uint", "name: Current, type: int"), LOGGED)
-    assert found["telemetry"].verdict == "partly" and found["logs"].verdict == "yes" and found["logs"].total == 1
+    found = answers(
+        tmp_path, ("name: Current, type: uint", "name: Current, type: int"), LOGGED
+    )
+    assert (
+        found["telemetry"].verdict == "partly"
+        and found["logs"].verdict == "yes"
+        and found["logs"].total == 1
+    )
 
 
 def test_framing_concerns_everything_on_the_wire_and_nothing_in_logs(tmp_path):
     found = answers(tmp_path, ("escape: 31,", "escape: 30,"), LOGGED)
-    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == ["partly", "partly", "yes"]
+    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == [
+        "partly",
+        "partly",
+        "yes",
+    ]
     assert "protocol.uart.framing.escape" in found["telemetry"].general[0]
 
 
 def test_the_mask_concerns_logs(tmp_path):
     found = answers(tmp_path, ("{bit: 0, id: 130}", "{bit: 0, id: 131}"), LOGGED)
-    assert found["telemetry"].verdict == "yes" and found["logs"].verdict == "partly" and found["logs"].general
+    assert (
+        found["telemetry"].verdict == "yes"
+        and found["logs"].verdict == "partly"
+        and found["logs"].general
+    )
 
 
 def test_frames_of_a_node_that_is_gone_are_not_understood(tmp_path):
@@ -136,7 +165,10 @@ def test_frames_of_a_node_that_is_gone_are_not_understood(tmp_path):
     [
         (("max: 5", "max: 5"), "none"),
         (("kind: telemetry\n", "kind: telemetry\n    summary: Words.\n"), "patch"),
-        (("{value: 1, name: Run}", "{value: 1, name: Run}, {value: 2, name: Safe}"), "minor"),
+        (
+            ("{value: 1, name: Run}", "{value: 1, name: Run}, {value: 2, name: Safe}"),
+            "minor",
+        ),
         (("name: Level", "name: Power Level"), "major"),
         (("raw*0.5", "raw*0.25"), "major"),
         (("id: 10", "id: 11"), "major"),
@@ -172,16 +204,33 @@ protocol:
         (("telecommand: 0x55", "telecommand: 0x54"), "yes", "no"),
         (("width: 8, init: 0,", "width: 8, init: 1,"), "no", "no"),
         (("from: length", "from: id"), "no", "no"),
-        (("bits: 16, role: length", "bits: 16, role: length, byte_order: big"), "no", "no"),
-        (("bits: 16, role: length", "bits: 16, role: length, byte_order: little"), "yes", "yes"),
+        (
+            ("bits: 16, role: length", "bits: 16, role: length, byte_order: big"),
+            "no",
+            "no",
+        ),
+        (
+            ("bits: 16, role: length", "bits: 16, role: length, byte_order: little"),
+            "yes",
+            "yes",
+        ),
         (("    replies: {Set Mode: Status}\n", ""), "yes", "yes"),
     ],
 )
-def test_nobody_finds_messages_in_another_envelope(tmp_path, change, telemetry, telecommands):
+def test_nobody_finds_messages_in_another_envelope(
+    tmp_path, change, telemetry, telecommands
+):
     got = answers(tmp_path, change, ENVELOPED)
-    assert (got["telemetry"].verdict, got["telecommands"].verdict) == (telemetry, telecommands)
+    assert (got["telemetry"].verdict, got["telecommands"].verdict) == (
+        telemetry,
+        telecommands,
+    )
 
 
 def test_an_order_that_is_stated_now_and_held_before_breaks_nothing(tmp_path):
-    new = ENVELOPED.replace("bits: 16, role: length", "bits: 16, role: length, byte_order: little")
-    assert [change.code for change in compared(tmp_path, ENVELOPED, new).changes] == ["DIF413"]
+    new = ENVELOPED.replace(
+        "bits: 16, role: length", "bits: 16, role: length, byte_order: little"
+    )
+    assert [change.code for change in compared(tmp_path, ENVELOPED, new).changes] == [
+        "DIF413"
+    ]

@@ -61,22 +61,45 @@ def test_every_single_edit_is_found_and_classified_right(name, seed):
     assert done is not None
     changes = compare(shipped(), done.icd).changes
     codes = {change.code for change in changes}
-    assert done.must <= codes <= done.must | done.may, [change.message for change in changes]
+    assert done.must <= codes <= done.must | done.may, [
+        change.message for change in changes
+    ]
     if done.at:
-        assert {change.where.message or change.where.enum for change in changes} == {done.at}
+        assert {change.where.message or change.where.enum for change in changes} == {
+            done.at
+        }
 
 
 def mirrored(change: Change) -> tuple:
     code = MIRROR.get(change.code, change.code)
-    return code, change.now, change.was, *subject(change)[::-1], change.new, change.old, change.sure
+    return (
+        code,
+        change.now,
+        change.was,
+        *subject(change)[::-1],
+        change.new,
+        change.old,
+        change.sure,
+    )
 
 
 def as_it_is(change: Change) -> tuple:
-    return change.code, change.was, change.now, *subject(change), change.old, change.new, change.sure
+    return (
+        change.code,
+        change.was,
+        change.now,
+        *subject(change),
+        change.old,
+        change.new,
+        change.sure,
+    )
 
 
 def subject(change: Change) -> tuple:
-    """Old and new thing, by identity. An id that means another message is about neither of the two."""
+    """Old and new thing, by identity.
+
+    An id that means another message is about neither of the two.
+    """
     if change.code == "DIF104":
         return None, None
     sides = change.pair.before, change.pair.after
@@ -84,27 +107,42 @@ def subject(change: Change) -> tuple:
 
 
 @settings(deadline=None, max_examples=150)
-@given(names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=8), seed=SEEDS)
+@given(
+    names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=8), seed=SEEDS
+)
 def test_backwards_is_the_mirror_of_forwards(names, seed):
     other = edited(names, seed)
-    forwards, backwards = compare(shipped(), other).changes, compare(other, shipped()).changes
+    forwards, backwards = (
+        compare(shipped(), other).changes,
+        compare(other, shipped()).changes,
+    )
     assert Counter(map(mirrored, forwards)) == Counter(map(as_it_is, backwards))
 
 
 @settings(deadline=None, max_examples=60)
 @given(names=st.lists(st.sampled_from(TEXT), min_size=1, max_size=8), seed=SEEDS)
 def test_words_alone_never_amount_to_more_than_words(names, seed):
-    assert {change.layer for change in compare(shipped(), edited(names, seed)).changes} <= {"text"}
+    assert {
+        change.layer for change in compare(shipped(), edited(names, seed)).changes
+    } <= {"text"}
 
 
 @settings(deadline=None, max_examples=60)
-@given(names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=6), seed=SEEDS)
+@given(
+    names=st.lists(st.sampled_from(sorted(EDITS)), min_size=1, max_size=6), seed=SEEDS
+)
 def test_changes_are_whole_and_ordered_by_layer(names, seed):
     changes = compare(shipped(), edited(names, seed)).changes
-    assert [LAYERS.index(c.layer) for c in changes] == sorted(LAYERS.index(c.layer) for c in changes)
+    assert [LAYERS.index(c.layer) for c in changes] == sorted(
+        LAYERS.index(c.layer) for c in changes
+    )
     for change in changes:
         assert change.message and change.where.node and 0 < change.sure <= 1
-        assert change.was != change.now or change.code in ("DIF108", "DIF109", "DIF408"), change
+        assert change.was != change.now or change.code in (
+            "DIF108",
+            "DIF109",
+            "DIF408",
+        ), change
 
 
 def test_edits_of_words_are_edits_and_some_edits_lie_beyond_messages():

@@ -60,9 +60,14 @@ def test_output_of_show_that_was_tampered_with(tmp_path):
     read = 0
     for seed in range(150):
         try:
-            side = shown.from_bytes(json.dumps(mutated(tree, seed)).encode(), "tampered.json")
+            side = shown.from_bytes(
+                json.dumps(mutated(tree, seed)).encode(), "tampered.json"
+            )
         except Findings as error:
-            assert all(finding.message and finding.place.file == "tampered.json" for finding in error.findings)
+            assert all(
+                finding.message and finding.place.file == "tampered.json"
+                for finding in error.findings
+            )
             continue
         read += 1
         compared_both_ways(whole, side)

@@ -1,4 +1,7 @@
-"""What can be compared: files, folders, git revisions, the output of `icdgen show`; and that order and spelling are nothing."""
+"""What can be compared: files, folders, git revisions, the output of `icdgen show`.
+
+And that order and spelling are nothing.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,22 @@ from tests.diff.conftest import LATER
 
 @pytest.fixture
 def repository(tmp_path):
-    """A repository with the tags v1 and v2, and a working tree in which the unit is another."""
+    """A repository with the tags v1 and v2, and a working tree in which the unit is
+    another.
+    """
 
     def git(*words: str) -> None:
-        identity = ("-c", "user.name=A", "-c", "user.email=a@example.org", "-c", "commit.gpgsign=false")
-        subprocess.run(["git", *identity, *words], cwd=tmp_path, check=True, capture_output=True)
+        identity = (
+            "-c",
+            "user.name=A",
+            "-c",
+            "user.email=a@example.org",
+            "-c",
+            "commit.gpgsign=false",
+        )
+        subprocess.run(
+            ["git", *identity, *words], cwd=tmp_path, check=True, capture_output=True
+        )
 
     git("init", "-q", "-b", "main")
     (tmp_path / "icd" / "errata").mkdir(parents=True)
@@ -60,20 +74,43 @@ class TestGit:
         assert codes(result.out) == {"DIF201", "DIF103"}
 
     def test_a_revision_and_the_working_tree(self, icdgen, repository):
-        for arguments in (("v2", "icd"), ("v2:icd/demo.yaml",), ("v2:icd/demo.yaml", "icd/demo.yaml")):
-            assert codes(icdgen("diff", *arguments, "--format", "json").out) == {"DIF202", "DIF308"}
+        for arguments in (
+            ("v2", "icd"),
+            ("v2:icd/demo.yaml",),
+            ("v2:icd/demo.yaml", "icd/demo.yaml"),
+        ):
+            assert codes(icdgen("diff", *arguments, "--format", "json").out) == {
+                "DIF202",
+                "DIF308",
+            }
 
-    def test_the_folder_icd_is_meant_where_nothing_says_otherwise(self, icdgen, repository):
-        assert codes(icdgen("diff", "v2", "--format", "json").out) == {"DIF202", "DIF308"}
+    def test_the_folder_icd_is_meant_where_nothing_says_otherwise(
+        self, icdgen, repository
+    ):
+        assert codes(icdgen("diff", "v2", "--format", "json").out) == {
+            "DIF202",
+            "DIF308",
+        }
         (repository / "icd").rename(repository / "elsewhere")
         result = icdgen("diff", "v1..v2")
         assert result.status == 2 and "`icds` in icdgen.toml" in result.err
 
-    def test_the_icds_of_icdgen_toml_are_meant_where_no_path_is_given(self, icdgen, repository):
+    def test_the_icds_of_icdgen_toml_are_meant_where_no_path_is_given(
+        self, icdgen, repository
+    ):
         (repository / "icdgen.toml").write_text('icds = ["icd"]\n')
-        assert codes(icdgen("diff", "v1..v2", "--format", "json").out) == {"DIF201", "DIF103"}
-        assert codes(icdgen("diff", "v2", "--format", "json").out) == {"DIF202", "DIF308"}
-        assert codes(icdgen("diff", "v1", "v2", "--format", "json").out) == {"DIF201", "DIF103"}
+        assert codes(icdgen("diff", "v1..v2", "--format", "json").out) == {
+            "DIF201",
+            "DIF103",
+        }
+        assert codes(icdgen("diff", "v2", "--format", "json").out) == {
+            "DIF202",
+            "DIF308",
+        }
+        assert codes(icdgen("diff", "v1", "v2", "--format", "json").out) == {
+            "DIF201",
+            "DIF103",
+        }
 
     def test_places_are_those_of_the_revision(self, icdgen, repository):
         out = icdgen("diff", "v1..v2", "icd").out
@@ -81,28 +118,52 @@ class TestGit:
         assert "/tmp" not in out
 
     def test_findings_are_those_of_the_revision_too(self, icdgen, repository):
-        (repository / "icd" / "demo.yaml").write_text(DEMO.replace("length: 3", "length: 2"))
+        (repository / "icd" / "demo.yaml").write_text(
+            DEMO.replace("length: 3", "length: 2")
+        )
         subprocess.run(
-            ["git", "-c", "user.name=A", "-c", "user.email=a@b", "commit", "-qam", "bad"], cwd=repository, check=True
+            [
+                "git",
+                "-c",
+                "user.name=A",
+                "-c",
+                "user.email=a@b",
+                "commit",
+                "-qam",
+                "bad",
+            ],
+            cwd=repository,
+            check=True,
         )
         result = icdgen("diff", "HEAD~1..HEAD", "icd")
         assert result.status == 2
         assert "HEAD:icd/demo.yaml:" in result.err and "bits: 4" in result.err
 
-    def test_includes_and_overlays_of_a_revision_are_read_with_it(self, icdgen, repository):
-        overlay = (
-            "errata: 1\nnode: demo\nentries:\n  - {id: D-001, title: T, where: {section: node}, printed: {title: Demo},"
+    def test_includes_and_overlays_of_a_revision_are_read_with_it(
+        self, icdgen, repository
+    ):
+        overlay = "errata: 1\nnode: demo\nentries:\n  - {id: D-001, title: T, where: {section: node}, printed: {title: Demo},"
+        overlay += (
+            " held: {title: Other}, why: W., evidence: E., confidence: certain}\n"
         )
-        overlay += " held: {title: Other}, why: W., evidence: E., confidence: certain}\n"
         (repository / "icd" / "errata" / "demo.yaml").write_text(overlay)
         (repository / "icd" / "demo.yaml").write_text(LATER)
         git = ["git", "-c", "user.name=A", "-c", "user.email=a@b"]
         subprocess.run([*git, "add", "-A"], cwd=repository, check=True)
         subprocess.run([*git, "commit", "-qm", "overlay"], cwd=repository, check=True)
-        result = icdgen("diff", "v2:icd/demo.yaml", "HEAD:icd/demo.yaml", "--format", "json")
+        result = icdgen(
+            "diff", "v2:icd/demo.yaml", "HEAD:icd/demo.yaml", "--format", "json"
+        )
         assert codes(result.out) == {"DIF401", "DIF403"}
-        come = next(change for change in json.loads(result.out)["changes"] if change["code"] == "DIF403")
-        assert come["old"] is None and (come["new"]["file"], come["new"]["line"]) == ("HEAD:icd/errata/demo.yaml", 4)
+        come = next(
+            change
+            for change in json.loads(result.out)["changes"]
+            if change["code"] == "DIF403"
+        )
+        assert come["old"] is None and (come["new"]["file"], come["new"]["line"]) == (
+            "HEAD:icd/errata/demo.yaml",
+            4,
+        )
 
     @pytest.mark.parametrize(
         "arguments, said",
@@ -117,14 +178,26 @@ class TestGit:
     )
     def test_what_is_not_there_is_named(self, icdgen, repository, arguments, said):
         result = icdgen("diff", *arguments)
-        assert result.status == 2 and said in result.err and "Traceback" not in result.err
+        assert (
+            result.status == 2 and said in result.err and "Traceback" not in result.err
+        )
 
     def test_the_working_tree_is_left_alone(self, icdgen, repository):
-        before = {p: p.read_bytes() for p in repository.rglob("*") if p.is_file() and ".git" not in p.parts}
+        before = {
+            p: p.read_bytes()
+            for p in repository.rglob("*")
+            if p.is_file() and ".git" not in p.parts
+        }
         icdgen("diff", "v1..v2", "icd")
-        assert {p: p.read_bytes() for p in repository.rglob("*") if p.is_file() and ".git" not in p.parts} == before
+        assert {
+            p: p.read_bytes()
+            for p in repository.rglob("*")
+            if p.is_file() and ".git" not in p.parts
+        } == before
 
-    def test_without_git_files_can_still_be_compared(self, icdgen, releases, monkeypatch):
+    def test_without_git_files_can_still_be_compared(
+        self, icdgen, releases, monkeypatch
+    ):
         monkeypatch.setenv("PATH", "/nowhere")
         assert icdgen("diff", "old", "new").status == 0
         assert "there is no v1" in icdgen("diff", "v1", "new").err
@@ -138,23 +211,36 @@ class TestShown:
         assert compare(side.icd, icd_of()).changes == []
 
     def test_places_are_those_in_the_output(self, icdgen, releases, tmp_path):
-        (tmp_path / "old.json").write_text(icdgen("show", "--icd", "old", "--format", "json").out)
+        (tmp_path / "old.json").write_text(
+            icdgen("show", "--icd", "old", "--format", "json").out
+        )
         out = icdgen("diff", "old.json", "new").out
-        place = next(line for line in out.splitlines() if "-> new/demo.yaml:14:77" in line).split(" -> ")[0].strip()
+        place = (
+            next(line for line in out.splitlines() if "-> new/demo.yaml:14:77" in line)
+            .split(" -> ")[0]
+            .strip()
+        )
         file, line, _ = place.split(":")
         assert (
-            file == "old.json" and '"formula": "raw*0.01"' in (tmp_path / file).read_text().splitlines()[int(line) - 1]
+            file == "old.json"
+            and '"formula": "raw*0.01"'
+            in (tmp_path / file).read_text().splitlines()[int(line) - 1]
         )
 
     def test_it_may_come_from_standard_input(self, icdgen, releases, monkeypatch):
         data = icdgen("show", "--icd", "old", "--format", "json").out.encode()
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
-        assert codes(icdgen("diff", "-", "new", "--format", "json").out) == {"DIF201", "DIF103"}
+        assert codes(icdgen("diff", "-", "new", "--format", "json").out) == {
+            "DIF201",
+            "DIF103",
+        }
 
     def test_names_beyond_the_basic_plane_survive(self, icdgen, releases, tmp_path):
         text = DEMO.replace("title: Demo", "title: Demo \U0001f6f0")
         (releases[0] / "demo.yaml").write_text(text, encoding="utf-8")
-        (tmp_path / "old.json").write_text(icdgen("show", "--icd", "old", "--format", "json").out)
+        (tmp_path / "old.json").write_text(
+            icdgen("show", "--icd", "old", "--format", "json").out
+        )
         assert icdgen("diff", "old.json", "old").out == "old.json -> old\nno change\n"
 
     @pytest.mark.parametrize(
@@ -167,10 +253,16 @@ class TestShown:
             ("{" * 100_000, "JSON"),
         ],
     )
-    def test_what_is_no_such_output_is_a_finding(self, icdgen, releases, tmp_path, text, said):
+    def test_what_is_no_such_output_is_a_finding(
+        self, icdgen, releases, tmp_path, text, said
+    ):
         (tmp_path / "bad.json").write_text(text)
         result = icdgen("diff", "bad.json", "new")
-        assert result.status == 2 and "bad.json:1:" in result.err and "show --format json" in result.err
+        assert (
+            result.status == 2
+            and "bad.json:1:" in result.err
+            and "show --format json" in result.err
+        )
         assert said.strip("`") in result.err
 
 
@@ -191,9 +283,9 @@ class TestNoChange:
         assert icdgen("diff", "old", "new").out == "old -> new\nno change\n"
 
     def test_nor_is_the_order_of_anything(self, icdgen, releases):
-        head, first, second = DEMO.split("  - name: Estimated")[0], *DEMO.split("messages:\n")[1].split(
-            "  - name: Set Roll"
-        )
+        head, first, second = DEMO.split("  - name: Estimated")[0], *DEMO.split(
+            "messages:\n"
+        )[1].split("  - name: Set Roll")
         turned = f"{head}  - name: Set Roll{second}{first}"
         lines = turned.splitlines(keepends=True)
         at = next(i for i, line in enumerate(lines) if "name: Idle" in line)
@@ -201,8 +293,12 @@ class TestNoChange:
         (releases[1] / "demo.yaml").write_text("".join(lines))
         assert icdgen("diff", "old", "new").out == "old -> new\nno change\n"
 
-    def test_nor_are_offsets_counted_from_the_other_end_of_the_byte(self, icdgen, releases):
-        turned = DEMO.replace("bit_order: lsb0", "bit_order: msb0").replace("{at: 16, bits: 4, ", "{at: 20, bits: 4, ")
+    def test_nor_are_offsets_counted_from_the_other_end_of_the_byte(
+        self, icdgen, releases
+    ):
+        turned = DEMO.replace("bit_order: lsb0", "bit_order: msb0").replace(
+            "{at: 16, bits: 4, ", "{at: 20, bits: 4, "
+        )
         (releases[1] / "demo.yaml").write_text(turned)
         result = json.loads(icdgen("diff", "old", "new", "--format", "json").out)
         assert [change["code"] for change in result["changes"]] == ["DIF411"]

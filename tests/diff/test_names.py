@@ -26,7 +26,9 @@ messages:
 """
 
 
-def test_a_retyped_field_of_a_renamed_node_is_reported_without_the_types_that_only_have_a_new_prefix(tmp_path):
+def test_a_retyped_field_of_a_renamed_node_is_reported_without_the_types_that_only_have_a_new_prefix(
+    tmp_path,
+):
     sides = []
     for node, type in (("demo", "uint"), ("probe", "int")):
         path = tmp_path / f"{node}.yaml"
@@ -34,12 +36,19 @@ def test_a_retyped_field_of_a_renamed_node_is_reported_without_the_types_that_on
         loaded = load([path])
         assert loaded.findings == []
         sides.append(loaded.icd)
-    retyped = [change.message for change in compare(*sides).changes if change.code == "DIF307"]
+    retyped = [
+        change.message for change in compare(*sides).changes if change.code == "DIF307"
+    ]
     assert retyped == ["`Count` has another type in C and Rust"]
 
 
 def test_functions_for_elements_and_contained_messages_are_names_of_their_message():
     changes = document(compared(FOLDER / "DIF127"))["changes"]
-    names = next(change["generated"] for change in changes if change["code"] == "DIF127")
-    assert {"demo_satellites_read_satellites", "demo_satellites_write_satellites"} <= set(names["c"])
+    names = next(
+        change["generated"] for change in changes if change["code"] == "DIF127"
+    )
+    assert {
+        "demo_satellites_read_satellites",
+        "demo_satellites_write_satellites",
+    } <= set(names["c"])
     assert {"read_satellites", "write_satellites"} <= set(names["rust"])

@@ -1,4 +1,6 @@
-"""The reports as what reads them: JSON with its schema, SARIF, annotations, Markdown, a page."""
+"""The reports as what reads them: JSON with its schema, SARIF, annotations, Markdown, a
+page.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,9 @@ def release(older) -> report.Report:
 
 @cache
 def schema() -> jsonschema.Draft202012Validator:
-    return jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+    return jsonschema.Draft202012Validator(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))
+    )
 
 
 class TestJson:
@@ -64,8 +68,12 @@ class TestSarif:
             assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == change.code
             region = result["locations"][0]["physicalLocation"]["region"]
             assert (region["startLine"], region["startColumn"]) == change.place[1:3]
-            assert ("relatedLocations" in result) == (change.old is not None and change.new is not None)
-        assert all(rule["help"]["text"].startswith(f"# {rule['id']}: ") for rule in rules)
+            assert ("relatedLocations" in result) == (
+                change.old is not None and change.new is not None
+            )
+        assert all(
+            rule["help"]["text"].startswith(f"# {rule['id']}: ") for rule in rules
+        )
 
 
 class TestGithub:
@@ -81,7 +89,9 @@ class TestMarkdown:
     def test_it_has_the_verdicts_and_every_change(self, release):
         text = reports.get("markdown")(release)
         assert "**major**" in text and text.count("frames as before") >= 1
-        assert sum(text.count(f"`{code}`") for code in {c.code for c in release.changes}) >= len(release.changes)
+        assert sum(
+            text.count(f"`{code}`") for code in {c.code for c in release.changes}
+        ) >= len(release.changes)
         assert text.count("<details>") == text.count("</details>")
 
 
@@ -103,7 +113,9 @@ class Page(HTMLParser):
         if tag == "g":
             self.fields.append((found["class"], found["data-key"]))
         self.drawings += tag == "svg"
-        if tag not in self.VOID or (tag == "rect" and self.get_starttag_text()[-2:] != "/>"):
+        if tag not in self.VOID or (
+            tag == "rect" and self.get_starttag_text()[-2:] != "/>"
+        ):
             self.open.append(tag)
 
     def handle_startendtag(self, tag, attributes):
@@ -132,7 +144,11 @@ class TestHtml:
         text, page = self.page(release)
         assert page.drawings >= len(facts()["lengths"])
         assert ">old</text>" in text and ">new</text>" in text
-        for name in ("ECEF Position X", "Redundant Magnetometer Temperature", "Z-Rate Sensor Temperature"):
+        for name in (
+            "ECEF Position X",
+            "Redundant Magnetometer Temperature",
+            "Z-Rate Sensor Temperature",
+        ):
             assert f"<title>{name}, bit" in text
         kinds = [kind for kind, _ in page.fields]
         assert kinds.count("field come") >= 14 and kinds.count("field moved") == 2 * 5
@@ -151,18 +167,26 @@ class TestRelease:
     """The reconstructed older release of the same device against today's ICDs."""
 
     def test_its_frames_have_the_lengths_that_are_known(self, release):
-        lengths = {m.name: m.length for node in release.old.icd.nodes for m in node.messages}
-        assert {name: lengths[name] for name in facts()["lengths"]} == facts()["lengths"]
+        lengths = {
+            m.name: m.length for node in release.old.icd.nodes for m in node.messages
+        }
+        assert {name: lengths[name] for name in facts()["lengths"]} == facts()[
+            "lengths"
+        ]
 
     def test_the_diff_finds_exactly_what_was_taken_out(self, release):
-        found = {(c.code, c.where.message) for c in release.changes if c.layer == "wire"}
+        found = {
+            (c.code, c.where.message) for c in release.changes if c.layer == "wire"
+        }
         expected = {("DIF106", name) for name in facts()["lengths"]} | {
             ("DIF108", "Power and Temperature Measurements")
         }
         assert found == expected
         assert [c for c in release.changes if c.layer == "meaning"] == []
         added = {c.where.field for c in release.changes if c.code == "DIF311"}
-        assert added == {name for names in facts()["removed"].values() for name in names}
+        assert added == {
+            name for names in facts()["removed"].values() for name in names
+        }
 
     def test_only_its_frames_are_no_longer_understood(self, release):
         telemetry, telecommands, _ = release.directions

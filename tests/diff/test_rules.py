@@ -1,4 +1,6 @@
-"""Every kind of change, by a pair of ICDs: the exact report with its places, and what `icdgen rule` says of it."""
+"""Every kind of change, by a pair of ICDs: the exact report with its places, and what
+`icdgen rule` says of it.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,9 @@ def test_the_pair_shows_its_change_at_a_line_of_its_files(case):
             assert places
             for place in places:
                 lines = Path(place.file).read_text(encoding="utf-8").splitlines()
-                assert place.line <= len(lines) and place.column <= len(lines[place.line - 1])
+                assert place.line <= len(lines) and place.column <= len(
+                    lines[place.line - 1]
+                )
 
 
 def test_there_is_a_pair_for_every_rule():
@@ -44,7 +48,12 @@ def test_there_is_a_pair_for_every_rule():
 
 
 def test_both_icds_of_every_pair_are_sound():
-    assert [f for case in CASES for side in ("previous", "current") for f in load([case / side]).findings] == []
+    assert [
+        f
+        for case in CASES
+        for side in ("previous", "current")
+        for f in load([case / side]).findings
+    ] == []
 
 
 @pytest.mark.parametrize("code", RULES)
@@ -52,7 +61,10 @@ def test_the_example_of_a_rule_shows_it(code, tmp_path):
     from icdgen.diff.compare import compare
 
     sides = []
-    for side, text in (("before", RULES[code].page.wrong), ("after", RULES[code].page.right)):
+    for side, text in (
+        ("before", RULES[code].page.wrong),
+        ("after", RULES[code].page.right),
+    ):
         (tmp_path / side).mkdir()
         write(tmp_path / side, text)
         loaded = load([tmp_path / side])
@@ -71,7 +83,9 @@ def test_an_explanation_has_title_layer_reason_and_both_examples():
     text = rule.explain("DIF108")
     page = RULES["DIF108"].page
     assert text.startswith(f"# DIF108: {page.title} (wire, error)\n")
-    assert all(part in text for part in (page.why, page.wrong, page.right, "Before:", "After:"))
+    assert all(
+        part in text for part in (page.why, page.wrong, page.right, "Before:", "After:")
+    )
 
 
 def test_the_first_digit_of_a_code_is_its_layer():
@@ -81,7 +95,11 @@ def test_the_first_digit_of_a_code_is_its_layer():
 
 
 def test_words_are_never_more_than_a_note_and_an_addition_never_more_than_that():
-    assert all(one.severity == "note" for one in RULES.values() if one.layer == "text" or one.addition)
+    assert all(
+        one.severity == "note"
+        for one in RULES.values()
+        if one.layer == "text" or one.addition
+    )
 
 
 def test_the_report_of_equal_icds_says_so():

@@ -49,10 +49,19 @@ def sources(tmp_path):
 
 
 def uses(icdgen, *arguments) -> list[tuple]:
-    document = json.loads(icdgen("diff", "old", "new", "--format", "json", "--uses", "src", *arguments).out)
+    document = json.loads(
+        icdgen(
+            "diff", "old", "new", "--format", "json", "--uses", "src", *arguments
+        ).out
+    )
     changes = document["changes"]
     return [
-        (use["file"], use["line"], use["name"], "/".join(sorted({changes[i]["code"] for i in use["changes"]})))
+        (
+            use["file"],
+            use["line"],
+            use["name"],
+            "/".join(sorted({changes[i]["code"] for i in use["changes"]})),
+        )
         for use in document["uses"]
     ]
 
@@ -69,24 +78,36 @@ def test_every_line_that_uses_a_touched_name_is_found(icdgen, releases, sources)
 
 
 def test_columns_point_at_the_name(icdgen, releases, sources):
-    document = json.loads(icdgen("diff", "old", "new", "--format", "json", "--uses", "src").out)
+    document = json.loads(
+        icdgen("diff", "old", "new", "--format", "json", "--uses", "src").out
+    )
     for use in document["uses"]:
         assert use["text"][use["column"] - 1 :].startswith(use["name"])
 
 
 def test_the_text_report_shows_line_and_reason(icdgen, releases, sources):
     out = icdgen("diff", "old", "new", "--uses", "src").out
-    assert "src/main.c:7:25: roll_angle (DIF201)\n    int16_t raw = state.roll_angle;\n" in out
+    assert (
+        "src/main.c:7:25: roll_angle (DIF201)\n    int16_t raw = state.roll_angle;\n"
+        in out
+    )
     assert "raw*0.001, was raw*0.01" in out.split("uses in your sources")[1]
 
 
-def test_a_member_means_nothing_in_a_file_that_does_not_speak_of_its_type(icdgen, releases, sources):
+def test_a_member_means_nothing_in_a_file_that_does_not_speak_of_its_type(
+    icdgen, releases, sources
+):
     for name in ("main.c", "lib.rs", "deep/log.py"):
         (sources / name).unlink()
-    (sources / "other.py").write_text("class Plane:\n    roll_angle = 0\n    roll_angle_deg = 1\n")
+    (sources / "other.py").write_text(
+        "class Plane:\n    roll_angle = 0\n    roll_angle_deg = 1\n"
+    )
     (sources / "other.c").write_text("struct plane { int roll_angle; };\n")
     assert uses(icdgen) == []
-    assert "uses in your sources: none" in icdgen("diff", "old", "new", "--uses", "src").out
+    assert (
+        "uses in your sources: none"
+        in icdgen("diff", "old", "new", "--uses", "src").out
+    )
 
 
 def test_generated_code_is_nobodys_own(icdgen, releases, sources):
@@ -97,14 +118,22 @@ def test_generated_code_is_nobodys_own(icdgen, releases, sources):
 
 
 def test_a_renamed_field_is_found_by_its_old_name(icdgen, releases, sources):
-    text = (releases[0] / "demo.yaml").read_text().replace("name: Roll Angle, ", "name: Body Roll Angle, ", 1)
+    text = (
+        (releases[0] / "demo.yaml")
+        .read_text()
+        .replace("name: Roll Angle, ", "name: Body Roll Angle, ", 1)
+    )
     (releases[1] / "demo.yaml").write_text(text)
     found = uses(icdgen)
     assert ("src/main.c", 7, "roll_angle", "DIF302") in found and len(found) == 5
 
 
 def test_a_renamed_message_is_found_with_all_its_functions(icdgen, releases, sources):
-    text = (releases[0] / "demo.yaml").read_text().replace("name: Estimated Roll\n", "name: Filtered Estimated Roll\n")
+    text = (
+        (releases[0] / "demo.yaml")
+        .read_text()
+        .replace("name: Estimated Roll\n", "name: Filtered Estimated Roll\n")
+    )
     (releases[1] / "demo.yaml").write_text(text)
     names = {name for _, _, name, _ in uses(icdgen)}
     assert {
@@ -116,7 +145,11 @@ def test_a_renamed_message_is_found_with_all_its_functions(icdgen, releases, sou
 
 
 def test_words_touch_nobodys_code(icdgen, releases, sources):
-    text = (releases[0] / "demo.yaml").read_text().replace("title: Demo", "title: Another demo")
+    text = (
+        (releases[0] / "demo.yaml")
+        .read_text()
+        .replace("title: Demo", "title: Another demo")
+    )
     (releases[1] / "demo.yaml").write_text(text)
     assert uses(icdgen) == []
 

@@ -1,4 +1,7 @@
-"""Writes the expected reports anew: ``python -m tests.diff.update``. Read the difference before it is committed."""
+"""Writes the expected reports anew: ``python -m tests.diff.update``.
+
+Read the difference before it is committed.
+"""
 
 from __future__ import annotations
 

@@ -1,1 +1,3 @@
-"""Which output has which feature of the format: measured, and the page of the documents that is made of it."""
+"""Which output has which feature of the format: measured, and the page of the documents
+that is made of it.
+"""

@@ -1,6 +1,8 @@
-"""``python -m tests.features``: measures the outputs and writes docs/reference/features.md.
+"""``python -m tests.features``: measures the outputs and writes
+docs/reference/features.md.
 
-Names each output that lacks a feature without a reason; the exit status is 1 if there is one.
+Names each output that lacks a feature without a reason; the exit status is 1 if there
+is one.
 """
 
 from __future__ import annotations
@@ -16,7 +18,10 @@ from tests.features.page import PAGE, page
 
 def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
-        rows = {feature.name: (feature, row(feature, Path(folder))) for feature in features()}
+        rows = {
+            feature.name: (feature, row(feature, Path(folder)))
+            for feature in features()
+        }
     text, wrong = page(rows), 0
     if not PAGE.exists() or PAGE.read_text("utf-8") != text:
         PAGE.write_text(text, "utf-8")
@@ -25,7 +30,9 @@ def main() -> int:
         for output, cell in cells.items():
             if cell.has == (output in feature.without):
                 wrong += 1
-                print(f"{name}: {output} {'has it now' if cell.has else f'lacks it, without a reason {cell.says}'}")
+                print(
+                    f"{name}: {output} {'has it now' if cell.has else f'lacks it, without a reason {cell.says}'}"
+                )
     return 1 if wrong else 0
 
 

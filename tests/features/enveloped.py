@@ -34,24 +34,37 @@ Frames = dict[str, list[bytes]]
 
 def recorded(icd: Icd, node: Node, frames: Frames) -> dict[Direction, bytes]:
     """What is sent in each direction of these frames, one after the other."""
-    return {direction: b"".join(_sent_of(icd, node, frames, direction)) for direction in DIRECTIONS}
+    return {
+        direction: b"".join(_sent_of(icd, node, frames, direction))
+        for direction in DIRECTIONS
+    }
 
 
-def _sent_of(icd: Icd, node: Node, frames: Frames, direction: Direction) -> Iterator[bytes]:
+def _sent_of(
+    icd: Icd, node: Node, frames: Frames, direction: Direction
+) -> Iterator[bytes]:
     link = link_of(icd, facts.of(icd, node))
     for id, those in getattr(ids_of(icd, node), direction).items():
-        for data in (data for one in those for data in frames.get(one.message.name, ())):
+        for data in (
+            data for one in those for data in frames.get(one.message.name, ())
+        ):
             with suppress(IcdError):
                 yield stream_encode(link, id, data, direction)
 
 
-def log(icd: Icd, node: Node, sent: dict[Direction, bytes], folder: Path) -> tuple[object, object]:
+def log(
+    icd: Icd, node: Node, sent: dict[Direction, bytes], folder: Path
+) -> tuple[object, object]:
     """Recordings as CSV and as Parquet, or why there is none."""
-    said = [_log(icd, node, direction, data, folder) for direction, data in sent.items()]
+    said = [
+        _log(icd, node, direction, data, folder) for direction, data in sent.items()
+    ]
     return [csv for csv, _ in said], [arrow for _, arrow in said]
 
 
-def _log(icd: Icd, node: Node, direction: Direction, data: bytes, folder: Path) -> tuple[object, object]:
+def _log(
+    icd: Icd, node: Node, direction: Direction, data: bytes, folder: Path
+) -> tuple[object, object]:
     import pyarrow.parquet
 
     file = Path(tempfile.mkdtemp(dir=folder)) / "recording.bin"
@@ -70,19 +83,33 @@ def _log(icd: Icd, node: Node, direction: Direction, data: bytes, folder: Path) 
     return (written.getvalue(), notes), (arrow, notes)
 
 
-def simulator(icd: Icd, node: Node, frames: Frames, words: dict[str, list[list[str]]]) -> object:
-    """What it sends after its values were set, and after it was sent what was made for the example."""
-    line = EnvelopeLine(Computer(icd, node, Settings(strict=True), Storage()), Faults(Random(0), [], 0), {})
+def simulator(
+    icd: Icd, node: Node, frames: Frames, words: dict[str, list[list[str]]]
+) -> object:
+    """What it sends after its values were set, and after it was sent what was made for
+    the example.
+    """
+    line = EnvelopeLine(
+        Computer(icd, node, Settings(strict=True), Storage()),
+        Faults(Random(0), [], 0),
+        {},
+    )
     said: list[object] = []
     for data in _sent_of(icd, node, frames, "telecommand"):
         line.received(len(said), data)
         said.append((_sent(line, len(said)), dict(line.computer.program.counts)))
     for message in node.messages:
-        for row in words.get(message.name, ()) if message.telemetry_id is not None else ():
+        for row in (
+            words.get(message.name, ()) if message.telemetry_id is not None else ()
+        ):
             try:
                 for name, value in (word.split("=", 1) for word in row):
-                    for own, one, given in fields_of(icd, node, message.name, name, value):
-                        line.computer.program.values.update(own, {one.name: raw_value_of(own, one, given)})
+                    for own, one, given in fields_of(
+                        icd, node, message.name, name, value
+                    ):
+                        line.computer.program.values.update(
+                            own, {one.name: raw_value_of(own, one, given)}
+                        )
             except (UserError, codec.CodecError) as error:
                 said.append(str(error))
             said.append(_sent(line, len(said)))

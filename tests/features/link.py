@@ -1,4 +1,6 @@
-"""A line and a log, for ICDs that have none: what the simulator and the logs need to know."""
+"""A line and a log, for ICDs that have none: what the simulator and the logs need to
+know.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,9 @@ protocol:
 
 
 def envelope(id_bits: int) -> dict[str, object]:
-    """The link of a node whose messages do not fit that line: with longer ids, or of several lengths."""
+    """The link of a node whose messages do not fit that line: with longer ids, or of
+    several lengths.
+    """
     header = [
         {"at": 0, "bits": 8, "role": "sync", "value": 0x55},
         {"at": 8, "bits": 16, "role": "length"},

@@ -1,4 +1,8 @@
-"""What each output says of an ICD. It has a feature if it works on the example and says something else when that is changed."""
+"""What each output says of an ICD.
+
+It has a feature if it works on the example and says something else when that is
+changed.
+"""
 
 from __future__ import annotations
 
@@ -54,7 +58,9 @@ class Refused(ValueError):
 
 @dataclass(frozen=True)
 class Subject:
-    """An ICD that is tried, frames of its messages, and what a user writes to get these; all of the example."""
+    """An ICD that is tried, frames of its messages, and what a user writes to get
+    these; all of the example.
+    """
 
     feature: Feature
     content: str
@@ -71,9 +77,13 @@ class Subject:
         return self.icd.nodes[-1]
 
     def sharing(self, message: Message) -> list[Message]:
-        """The messages that have an id of its, in its direction: itself alone, if it has its own."""
+        """The messages that have an id of its, in its direction: itself alone, if it
+        has its own.
+        """
         found = ids_of(self.icd, self.node)
-        known = found.telecommand if message.telecommand_id is not None else found.telemetry
+        known = (
+            found.telecommand if message.telecommand_id is not None else found.telemetry
+        )
         return [one.message for one in known[message.ids[0]]]
 
     def messages(self) -> Iterator[tuple[Message, bytes]]:
@@ -84,7 +94,10 @@ class Subject:
 
     @cached_property
     def linked(self) -> tuple[Icd, str]:
-        """The ICD with a link on which it is spoken: its own; else a line and a log; else one with envelopes. Raises `Refused`."""
+        """The ICD with a link on which it is spoken: its own.
+
+        Else a line and a log; else one with envelopes. Raises `Refused`.
+        """
         tree = yaml.safe_load(self.content)
         if "protocol" in tree:
             return self.icd, tree["node"]["name"]
@@ -100,18 +113,31 @@ class Subject:
         return facts.of(icd, icd.node(name)).stream is not None
 
     def _with_log(self, tree: dict[str, Any]) -> tuple[Icd, str]:
-        """With a line and a log; what does not fit these is not in the log. Raises `Refused`."""
+        """With a line and a log; what does not fit these is not in the log.
+
+        Raises `Refused`.
+        """
         tree, link = dict(tree), yaml.safe_load(LINK)
         spoken = [one for one in tree["messages"] if one["kind"] != "telecommand"]
-        size = next((one["length"] for one in spoken if self.feature.places({"messages": [one]})), None)
+        size = next(
+            (
+                one["length"]
+                for one in spoken
+                if self.feature.places({"messages": [one]})
+            ),
+            None,
+        )
         size = size or next((one["length"] for one in spoken), 1)
         logged = [one for one in spoken if one["length"] == size]
         link["protocol"]["log_mask"]["frame_bytes"] = size
         link["loggable"] = [
-            {"bit": bit, "id": one.get("id", one.get("get_id")), "name": one["name"]} for bit, one in enumerate(logged)
+            {"bit": bit, "id": one.get("id", one.get("get_id")), "name": one["name"]}
+            for bit, one in enumerate(logged)
         ]
         for key, value in link.items():
-            tree[key] = [*tree.get(key, ()), *value] if isinstance(value, list) else value
+            tree[key] = (
+                [*tree.get(key, ()), *value] if isinstance(value, list) else value
+            )
         return icd_of(json.dumps(tree), self.folder), tree["node"]["name"]
 
 
@@ -144,7 +170,9 @@ def generated(name: str) -> Callable[[Subject], object]:
 
     def files(subject: Subject) -> object:
         made = backends.get(name).files(subject.icd, renderer(name))
-        return list(takewhile(lambda file: not str(file[0]).startswith(guide.FOLDER), made))
+        return list(
+            takewhile(lambda file: not str(file[0]).startswith(guide.FOLDER), made)
+        )
 
     return files
 
@@ -154,11 +182,31 @@ def _codec(subject: Subject) -> object:
     for message, data in subject.messages():
         try:
             raw = codec.decode(subject.node, message, data)
-            assert codec.decode(subject.node, message, codec.encode(subject.node, message, raw)) == raw
-            scaled = [field for field in message.fields if field.has_formula and field.name in raw]
-            physical = {field.name: codec.physical_double(field, raw[field.name]) for field in scaled}
+            assert (
+                codec.decode(
+                    subject.node, message, codec.encode(subject.node, message, raw)
+                )
+                == raw
+            )
+            scaled = [
+                field
+                for field in message.fields
+                if field.has_formula and field.name in raw
+            ]
+            physical = {
+                field.name: codec.physical_double(field, raw[field.name])
+                for field in scaled
+            }
             known = subject.sharing(message)
-            said.append((message.name, message.ids, raw, physical, len(known) > 1 and _which(subject, known, data)))
+            said.append(
+                (
+                    message.name,
+                    message.ids,
+                    raw,
+                    physical,
+                    len(known) > 1 and _which(subject, known, data),
+                )
+            )
         except codec.CodecError as error:
             said.append((message.name, str(error)))
     return said
@@ -170,8 +218,15 @@ def _which(subject: Subject, known: list[Message], data: bytes) -> str | None:
 
 
 def _show(subject: Subject) -> object:
-    pages = [people.to_text(subject.icd, (subject.node.name, message.name)) for message in subject.node.messages]
-    return pages, people.to_text(subject.icd, (subject.node.name,)), _without_source(machine.to_json(subject.icd))
+    pages = [
+        people.to_text(subject.icd, (subject.node.name, message.name))
+        for message in subject.node.messages
+    ]
+    return (
+        pages,
+        people.to_text(subject.icd, (subject.node.name,)),
+        _without_source(machine.to_json(subject.icd)),
+    )
 
 
 def _without_source(tree: object) -> object:
@@ -189,18 +244,32 @@ def _decode(subject: Subject) -> object:
     said: list[object] = []
     for message, data in subject.messages():
         with suppress(UserError):
-            key = message.name if len(subject.sharing(message)) == 1 else str(message.ids[0])
+            key = (
+                message.name
+                if len(subject.sharing(message)) == 1
+                else str(message.ids[0])
+            )
             found = recognize(subject.icd, data.hex(), subject.node.name, key)
-            said += [(values_text.to_text(one.frame), one.frame.to_json()) for one in found]
+            said += [
+                (values_text.to_text(one.frame), one.frame.to_json()) for one in found
+            ]
     return said
 
 
 def words_of(icd: Icd, frames: dict[str, list[bytes]]) -> dict[str, list[list[str]]]:
-    """For each frame of a message what a user would write to get it: physical values, names of members, texts."""
+    """For each frame of a message what a user would write to get it: physical values,
+    names of members, texts.
+    """
     node, found = icd.nodes[-1], {}
     for message in node.messages:
-        rows = [frame(icd, node, message, data).rows for data in _some(frames[message.name], WORDS)]
-        found[message.name] = [[f"{row.field.name}={row.text}" for row in one if row.field.is_raw] for one in rows]
+        rows = [
+            frame(icd, node, message, data).rows
+            for data in _some(frames[message.name], WORDS)
+        ]
+        found[message.name] = [
+            [f"{row.field.name}={row.text}" for row in one if row.field.is_raw]
+            for one in rows
+        ]
         if any(row.field.special for row in rows[0]):
             found[message.name].append(
                 [
@@ -216,14 +285,20 @@ def _encode(subject: Subject) -> object:
     for name, rows in subject.words.items():
         for words in rows:
             try:
-                said.append(values_text.to_text(encode(subject.icd, subject.node.name, name, words)))
+                said.append(
+                    values_text.to_text(
+                        encode(subject.icd, subject.node.name, name, words)
+                    )
+                )
             except UserError as error:
                 said.append(str(error))
     return said
 
 
 def _simulator(subject: Subject) -> object:
-    """What it answers after its values were set, and after it was sent what was made for the example."""
+    """What it answers after its values were set, and after it was sent what was made
+    for the example.
+    """
     icd, name = subject.linked
     node = icd.node(name)
     if subject.has_envelopes:
@@ -232,14 +307,24 @@ def _simulator(subject: Subject) -> object:
     said: list[object] = []
     for message, data in subject.messages():
         if message.telecommand_id is not None:
-            said.append(program.take(len(said), bytes([message.telecommand_id]) + data, "uart"))
+            said.append(
+                program.take(len(said), bytes([message.telecommand_id]) + data, "uart")
+            )
             said.append(_answers(program, len(said)))
     for message in node.messages:
-        for words in subject.words.get(message.name, ()) if message.telemetry_id is not None else ():
+        for words in (
+            subject.words.get(message.name, ())
+            if message.telemetry_id is not None
+            else ()
+        ):
             try:
                 for key, value in (word.split("=", 1) for word in words):
-                    for own, one, given in fields_of(icd, node, message.name, key, value):
-                        program.values.update(own, {one.name: raw_value_of(own, one, given)})
+                    for own, one, given in fields_of(
+                        icd, node, message.name, key, value
+                    ):
+                        program.values.update(
+                            own, {one.name: raw_value_of(own, one, given)}
+                        )
             except (UserError, codec.CodecError) as error:
                 said.append(str(error))
             said.append(_answers(program, len(said)))
@@ -251,11 +336,16 @@ def _answers(program: Program, now: int) -> list[bytes | None]:
 
 
 def _log(subject: Subject) -> tuple[object, object]:
-    """As CSV and as Parquet; of envelopes what is made of the bytes that the example sends."""
+    """As CSV and as Parquet.
+
+    Of envelopes what is made of the bytes that the example sends.
+    """
     icd, name = subject.linked
     if subject.has_envelopes:
         example = replace(subject, content=subject.feature.example)
-        sent = enveloped.recorded(example.linked[0], example.linked[0].node(name), subject.frames)
+        sent = enveloped.recorded(
+            example.linked[0], example.linked[0].node(name), subject.frames
+        )
         return enveloped.log(icd, icd.node(name), sent, subject.folder)
     known = facts.of(icd, icd.node(name))
     mask = bytes([(1 << len(known.mask.bits)) - 1, 0])
@@ -264,7 +354,10 @@ def _log(subject: Subject) -> tuple[object, object]:
     entries = []
     for number in range(FRAMES):
         frames = [(subject.frames[names[slot.id]], slot.length) for slot in slots]
-        cut = [rows[number % len(rows)][:length].ljust(length, b"\0") for rows, length in frames]
+        cut = [
+            rows[number % len(rows)][:length].ljust(length, b"\0")
+            for rows, length in frames
+        ]
         entries.append((1_600_000_000, number, cut))
     file = Path(tempfile.mkdtemp(dir=subject.folder)) / "log.bin"
     file.write_bytes(logs.encode(known, mask, entries))
@@ -275,12 +368,19 @@ def _log(subject: Subject) -> tuple[object, object]:
     import pyarrow.parquet
 
     table = pyarrow.parquet.read_table(file.with_suffix(".parquet"))
-    return written.getvalue(), (table.schema.remove_metadata().to_string(), table.to_pylist())
+    return written.getvalue(), (
+        table.schema.remove_metadata().to_string(),
+        table.to_pylist(),
+    )
 
 
 def _columns(subject: Subject) -> object:
-    """Tables of numpy and Arrow from the generated Python, which agree with single frames."""
-    package = packages.write(subject.icd, Path(tempfile.mkdtemp(dir=subject.folder)), next(_names))
+    """Tables of numpy and Arrow from the generated Python, which agree with single
+    frames.
+    """
+    package = packages.write(
+        subject.icd, Path(tempfile.mkdtemp(dir=subject.folder)), next(_names)
+    )
     module, said = package.module(subject.node.name), []
     errors = package.module("_errors")
     for message in subject.node.messages:
@@ -291,7 +391,9 @@ def _columns(subject: Subject) -> object:
         )
         cls = next(one for one in known.of(id) if message.name == one.NAME)
         frames = [
-            frame for frame in subject.frames.get(message.name, ()) if frame and _taken(cls, frame, errors.LengthError)
+            frame
+            for frame in subject.frames.get(message.name, ())
+            if frame and _taken(cls, frame, errors.LengthError)
         ]
         if not frames:
             continue
@@ -324,7 +426,10 @@ def _plain(column: object) -> str:
 def _xtce(subject: Subject) -> object:
     """What other programs may read of the file: what comes back of it."""
     folder = Path(tempfile.mkdtemp(dir=subject.folder))
-    return {name: readback.read_back(file, folder) for name, file in readback.write(subject.icd, folder).items()}
+    return {
+        name: readback.read_back(file, folder)
+        for name, file in readback.write(subject.icd, folder).items()
+    }
 
 
 def differs(old: Subject, new: Subject) -> bool:
@@ -333,10 +438,16 @@ def differs(old: Subject, new: Subject) -> bool:
 
 
 def laid_out(subject: Subject) -> bool:
-    """Whether the layout command makes the example, but for its comments, of the same values in another layout."""
+    """Whether the layout command makes the example, but for its comments, of the same
+    values in another layout.
+    """
     tree = yaml.safe_load(subject.content)
     made = format_text(json.dumps(tree), "example.yaml")
-    return yaml.safe_load(made) == tree and format_text(made, "example.yaml") == made and "{at: " in made
+    return (
+        yaml.safe_load(made) == tree
+        and format_text(made, "example.yaml") == made
+        and "{at: " in made
+    )
 
 
 SAYS: dict[str, Callable[[Subject], object]] = {

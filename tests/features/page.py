@@ -21,10 +21,16 @@ OUTPUTS = {
     "javascript": ("JavaScript", "as for C, for the decoder of the documentation site"),
     "vectors": ("vectors", "the golden vectors differ"),
     "random": ("random", "random ICDs of the conformance run have it"),
-    "mutation": ("mutation", "there are mutants of it, which the golden vectors must detect"),
+    "mutation": (
+        "mutation",
+        "there are mutants of it, which the golden vectors must detect",
+    ),
     "fuzz": ("fuzz", "the ICDs of the fuzz harnesses have it"),
     "fmt": ("fmt", "`icdgen fmt` formats the example and keeps its meaning"),
-    "check": ("check", "`icdgen check` reports an error if the feature is used wrongly"),
+    "check": (
+        "check",
+        "`icdgen check` reports an error if the feature is used wrongly",
+    ),
     "diff": ("diff", "`icdgen diff` reports the change"),
     "show": ("show", "`icdgen show` prints something else"),
     "decode": ("decode", "`icdgen decode` prints something else for the same frames"),
@@ -35,9 +41,15 @@ OUTPUTS = {
         "a simulated device with the same values and telecommands responds differently",
     ),
     "log": ("log", "a log of the same bytes, converted to CSV, differs"),
-    "numpy": ("numpy", "`decode_many` and `decode_table` of the generated Python return other columns"),
+    "numpy": (
+        "numpy",
+        "`decode_many` and `decode_table` of the generated Python return other columns",
+    ),
     "arrow": ("Arrow", "the same log, converted to Parquet, differs"),
-    "xtce": ("XTCE", "the file for ground systems differs, and the feature is kept when it is imported again"),
+    "xtce": (
+        "XTCE",
+        "the file for ground systems differs, and the feature is kept when it is imported again",
+    ),
 }
 
 _BEGIN = """\
@@ -61,8 +73,18 @@ def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
         lines.append(
             f"| [{feature.name}]({page_of(feature.section)}#{anchor_of(feature.section)}) | {' | '.join(shown)} |"
         )
-    lines += ["", *(f"{number}. {reason[0].upper()}{reason[1:]}." for number, reason in enumerate(reasons, 1))]
-    lines += ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."] if unmeasured() else []
+    lines += [
+        "",
+        *(
+            f"{number}. {reason[0].upper()}{reason[1:]}."
+            for number, reason in enumerate(reasons, 1)
+        ),
+    ]
+    lines += (
+        ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."]
+        if unmeasured()
+        else []
+    )
     lines += ["", "| output | how support is measured |", "|---|---|"]
     lines += [f"| {head} | {asked} |" for head, asked in OUTPUTS.values()]
     return "\n".join(lines) + "\n"

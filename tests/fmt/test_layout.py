@@ -1,4 +1,6 @@
-"""What ``icdgen fmt`` makes of files, as a reader sees it: the ``*.in.yaml`` here and their ``*.out.yaml``."""
+"""What ``icdgen fmt`` makes of files, as a reader sees it: the ``*.in.yaml`` here and
+their ``*.out.yaml``.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ from icdgen.icd.fmt.rows import aligned
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 CASES = sorted(HERE.glob("*.in.yaml"))
-SHIPPED = sorted([*(ROOT / "icd").glob("*.yaml"), *(ROOT / "icd" / "errata").glob("*.yaml")])
+SHIPPED = sorted(
+    [*(ROOT / "icd").glob("*.yaml"), *(ROOT / "icd" / "errata").glob("*.yaml")]
+)
 
 
 def expected(case: Path) -> Path:
@@ -28,7 +32,9 @@ def formatted(text: str) -> str:
 @pytest.mark.parametrize("case", CASES, ids=lambda path: path.name)
 def test_canonical_layout(case):
     """A difference that is meant: ``python -m tests.fmt.update``."""
-    assert formatted(case.read_bytes().decode("utf-8")) == expected(case).read_bytes().decode("utf-8")
+    assert formatted(case.read_bytes().decode("utf-8")) == expected(
+        case
+    ).read_bytes().decode("utf-8")
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda path: path.name)
@@ -48,7 +54,9 @@ def test_there_are_cases():
     assert len(CASES) >= 4 and len(SHIPPED) >= 5
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}/{path.name}")
+@pytest.mark.parametrize(
+    "path", SHIPPED, ids=lambda path: f"{path.parent.name}/{path.name}"
+)
 def test_shipped_files_are_in_the_canonical_layout(path):
     text = path.read_bytes().decode("utf-8")
     assert formatted(text) == text
@@ -80,7 +88,12 @@ def test_what_has_no_one_meaning_is_refused(text, code):
 def test_only_the_keys_that_all_rows_begin_with_are_aligned():
     rows = [
         {"at": "at: 0", "name": "name: A", "type": "type: int"},
-        {"at": "at: 128", "name": "name: Long", "identifier": "identifier: B", "type": "type: int"},
+        {
+            "at": "at: 128",
+            "name": "name: Long",
+            "identifier": "identifier: B",
+            "type": "type: int",
+        },
         {"at": "at: 8", "name": "name: " + "x" * 60, "type": "type: int"},
     ]
     assert aligned(rows) == [

@@ -1,4 +1,6 @@
-"""What holds for every file: the layout is stable, no value changes, and each comment stays with what it is about."""
+"""What holds for every file: the layout is stable, no value changes, and each comment
+stays with what it is about.
+"""
 
 from __future__ import annotations
 
@@ -14,13 +16,33 @@ from icdgen.icd import source
 from icdgen.icd.fmt import format_text, same
 from icdgen.icd.fmt.read import comments
 
-quick = settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+quick = settings(
+    max_examples=100,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=list(HealthCheck),
+)
 
 # Text that YAML has a meaning of its own for, whole and in pieces.
 PIECES = ["a", "#", "# b", ":", "x:", "- ", "-", " ", "  ", "\n", "\n\n", "{", "}", ",", "[", "]", "'", '"', "\\", "|",
           ">", "%", "*", "&", "!", "?", "@", "`", "~", "=", "<<", "\t", "\r", "\x85", "\u2028", "é", "\u00a0", "---",
           "...", "0x1F", "010", "on", "Off", "2020-11-03", "12:30", "word", "1e5", ".inf"]  # fmt: skip
-WHOLE = ["yes", "No", "null", "~", "", "1", "0x1f", "-5", "1.50", "true", "word " * 60, "x" * 1500, "... 0", "--- a"]
+WHOLE = [
+    "yes",
+    "No",
+    "null",
+    "~",
+    "",
+    "1",
+    "0x1f",
+    "-5",
+    "1.50",
+    "true",
+    "word " * 60,
+    "x" * 1500,
+    "... 0",
+    "--- a",
+]
 KEYS = ["name", "at", "bits", "type", "id", "fields", "members", "source", "table", "where", "message", "printed",
         "why", "zz"]  # fmt: skip
 SECTIONS = ["icdgen", "errata", "node", "include", "vocabulary", "units", "protocol", "enums", "messages", "loggable",
@@ -32,18 +54,30 @@ texts = st.one_of(
     st.lists(st.sampled_from(PIECES), max_size=20).map("".join),
     st.sampled_from(WHOLE),
 )
-numbers = st.one_of(st.integers(), st.booleans(), st.none(), st.integers(-(10**9), 10**9).map(lambda n: n / 1000))
+numbers = st.one_of(
+    st.integers(),
+    st.booleans(),
+    st.none(),
+    st.integers(-(10**9), 10**9).map(lambda n: n / 1000),
+)
 keys = st.one_of(st.sampled_from(KEYS), texts)
 trees = st.recursive(
     st.one_of(texts, numbers),
-    lambda inner: st.one_of(st.lists(inner, max_size=5), st.dictionaries(keys, inner, max_size=5)),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=5), st.dictionaries(keys, inner, max_size=5)
+    ),
     max_leaves=20,
 )
-documents = st.dictionaries(st.one_of(st.sampled_from(SECTIONS), keys), trees, max_size=5)
+documents = st.dictionaries(
+    st.one_of(st.sampled_from(SECTIONS), keys), trees, max_size=5
+)
 
 
 def check(text: str) -> str:
-    """The formatted text, after everything that must hold for it; refused texts are not our concern."""
+    """The formatted text, after everything that must hold for it.
+
+    Refused texts are not our concern.
+    """
     try:
         before = source.parse(text.encode("utf-8"), "before")
     except Findings:
@@ -63,7 +97,15 @@ def check(text: str) -> str:
     st.sampled_from([None, '"', "'", "|", ">"]),
 )
 def test_any_tree_in_any_style(tree, flow, width, style):
-    check(yaml.safe_dump(tree, default_flow_style=flow, width=width, default_style=style, sort_keys=False))
+    check(
+        yaml.safe_dump(
+            tree,
+            default_flow_style=flow,
+            width=width,
+            default_style=style,
+            sort_keys=False,
+        )
+    )
 
 
 SOUP = ["# c", "#", "\n", "\n  ", "\n    ", "- ", "a: ", "b:", "c: 1", ", ", "{", "}", "[", "]", "x", "'q'", '"d"',
@@ -78,7 +120,10 @@ def test_any_text_that_the_loader_accepts(text):
 
 
 class Writer:
-    """Writes an ICD in a random style. Each comment names a word, unique in the file, of the line it must stay with."""
+    """Writes an ICD in a random style.
+
+    Each comment names a word, unique in the file, of the line it must stay with.
+    """
 
     def __init__(self, draw) -> None:
         self.draw, self.lines = draw, []
@@ -88,7 +133,9 @@ class Writer:
 
     def above(self, indent: int, word: str) -> None:
         for number in range(self.draw(st.integers(0, 2))):
-            self.lines.append(" " * indent + f"# above {word} {number}" + "\n" * self.maybe())
+            self.lines.append(
+                " " * indent + f"# above {word} {number}" + "\n" * self.maybe()
+            )
 
     def behind(self, word: str) -> str:
         return f"   # behind {word}" if self.maybe() else ""
@@ -107,7 +154,9 @@ class Writer:
     def message(self, name: str) -> None:
         self.above(2, name)
         self.lines.append(f"  - name: {name}{self.behind(name)}")
-        entries = self.draw(st.permutations(["group", "source", "summary", "fields", "unknown"]))
+        entries = self.draw(
+            st.permutations(["group", "source", "summary", "fields", "unknown"])
+        )
         for entry in entries:
             word = f"{name}{entry}"
             if entry == "fields":
@@ -126,7 +175,9 @@ class Writer:
         self.above(6, name)
         style = self.draw(st.sampled_from(["flow", "flow lines", "block"]))
         if style == "flow":
-            self.lines.append(f"      - {{bits: 8, name: {name}, at: 0}}{self.behind(name)}")
+            self.lines.append(
+                f"      - {{bits: 8, name: {name}, at: 0}}{self.behind(name)}"
+            )
         elif style == "flow lines":
             self.lines += [
                 f"      - {{bits: 8,{self.behind(name + ' 1')}",
@@ -135,7 +186,10 @@ class Writer:
             self.above(9, f"{name} inside")
             self.lines.append(f"         , at: 0}}{self.behind(name)}")
         else:
-            self.lines += [f"      - bits: 8{self.behind(name + ' 1')}", f"        at: 0{self.behind(name + ' 2')}"]
+            self.lines += [
+                f"      - bits: 8{self.behind(name + ' 1')}",
+                f"        at: 0{self.behind(name + ' 2')}",
+            ]
             self.above(8, f"{name} inside")
             self.lines.append(f"        name: {name}{self.behind(name + ' 3')}")
 
@@ -162,7 +216,9 @@ def test_each_comment_stays_with_what_it_is_about(text):
         if about(line).strip():
             owner = about(line)
         elif where == "below":
-            owner = next(about(one) for one in reversed(lines[:index]) if about(one).strip())
+            owner = next(
+                about(one) for one in reversed(lines[:index]) if about(one).strip()
+            )
         else:
             owner = next(about(one) for one in lines[index:] if about(one).strip())
         assert word in owner.replace("}", " ").replace(",", " ").split(), line
@@ -180,7 +236,16 @@ def test_each_comment_stays_with_what_it_is_about(text):
         "".join(f"k{number}: 1\n" for number in range(10_000)),
         "a:\n" + "".join(f"  - {{k{number}: 1, x: 2}}\n" for number in range(4_000)),
     ],
-    ids=["comments", "items", "rows", "depth", "schema lines", "hashes", "keys", "unlike rows"],
+    ids=[
+        "comments",
+        "items",
+        "rows",
+        "depth",
+        "schema lines",
+        "hashes",
+        "keys",
+        "unlike rows",
+    ],
 )
 def test_large_files_take_linear_time(text):
     import time

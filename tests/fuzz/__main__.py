@@ -1,4 +1,7 @@
-"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it; status 0 if nothing is found."""
+"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it.
+
+Status 0 if nothing is found.
+"""
 
 from __future__ import annotations
 
@@ -61,31 +64,53 @@ def sources(language: Language, icd: Icd, folder: Path) -> Path:
 
 
 def routes(icd: Icd, node: Node) -> dict[int, list[tuple[int, Message]]]:
-    """What a harness counts the messages of a direction by: id and message, as the dispatchers of C have them."""
+    """What a harness counts the messages of a direction by: id and message, as the
+    dispatchers of C have them.
+    """
     one = describe(icd).node(node.name)
     return {
-        0: [(m.model.telecommand_id, m.model) for m in one.telecommands if m.model.telecommand_id is not None],
-        DIRECTION: [(m.model.telemetry_id, m.model) for m in one.telemetry if m.model.telemetry_id is not None],
+        0: [
+            (m.model.telecommand_id, m.model)
+            for m in one.telecommands
+            if m.model.telecommand_id is not None
+        ],
+        DIRECTION: [
+            (m.model.telemetry_id, m.model)
+            for m in one.telemetry
+            if m.model.telemetry_id is not None
+        ],
     }
 
 
 def seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every frame of the golden vectors. Harnesses count the nodes in the order of the ICDs or of their names."""
+    """An input for every frame of the golden vectors.
+
+    Harnesses count the nodes in the order of the ICDs or of their names.
+    """
     names = [node.name for node in icd.nodes]
     for node in icd.nodes:
         ways = routes(icd, node)
         for vectors in make(icd, node).messages:
             for flag, found in ways.items():
                 ids = sorted({id for id, _ in found})
-                numbers = {place for place, (_, one) in enumerate(found) if one == vectors.message}
+                numbers = {
+                    place
+                    for place, (_, one) in enumerate(found)
+                    if one == vectors.message
+                }
                 numbers |= {ids.index(found[place][0]) for place in numbers}
                 for row, number in product(vectors.rows, numbers):
-                    for index in {names.index(node.name), sorted(names).index(node.name)}:
+                    for index in {
+                        names.index(node.name),
+                        sorted(names).index(node.name),
+                    }:
                         yield bytes((index, flag, number & 0xFF)) + row.frame
 
 
 def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream, row of packets and log of the golden vectors of the protocol, for the harness `c_wire`."""
+    """An input for every stream, row of packets and log of the golden vectors of the
+    protocol, for the harness `c_wire`.
+    """
     for index, node in enumerate(icd.nodes):
         for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
             match case.request:
@@ -93,13 +118,17 @@ def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
                     yield bytes((index, 0, 255, 7)) + bytes.fromhex(stream)
                     yield bytes((index, 3, 0, 3, 255)) + bytes.fromhex(stream)
                 case {"op": "can_join", "packets": packets}:
-                    yield bytes((index, 1, 3)) + b"".join(_packet(one) for one in packets)
+                    yield bytes((index, 1, 3)) + b"".join(
+                        _packet(one) for one in packets
+                    )
                 case {"op": "log_decode", "bytes": file}:
                     yield bytes((index, 2, 5)) + bytes.fromhex(file)
 
 
 def c_stream_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream in envelopes of the golden vectors of the protocol, for the harness `c_stream`."""
+    """An input for every stream in envelopes of the golden vectors of the protocol, for
+    the harness `c_stream`.
+    """
     for index, node in enumerate(icd.nodes):
         for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
             if case.request["op"] == "stream_events":
@@ -109,12 +138,20 @@ def c_stream_seeds(icd: Icd) -> Iterator[bytes]:
 
 def _packet(one: dict) -> bytes:
     id, data = one["id"], bytes.fromhex(one["bytes"])
-    return bytes((id >> 24 & 31, id >> 16 & 255, (id >> 8 & 3) | (id & 3) << 2)) + data.ljust(8, b"\0") + b"\0"
+    return (
+        bytes((id >> 24 & 31, id >> 16 & 255, (id >> 8 & 3) | (id & 3) << 2))
+        + data.ljust(8, b"\0")
+        + b"\0"
+    )
 
 
 def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
-    """An input for every stream, log and set of packets of the golden vectors of the protocol layer."""
-    for index, node in enumerate(json.loads(protocol.text(icd) or '{"nodes": []}')["nodes"]):
+    """An input for every stream, log and set of packets of the golden vectors of the
+    protocol layer.
+    """
+    for index, node in enumerate(
+        json.loads(protocol.text(icd) or '{"nodes": []}')["nodes"]
+    ):
         for case in node["cases"]:
             request, head = case["request"], bytes((index, 0, 3, 128))
             if request["op"] == "uart_events":
@@ -123,16 +160,22 @@ def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
                 yield bytes((index, 3, 3, 128)) + stream
             elif request["op"] == "can_join":
                 rows = (
-                    one["id"].to_bytes(4, "big") + b"\0" + bytes.fromhex(one["bytes"]).ljust(9, b"\0")
+                    one["id"].to_bytes(4, "big")
+                    + b"\0"
+                    + bytes.fromhex(one["bytes"]).ljust(9, b"\0")
                     for one in request["packets"]
                 )
                 yield bytes((index, 1, 3, 128)) + b"".join(rows)[:LONGEST]
             elif request["op"] in ("log_decode", "log_message_decode"):
-                yield bytes((index, 2, 3, 128)) + bytes.fromhex(request["bytes"])[:LONGEST]
+                yield bytes((index, 2, 3, 128)) + bytes.fromhex(request["bytes"])[
+                    :LONGEST
+                ]
 
 
 def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """libFuzzer with the address and the undefined-behaviour sanitizer, on the dispatchers."""
+    """libFuzzer with the address and the undefined-behaviour sanitizer, on the
+    dispatchers.
+    """
     return _c(icd, folder, "c_target.c")
 
 
@@ -147,11 +190,33 @@ def c_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 
 def _c(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
-    source = sources(Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, folder)
+    source = sources(
+        Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, folder
+    )
     testee = source / "c-testee"
-    files = [HERE / target, testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
-    flags = ["-O1", "-g", "-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"]
-    execute("clang", "-std=c99", *flags, "-I", source / "c", "-I", testee, *files, "-o", folder / "dispatch")
+    files = [
+        HERE / target,
+        testee / "testee_nodes.c",
+        *sorted(testee.glob("nodes/*.c")),
+    ]
+    flags = [
+        "-O1",
+        "-g",
+        "-fsanitize=fuzzer,address,undefined",
+        "-fno-sanitize-recover=all",
+    ]
+    execute(
+        "clang",
+        "-std=c99",
+        *flags,
+        "-I",
+        source / "c",
+        "-I",
+        testee,
+        *files,
+        "-o",
+        folder / "dispatch",
+    )
     return [str(folder / "dispatch")], {}
 
 
@@ -162,9 +227,17 @@ def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
         for flag, name in ((0, "Telecommand"), (DIRECTION, "Telemetry")):
             ids = ", ".join(str(id) for id, _ in routes(icd, node)[flag])
             told = f"icd::{node.name}::{name}, [{ids}], flags, number, data"
-            arms += [f"    ({index}, {'true' if flag else 'false'}) => exercise!({told}),\n"] if ids else []
+            arms += (
+                [
+                    f"    ({index}, {'true' if flag else 'false'}) => exercise!({told}),\n"
+                ]
+                if ids
+                else []
+            )
     text = f"match (node % {len(icd.nodes)}, telemetry) {{\n{''.join(arms)}    _ => {{}}\n}}\n"
-    return _cargo_fuzz(icd, folder, "dispatch", HERE / "rust_target.rs", {"nodes.rs": text})
+    return _cargo_fuzz(
+        icd, folder, "dispatch", HERE / "rust_target.rs", {"nodes.rs": text}
+    )
 
 
 def rust_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
@@ -177,14 +250,21 @@ def rust_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     return _rust_links(icd, folder, "stream")
 
 
-def _rust_links(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
+def _rust_links(
+    icd: Icd, folder: Path, target: str
+) -> tuple[list[str], dict[str, str]]:
     nodes = [node.name for node in icd.nodes if icd.protocol_of(node)]
-    longest = "".join(f" if icd::{name}::LONGEST > longest {{ longest = icd::{name}::LONGEST; }}" for name in nodes)
+    longest = "".join(
+        f" if icd::{name}::LONGEST > longest {{ longest = icd::{name}::LONGEST; }}"
+        for name in nodes
+    )
     links = ", ".join(f"&icd::{name}::LINK" for name in nodes)
     text = f"fn link_of(node: usize) -> Option<&'static Link> {{\n    let all: [&Link; {len(nodes)}] = [{links}];\n"
     text += "    all.get(node.checked_rem(all.len())?).copied()\n}\n"
     text += f"const LONGEST: usize = {{ let mut longest = 0;{longest} longest }};\n"
-    return _cargo_fuzz(icd, folder, target, HERE / f"rust_{target}_target.rs", {"links.rs": text})
+    return _cargo_fuzz(
+        icd, folder, target, HERE / f"rust_{target}_target.rs", {"links.rs": text}
+    )
 
 
 def _cargo_fuzz(
@@ -192,10 +272,14 @@ def _cargo_fuzz(
 ) -> tuple[list[str], dict[str, str]]:
     import tomllib
 
-    source = sources(Language("rust", ("rust",), (), lambda source, out: []), icd, folder)
+    source = sources(
+        Language("rust", ("rust",), (), lambda source, out: []), icd, folder
+    )
     fuzz = folder / "fuzz"
     fuzz.mkdir(exist_ok=True)
-    package = tomllib.loads((source / "rust" / "Cargo.toml").read_text())["package"]["name"]
+    package = tomllib.loads((source / "rust" / "Cargo.toml").read_text())["package"][
+        "name"
+    ]
     (fuzz / "Cargo.toml").write_text(_MANIFEST.format(package=package, target=target))
     shutil.copy(harness, fuzz / f"{target}.rs")
     for name, text in included.items():
@@ -209,13 +293,17 @@ def _cargo_fuzz(
 
 
 def stream_seeds(icd: Icd) -> Iterator[bytes]:
-    """Inputs of the harnesses on stream decoders, from the golden vectors of the protocol."""
+    """Inputs of the harnesses on stream decoders, from the golden vectors of the
+    protocol.
+    """
     for index, node in enumerate(protocol.nodes(icd)):
         for case in protocol.cases(icd, node):
             asked = case.request
             if asked["op"] in ("uart_decode", "log_decode"):
                 part = 0 if asked["op"] == "uart_decode" else 2
-                yield bytes((part, index + 1, len(case.why))) + bytes.fromhex(asked["bytes"])
+                yield bytes((part, index + 1, len(case.why))) + bytes.fromhex(
+                    asked["bytes"]
+                )
             elif asked["op"] == "uart_events":
                 yield bytes((0, index + 1, 7)) + bytes.fromhex("".join(asked["chunks"]))
             elif asked["op"] == "stream_events":
@@ -223,8 +311,14 @@ def stream_seeds(icd: Icd) -> Iterator[bytes]:
                 yield head + bytes.fromhex("".join(asked["chunks"]))[:LONGEST]
             elif asked["op"] == "client":
                 part = 3 + ("uart", "can", "i2c").index(asked["bus"])
-                heard = [row["receive"] for row in asked["script"] if isinstance(row.get("receive"), str)]
-                yield bytes((part, index + 1, len(heard))) + bytes.fromhex("".join(heard))
+                heard = [
+                    row["receive"]
+                    for row in asked["script"]
+                    if isinstance(row.get("receive"), str)
+                ]
+                yield bytes((part, index + 1, len(heard))) + bytes.fromhex(
+                    "".join(heard)
+                )
 
 
 def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
@@ -238,7 +332,9 @@ def python_streams(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 
 def atheris(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
-    source = sources(Language("python", ("python",), (), lambda source, out: []), icd, folder)
+    source = sources(
+        Language("python", ("python",), (), lambda source, out: []), icd, folder
+    )
     package = sorted((source / "python").glob("*/__init__.py"))[0].parent
     command = [sys.executable, str(HERE / target), package.name]
     return command, {"PYTHONPATH": str(package.parent)}
@@ -266,37 +362,62 @@ HARNESSES = {
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("lang", choices=HARNESSES)
-    parser.add_argument("--seconds", type=int, default=60, help="how long (default: %(default)s)")
-    parser.add_argument("--jobs", type=int, default=1, help="processes (default: %(default)s)")
-    parser.add_argument("--odd", action="store_true", help="the odd ICDs of the conformance tests")
     parser.add_argument(
-        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/, of envelopes examples/links/)"
+        "--seconds", type=int, default=60, help="how long (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--jobs", type=int, default=1, help="processes (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--odd", action="store_true", help="the odd ICDs of the conformance tests"
+    )
+    parser.add_argument(
+        "icds",
+        nargs="*",
+        type=Path,
+        help="ICDs: files or folders (default: icd/, of envelopes examples/links/)",
     )
     options = parser.parse_intermixed_args(arguments)
     folder = cache_folder().resolve() / f"fuzz-{options.lang}"
     corpus = folder / "corpus"
-    shutil.rmtree(corpus, ignore_errors=True)  # inputs mean something for these ICDs only
+    shutil.rmtree(
+        corpus, ignore_errors=True
+    )  # inputs mean something for these ICDs only
     corpus.mkdir(parents=True)
     if options.odd:
         (folder / "odd").mkdir(exist_ok=True)
         options.icds.append(odd.write(folder / "odd"))
-    icd = icd_of(options.icds or [ROOT / "examples" / "links"] * options.lang.endswith("-stream"))
+    icd = icd_of(
+        options.icds or [ROOT / "examples" / "links"] * options.lang.endswith("-stream")
+    )
     for number, seed in enumerate(SEEDS.get(options.lang, seeds)(icd)):
         (corpus / f"seed-{number:05}").write_bytes(seed)
     if not any(corpus.iterdir()):
-        print("these ICDs have nothing that the harness takes: name others", file=sys.stderr)
+        print(
+            "these ICDs have nothing that the harness takes: name others",
+            file=sys.stderr,
+        )
         return 2
     try:
         command, more = HARNESSES[options.lang](icd, folder)
     except BuildError as error:
         print(error, file=sys.stderr)
         return 2
-    command += [f"-max_total_time={options.seconds}", f"-max_len={LONGEST}", "-timeout=20", "-print_final_stats=1"]
+    command += [
+        f"-max_total_time={options.seconds}",
+        f"-max_len={LONGEST}",
+        "-timeout=20",
+        "-print_final_stats=1",
+    ]
     if options.jobs > 1:
         command += [f"-fork={options.jobs}"]
     command += [f"-artifact_prefix={folder}/", str(corpus)]
     print(" ".join(command), flush=True)
-    return 1 if subprocess.run(command, cwd=folder, env={**os.environ, **more}).returncode else 0
+    return (
+        1
+        if subprocess.run(command, cwd=folder, env={**os.environ, **more}).returncode
+        else 0
+    )
 
 
 if __name__ == "__main__":

@@ -7,7 +7,9 @@ from types import ModuleType
 
 DIRECTION, FIT, AS_ID = 1, 2, 4
 LONGEST = 65535  # bytes of a frame; a field that counts may tell of more
-EXACT_BITS = 52  # physical values of wider fields need not lead back to the same raw value
+EXACT_BITS = (
+    52  # physical values of wider fields need not lead back to the same raw value
+)
 
 
 class Dispatch:
@@ -18,10 +20,18 @@ class Dispatch:
         self.nodes = [getattr(package, name) for name in package.NODES]
 
     def one(self, data: bytes) -> None:
-        """Decodes, encodes, and compares. Raises what the package should not have raised."""
+        """Decodes, encodes, and compares.
+
+        Raises what the package should not have raised.
+        """
         if len(data) < 3:
             return
-        node, flags, number, frame = self.nodes[data[0] % len(self.nodes)], data[1], data[2], data[3:]
+        node, flags, number, frame = (
+            self.nodes[data[0] % len(self.nodes)],
+            data[1],
+            data[2],
+            data[3:],
+        )
         messages = node.TELEMETRY if flags & DIRECTION else node.TELECOMMANDS
         decode = node.decode_telemetry if flags & DIRECTION else node.decode_telecommand
         ids = sorted(messages)
@@ -46,7 +56,10 @@ class Dispatch:
 
 
 def check(message, frame: bytes, package: ModuleType) -> None:
-    """Encoding gives the frame, but for reserved bits; so does setting every physical value."""
+    """Encoding gives the frame, but for reserved bits.
+
+    So does setting every physical value.
+    """
     first = message.to_bytes()
     assert len(first) == (len(frame) if message.TAIL else message.LENGTH)
     again = type(message).from_bytes(first)
@@ -55,14 +68,21 @@ def check(message, frame: bytes, package: ModuleType) -> None:
             if not info.physical:
                 continue
             value = getattr(part, info.physical)
-            if info.type in ("float", "text") or info.bits > EXACT_BITS or not info.leads_back or value is None:
+            if (
+                info.type in ("float", "text")
+                or info.bits > EXACT_BITS
+                or not info.leads_back
+                or value is None
+            ):
                 continue
             raw = getattr(part, info.attribute)
             try:
                 setattr(part, info.physical, value)
             except package.RangeError:
                 assert value != value  # what a table refuses reads as no number
-            if getattr(part, info.attribute) != raw:  # raw values that have the same double
+            if (
+                getattr(part, info.attribute) != raw
+            ):  # raw values that have the same double
                 assert getattr(part, info.physical) == value
                 setattr(part, info.attribute, raw)
     assert again.to_bytes() == first

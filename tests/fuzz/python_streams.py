@@ -1,4 +1,7 @@
-"""What the Python harness of the stream decoders does with an input; needs no atheris. See README.md."""
+"""What the Python harness of the stream decoders does with an input; needs no atheris.
+
+See README.md.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,10 @@ STEPS = 400  # of a procedure
 
 
 class Streams:
-    """Feeds inputs to everything of a generated package that takes a stream. Raises what it should not have raised."""
+    """Feeds inputs to everything of a generated package that takes a stream.
+
+    Raises what it should not have raised.
+    """
 
     def __init__(self, package: ModuleType) -> None:
         self.package = package
@@ -17,7 +23,14 @@ class Streams:
         self.links = [node.LINK for node in nodes if hasattr(node, "LINK")]
         self.wire = package.wire
         clients = (self.client_uart, self.client_can, self.client_i2c)
-        self.parts = (self.uart, self.can, self.log, *clients, self.download, self.envelopes)
+        self.parts = (
+            self.uart,
+            self.can,
+            self.log,
+            *clients,
+            self.download,
+            self.envelopes,
+        )
 
     def one(self, data: bytes) -> None:
         """Part, node, and how it is cut: a byte each; then the stream."""
@@ -41,7 +54,10 @@ class Streams:
         messages = [event.message for event in found if event.event == "message"]
         on_line = sum(len(self.wire.uart_encode(link, message)) for message in messages)
         # An escape byte that the ICD has skipped stands in no message.
-        assert whole.discarded + whole.pending + on_line == len(data) or link.framing.ignores_other
+        assert (
+            whole.discarded + whole.pending + on_line == len(data)
+            or link.framing.ignores_other
+        )
         for message in messages:
             self.wire.uart_kind(link, message)
 
@@ -52,21 +68,33 @@ class Streams:
         found = whole.feed(data)
         assert whole.discarded + whole.pending <= len(data)
         if link.stream.delimited_by != "none":
-            assert found == [event for piece in pieces(data, size) for event in cut.feed(piece)]
+            assert found == [
+                event for piece in pieces(data, size) for event in cut.feed(piece)
+            ]
             assert (whole.discarded, whole.pending) == (cut.discarded, cut.pending)
         for event in (event for event in found if event.event == "message"):
-            sent = self.wire.stream_encode(link, event.id, event.data, direction, **event.values)
+            sent = self.wire.stream_encode(
+                link, event.id, event.data, direction, **event.values
+            )
             (again,) = self.wire.StreamDecoder(link, direction).feed(sent)
-            assert (again.event, again.id, again.values) == ("message", event.id, event.values)
+            assert (again.event, again.id, again.values) == (
+                "message",
+                event.id,
+                event.values,
+            )
             assert again.data.rstrip(b"\0") == event.data.rstrip(b"\0")
 
     def packets(self, data: bytes) -> Iterator[tuple[int, object]]:
-        """Packets that mostly belong together: 29 bits of which few differ, up to 8 bytes, and times."""
+        """Packets that mostly belong together: 29 bits of which few differ, up to 8
+        bytes, and times.
+        """
         now = 0
         while len(data) >= 3:
             head, id, size = data[0], data[1], data[2] % 9
             now += 0 if head & 0xC0 else 300
-            number = (head & 15) << 24 | id << 16 | (head >> 4 & 1) << 8 | (head >> 5 & 1)
+            number = (
+                (head & 15) << 24 | id << 16 | (head >> 4 & 1) << 8 | (head >> 5 & 1)
+            )
             yield now, self.wire.CanPacket(number, data[3 : 3 + size])
             data = data[3 + size :]
 
@@ -83,12 +111,18 @@ class Streams:
     def log(self, link, size: int, data: bytes) -> None:
         whole, cut = self.wire.LogReader(link), self.wire.LogReader(link)
         found = whole.feed(data)
-        assert found == [entry for piece in pieces(data, size) for entry in cut.feed(piece)]
+        assert found == [
+            entry for piece in pieces(data, size) for entry in cut.feed(piece)
+        ]
         assert (whole.mask, whole.truncated) == (cut.mask, cut.truncated)
         if whole.mask is not None:
             writer = self.wire.LogWriter(link, whole.mask)
             again = writer.header() + b"".join(
-                writer.entry(entry.seconds, entry.milliseconds, [frame.data for frame in entry.frames])
+                writer.entry(
+                    entry.seconds,
+                    entry.milliseconds,
+                    [frame.data for frame in entry.frames],
+                )
                 for entry in found
             )
             assert len(again) == len(data) - whole.truncated
@@ -122,7 +156,9 @@ class Streams:
     def asked(self, link, bus: str, pick: int):
         """A client with a request that goes on."""
         client = self.wire.Client(link, bus, crc=bool(pick & 2))
-        kind, ids = ("telecommand", link.commands) if pick & 4 else ("telemetry", link.frames)
+        kind, ids = (
+            ("telecommand", link.commands) if pick & 4 else ("telemetry", link.frames)
+        )
         id = [id for id in ids if kind == "telemetry" or ids[id].acknowledged][pick % 7]
         data = bytes(link.commands[id].length) if kind == "telecommand" else b""
         client.start(0, self.wire.Request(kind, id, data, bool(pick & 8)))
@@ -141,14 +177,23 @@ class Streams:
             if not client.busy:
                 break
             now = max(now, client.deadline)
-            ends += self.ends(client.transferred(now, None) if client.transfers() else client.tick(now))
+            ends += self.ends(
+                client.transferred(now, None)
+                if client.transfers()
+                else client.tick(now)
+            )
             client.output()
             client.packets()
         assert not client.busy and ends == 1
 
     def download(self, link, size: int, data: bytes) -> None:
-        """Outcomes and packets of any kind; the procedure ends, and delivers what it was given."""
-        download = self.wire.Download(link, ("uart", "i2c", "can")[size % 3], 2, size, size or None)
+        """Outcomes and packets of any kind.
+
+        The procedure ends, and delivers what it was given.
+        """
+        download = self.wire.Download(
+            link, ("uart", "i2c", "can")[size % 3], 2, size, size or None
+        )
         now, events = 0, iter(data)
         for _ in range(STEPS):
             request = download.next(now)
@@ -159,14 +204,26 @@ class Streams:
             if request is None:
                 now = max(now, download.deadline or 0)
                 count = link.files.packet_bytes
-                download.event(now, self.wire.Packet(next(events, 0), bytes(next(events, 0) for _ in range(count))))
+                download.event(
+                    now,
+                    self.wire.Packet(
+                        next(events, 0), bytes(next(events, 0) for _ in range(count))
+                    ),
+                )
             elif code & 15 == 1:
                 download.event(now, self.wire.Refused(request.id, 1))
             elif code & 15 == 2:
                 download.event(now, self.wire.Timeout(request.id, 1))
             else:
-                length = link.frames.get(request.id, 0) if request.kind == "telemetry" else 0
-                download.event(now, self.wire.Done(request.id, 1, bytes(next(events, 0) for _ in range(length))))
+                length = (
+                    link.frames.get(request.id, 0) if request.kind == "telemetry" else 0
+                )
+                download.event(
+                    now,
+                    self.wire.Done(
+                        request.id, 1, bytes(next(events, 0) for _ in range(length))
+                    ),
+                )
         assert sum(len(block) for _, block in download.blocks) == download.progress[0]
 
 

@@ -1,4 +1,7 @@
-"""atheris harness on the stream decoders of the generated package, which must be on the path. See README.md.
+"""atheris harness on the stream decoders of the generated package, which must be on the
+path.
+
+See README.md.
 
 ``python python_streams_target.py PACKAGE [libFuzzer options] [corpus]``
 """

@@ -1,4 +1,7 @@
-"""atheris harness on the dispatchers of the generated package, which must be on the path. See README.md.
+"""atheris harness on the dispatchers of the generated package, which must be on the
+path.
+
+See README.md.
 
 ``python python_target.py PACKAGE [libFuzzer options] [corpus]``
 """
@@ -23,7 +26,11 @@ with atheris.instrument_imports(include=[PACKAGE]):
     from python_dispatch import Dispatch
 
     dispatch = Dispatch(package)
-    for _node in dispatch.nodes:  # types load on first use: load them while imports are instrumented
+    for (
+        _node
+    ) in (
+        dispatch.nodes
+    ):  # types load on first use: load them while imports are instrumented
         for _messages in (_node.TELECOMMANDS, _node.TELEMETRY):
             for _message in (one for id in _messages for one in _messages.of(id)):
                 _message()

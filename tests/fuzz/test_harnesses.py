@@ -1,4 +1,7 @@
-"""The fuzz harnesses, on the frames of the golden vectors and on random bytes; fuzzing proper is `python -m tests.fuzz`."""
+"""The fuzz harnesses, on the frames of the golden vectors and on random bytes.
+
+Fuzzing proper is `python -m tests.fuzz`.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +17,21 @@ from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
 from tests.conftest import ROOT
-from tests.fuzz.__main__ import HERE, c_stream_seeds, c_wire_seeds, seeds, sources, stream_seeds
+from tests.fuzz.__main__ import (
+    HERE,
+    c_stream_seeds,
+    c_wire_seeds,
+    seeds,
+    sources,
+    stream_seeds,
+)
 from tests.fuzz.python_dispatch import Dispatch
 from tests.fuzz.python_streams import Streams
 
-DEVICES = [ROOT / "examples" / "devices" / name / f"{name}.yaml" for name in ("mavlink", "ublox")]
+DEVICES = [
+    ROOT / "examples" / "devices" / name / f"{name}.yaml"
+    for name in ("mavlink", "ublox")
+]
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +41,9 @@ def icd():
 
 @pytest.fixture(scope="module")
 def odd_icd(tmp_path_factory):
-    """What the shipped ICDs do not have: wide ids, variable length, shared ids, conditions, curves ..."""
+    """What the shipped ICDs do not have: wide ids, variable length, shared ids,
+    conditions, curves ...
+    """
     return icd_of([odd.write(tmp_path_factory.mktemp("odd")), *DEVICES])
 
 
@@ -47,7 +62,12 @@ def wire_inputs(icd):
     source = random.Random(2)
     found = list(c_wire_seeds(icd))
     for seed in found[:]:
-        found.append(seed[:1] + bytes((source.randrange(7),)) + seed[2:] + source.randbytes(source.randrange(64)))
+        found.append(
+            seed[:1]
+            + bytes((source.randrange(7),))
+            + seed[2:]
+            + source.randbytes(source.randrange(64))
+        )
     return found
 
 
@@ -78,11 +98,36 @@ def stream_inputs(linked):
 )
 def test_the_c_harnesses_find_nothing(target, icds, kind, request, tmp_path):
     inputs, icd = request.getfixturevalue(kind), request.getfixturevalue(icds)
-    source = sources(Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, tmp_path)
+    source = sources(
+        Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, tmp_path
+    )
     testee = source / "c-testee"
-    files = [HERE / target, HERE / "c_replay.c", testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
-    flags = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-Wall", "-Wextra", "-Werror"]
-    execute("gcc", "-std=c99", *flags, "-I", source / "c", "-I", testee, *files, "-o", tmp_path / "replay")
+    files = [
+        HERE / target,
+        HERE / "c_replay.c",
+        testee / "testee_nodes.c",
+        *sorted(testee.glob("nodes/*.c")),
+    ]
+    flags = [
+        "-O1",
+        "-fsanitize=address,undefined",
+        "-fno-sanitize-recover=all",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+    ]
+    execute(
+        "gcc",
+        "-std=c99",
+        *flags,
+        "-I",
+        source / "c",
+        "-I",
+        testee,
+        *files,
+        "-o",
+        tmp_path / "replay",
+    )
     data = b"".join(len(one).to_bytes(2, "little") + one for one in inputs)
     done = subprocess.run([tmp_path / "replay"], input=data, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
@@ -103,14 +148,18 @@ def odd_package(odd_icd, tmp_path, monkeypatch):
 
 def _imported(icd, tmp_path, monkeypatch):
     """The generated package, imported afresh."""
-    source = sources(Language("python", ("python",), (), lambda source, out: []), icd, tmp_path)
+    source = sources(
+        Language("python", ("python",), (), lambda source, out: []), icd, tmp_path
+    )
     package = sorted((source / "python").glob("*/__init__.py"))[0].parent
     monkeypatch.syspath_prepend(str(package.parent))
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
         monkeypatch.delitem(sys.modules, name)
     yield importlib.import_module(package.name)
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
-        del sys.modules[name]  # for good: monkeypatch then puts back those that were there before
+        del sys.modules[
+            name
+        ]  # for good: monkeypatch then puts back those that were there before
 
 
 def test_the_python_harness_finds_nothing(inputs, odd_package):
@@ -133,7 +182,9 @@ def test_the_python_harness_of_streams_finds_nothing(icd, package):
         streams.one(source.randbytes(source.randrange(200)))
 
 
-def test_the_python_harness_of_streams_finds_nothing_in_envelopes(linked, tmp_path, monkeypatch):
+def test_the_python_harness_of_streams_finds_nothing_in_envelopes(
+    linked, tmp_path, monkeypatch
+):
     for package in _imported(linked, tmp_path, monkeypatch):
         importlib.import_module(f"{package.__name__}.wire")
         streams, source = Streams(package), random.Random(1)
@@ -146,11 +197,15 @@ def test_the_python_harness_of_streams_finds_nothing_in_envelopes(linked, tmp_pa
             streams.one(bytes(spoilt))
 
 
-def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(package, monkeypatch):
+def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(
+    package, monkeypatch
+):
     wire = importlib.import_module(f"{package.__name__}.wire")
     streams = Streams(package)
     streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
-    monkeypatch.setattr(wire.UartDecoder, "_within", lambda self, data, position, events: len(data))
+    monkeypatch.setattr(
+        wire.UartDecoder, "_within", lambda self, data, position, events: len(data)
+    )
     with pytest.raises(AssertionError):
         streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
 

@@ -31,7 +31,9 @@ def test_a_changed_a_removed_and_a_new_file_end_it(tmp_path):
 
 
 def test_a_folder_counts_by_the_names_in_it(tmp_path):
-    cache.remember("runs", "k", b"done", {str(tmp_path): fingerprints.of_path(str(tmp_path))})
+    cache.remember(
+        "runs", "k", b"done", {str(tmp_path): fingerprints.of_path(str(tmp_path))}
+    )
     (tmp_path / "new.yaml").write_text("")
     assert cache.recall("runs", "k") is None
 
@@ -65,10 +67,22 @@ def test_a_cache_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "name", ["templates/html/icon.svg", "templates/c/x.h", "runtime/c/deep/er.h", "codegen/icdgen/a.xyz"]
+    "name",
+    [
+        "templates/html/icon.svg",
+        "templates/c/x.h",
+        "runtime/c/deep/er.h",
+        "codegen/icdgen/a.xyz",
+    ],
 )
-def test_every_file_that_output_is_made_of_is_part_of_the_tool(tmp_path, monkeypatch, name):
-    monkeypatch.setattr(fingerprints, "__file__", str(tmp_path / "codegen" / "icdgen" / "fingerprints.py"))
+def test_every_file_that_output_is_made_of_is_part_of_the_tool(
+    tmp_path, monkeypatch, name
+):
+    monkeypatch.setattr(
+        fingerprints,
+        "__file__",
+        str(tmp_path / "codegen" / "icdgen" / "fingerprints.py"),
+    )
     (tmp_path / "codegen" / "icdgen").mkdir(parents=True)
     (tmp_path / "templates").mkdir()
     path = tmp_path / name
@@ -82,7 +96,11 @@ def test_every_file_that_output_is_made_of_is_part_of_the_tool(tmp_path, monkeyp
 
 
 def test_what_python_leaves_behind_is_not_part_of_the_tool(tmp_path, monkeypatch):
-    monkeypatch.setattr(fingerprints, "__file__", str(tmp_path / "codegen" / "icdgen" / "fingerprints.py"))
+    monkeypatch.setattr(
+        fingerprints,
+        "__file__",
+        str(tmp_path / "codegen" / "icdgen" / "fingerprints.py"),
+    )
     (tmp_path / "codegen" / "icdgen").mkdir(parents=True)
     before = fingerprints._digest()
     (tmp_path / "codegen" / "icdgen" / "__pycache__").mkdir()

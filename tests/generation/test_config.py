@@ -9,13 +9,19 @@ from icdgen.errors import UserError
 
 
 def test_paths_are_relative_to_the_file_and_the_nearest_one_upwards_counts(tmp_path):
-    (tmp_path / "icdgen.toml").write_text('icds = ["icd/a.yaml"]\nlang = ["c"]\nout = "gen"\n')
+    (tmp_path / "icdgen.toml").write_text(
+        'icds = ["icd/a.yaml"]\nlang = ["c"]\nout = "gen"\n'
+    )
     below = tmp_path / "src" / "deep"
     below.mkdir(parents=True)
     found = config.find(below)
     assert found.icds == [tmp_path / "icd/a.yaml"]
     assert (found.lang, found.out) == (["c"], tmp_path / "gen")
-    assert list(found.looked_at) == [below / "icdgen.toml", tmp_path / "src" / "icdgen.toml", tmp_path / "icdgen.toml"]
+    assert list(found.looked_at) == [
+        below / "icdgen.toml",
+        tmp_path / "src" / "icdgen.toml",
+        tmp_path / "icdgen.toml",
+    ]
 
 
 def test_the_search_ends_at_the_top_of_the_checkout(tmp_path):

@@ -20,7 +20,12 @@ main()
 
 def ended(tmp_path, before="", lang="c"):
     """Status, output and errors of a generation."""
-    line = [sys.executable, "-c", START.format(before=before, lang=lang), str(tmp_path / "out")]
+    line = [
+        sys.executable,
+        "-c",
+        START.format(before=before, lang=lang),
+        str(tmp_path / "out"),
+    ]
     done = subprocess.run(line, capture_output=True, text=True)
     return done.returncode, done.stdout, done.stderr
 
@@ -38,7 +43,11 @@ def test_the_status_of_misuse_stays(tmp_path):
 
 @pytest.mark.parametrize(
     "before",
-    ["atexit.register(print, 'the end')", "sys.setprofile(lambda *any: None)", "sys.settrace(lambda *any: None)"],
+    [
+        "atexit.register(print, 'the end')",
+        "sys.setprofile(lambda *any: None)",
+        "sys.settrace(lambda *any: None)",
+    ],
 )
 def test_who_has_something_to_do_at_the_end_does_it(tmp_path, before):
     status, out, errors = ended(tmp_path, before)

@@ -21,7 +21,9 @@ messages:
 
 
 def run(*words: object, cwd: Path) -> str:
-    done = subprocess.run(list(map(str, words)), cwd=cwd, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(
+        list(map(str, words)), cwd=cwd, capture_output=True, text=True, timeout=300
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -34,8 +36,14 @@ def projects(tmp_path_factory) -> Path:
         folder = top / name
         (folder / "icd").mkdir(parents=True)
         (folder / "icd" / "battery.yaml").write_text(ICD.format(size, 8 * size))
-        (folder / "icdgen.toml").write_text(f'name = "{name}"\nicds = ["icd"]\n[c]\nprefix = "{name}"\n')
-        languages = [word for language in ("c", "c-selftest", "python", "rust") for word in ("--lang", language)]
+        (folder / "icdgen.toml").write_text(
+            f'name = "{name}"\nicds = ["icd"]\n[c]\nprefix = "{name}"\n'
+        )
+        languages = [
+            word
+            for language in ("c", "c-selftest", "python", "rust")
+            for word in ("--lang", language)
+        ]
         run(sys.executable, "-m", "icdgen", *languages, cwd=folder)
     return top
 
@@ -45,23 +53,45 @@ def test_python_packages_of_two_projects_are_installed_side_by_side(projects, tm
     for name in PROJECTS:
         source = tmp_path / f"{name}-source"
         shutil.copytree(projects / name / "generated" / "python", source)
-        # As pip does, but without a network: setuptools collects the packages of pyproject.toml.
-        run(sys.executable, "-c", "import setuptools; setuptools.setup()", "build", "--build-lib", target, cwd=source)
-        distributions.add(tomllib.loads((source / "pyproject.toml").read_text())["project"]["name"])
-    assert distributions == set(PROJECTS) and {path.name for path in target.iterdir()} == set(PROJECTS)
+        # As pip does, but without a network: setuptools collects the packages of
+        # pyproject.toml.
+        run(
+            sys.executable,
+            "-c",
+            "import setuptools; setuptools.setup()",
+            "build",
+            "--build-lib",
+            target,
+            cwd=source,
+        )
+        distributions.add(
+            tomllib.loads((source / "pyproject.toml").read_text())["project"]["name"]
+        )
+    assert distributions == set(PROJECTS) and {
+        path.name for path in target.iterdir()
+    } == set(PROJECTS)
     code = (
         "from alpha.battery import Status as A\nfrom beta.battery import Status as B\n"
         "print(A.LENGTH, B.LENGTH, A.from_bytes(b'\\x05').voltage, B.from_bytes(b'\\x01\\x01').voltage)"
     )
     assert (
-        run(sys.executable, "-S", "-c", f"import sys; sys.path.insert(0, {str(target)!r})\n{code}", cwd=tmp_path)
+        run(
+            sys.executable,
+            "-S",
+            "-c",
+            f"import sys; sys.path.insert(0, {str(target)!r})\n{code}",
+            cwd=tmp_path,
+        )
         == "1 2 5 257\n"
     )
 
 
 @pytest.mark.skipif(shutil.which("cargo") is None, reason="needs Cargo")
 def test_a_program_uses_the_crates_of_two_projects(projects, tmp_path):
-    needs = "".join(f'{name} = {{ path = "{projects / name / "generated" / "rust"}" }}\n' for name in PROJECTS)
+    needs = "".join(
+        f'{name} = {{ path = "{projects / name / "generated" / "rust"}" }}\n'
+        for name in PROJECTS
+    )
     (tmp_path / "Cargo.toml").write_text(
         f'[package]\nname = "program"\nversion = "0.1.0"\nedition = "2021"\n[dependencies]\n{needs}'
     )
@@ -86,7 +116,18 @@ def test_a_program_in_c_uses_nodes_of_one_name_of_two_projects(projects, tmp_pat
         '    printf("%u %u\\n", (unsigned)a.voltage, (unsigned)b.voltage);\n    return 0;\n}\n'
     )
     folders = [f"-I{projects / name / 'generated' / 'c'}" for name in PROJECTS]
-    run("cc", "-std=c99", "-Wall", "-Wextra", "-Werror", *folders, "main.c", "-o", "main", cwd=tmp_path)
+    run(
+        "cc",
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        *folders,
+        "main.c",
+        "-o",
+        "main",
+        cwd=tmp_path,
+    )
     assert run(tmp_path / "main", cwd=tmp_path) == "1 257\n"
 
 
@@ -107,12 +148,27 @@ def test_the_self_test_of_prefixed_c_passes(projects, tmp_path):
         "    return totals.failures == 0u && totals.checks > 0u ? 0 : 1;\n}\n"
     )
     includes = [f"-I{generated / 'c'}", f"-I{generated / 'c-selftest'}"]
-    run("cc", "-std=c99", *includes, *sources, "main.c", "-lm", "-o", "main", cwd=tmp_path)
+    run(
+        "cc",
+        "-std=c99",
+        *includes,
+        *sources,
+        "main.c",
+        "-lm",
+        "-o",
+        "main",
+        cwd=tmp_path,
+    )
     run(tmp_path / "main", cwd=tmp_path)
 
 
 def icdgen(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, "-m", "icdgen", *words], cwd=cwd, capture_output=True, text=True)
+    return subprocess.run(
+        [sys.executable, "-m", "icdgen", *words],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+    )
 
 
 @pytest.mark.parametrize(
@@ -123,11 +179,23 @@ def icdgen(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
             "3:1",
             "`package` cannot be `class`: it is a reserved word of Python",
         ),
-        ('[python]\n  package = "json"\n', "2:3", "is a module of Python's standard library"),
-        ('[python]\npackage = "My-Package"\n', "2:1", "takes lower-case letters, digits and _"),
+        (
+            '[python]\n  package = "json"\n',
+            "2:3",
+            "is a module of Python's standard library",
+        ),
+        (
+            '[python]\npackage = "My-Package"\n',
+            "2:1",
+            "takes lower-case letters, digits and _",
+        ),
         ('rust.crate = "match"\n', "1:1", "is a reserved word of Rust"),
         ('[rust]\ncrate = "std"\n', "2:1", "is a crate that comes with the compiler"),
-        ('[c]\nprefix = "icd"\n', "2:1", "is the beginning of the names of the support layer"),
+        (
+            '[c]\nprefix = "icd"\n',
+            "2:1",
+            "is the beginning of the names of the support layer",
+        ),
         ('[c]\nprefix = "1a"\n', "2:1", "a letter first"),
         ('[c]\nprefix = "a_"\n', "2:1", "ends with _, which is added"),
         ('icds = []\nname = "a b"\n', "2:1", "`name` cannot be `a b`"),
@@ -138,11 +206,21 @@ def icdgen(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         ("[c]\nprefix = 1\n", "2:1", "`prefix` must be a text"),
     ],
 )
-def test_a_name_that_cannot_be_used_is_an_error_with_its_place(tmp_path, text, place, words):
+def test_a_name_that_cannot_be_used_is_an_error_with_its_place(
+    tmp_path, text, place, words
+):
     (tmp_path / "icdgen.toml").write_text(text)
     for command in ("check", "generate"):
-        done = icdgen(command, *(["--lang", "python"] if command == "generate" else []), cwd=tmp_path)
-        assert done.returncode == 2 and f"icdgen.toml:{place}: " in done.stderr and words in done.stderr, done.stderr
+        done = icdgen(
+            command,
+            *(["--lang", "python"] if command == "generate" else []),
+            cwd=tmp_path,
+        )
+        assert (
+            done.returncode == 2
+            and f"icdgen.toml:{place}: " in done.stderr
+            and words in done.stderr
+        ), done.stderr
 
 
 def test_the_site_shows_the_names_of_the_project(projects):
@@ -159,6 +237,18 @@ def re_text(text: str) -> str:
 
 def test_without_a_project_the_names_are_those_of_before(tmp_path):
     (tmp_path / "battery.yaml").write_text(ICD.format(1, 8))
-    run(sys.executable, "-m", "icdgen", "--lang", "python", "--lang", "rust", "battery.yaml", cwd=tmp_path)
+    run(
+        sys.executable,
+        "-m",
+        "icdgen",
+        "--lang",
+        "python",
+        "--lang",
+        "rust",
+        "battery.yaml",
+        cwd=tmp_path,
+    )
     assert (tmp_path / "generated" / "python" / "icdgen_messages").is_dir()
-    assert 'name = "icd"' in (tmp_path / "generated" / "rust" / "Cargo.toml").read_text()
+    assert (
+        'name = "icd"' in (tmp_path / "generated" / "rust" / "Cargo.toml").read_text()
+    )

@@ -10,17 +10,32 @@ from icdgen import fingerprints, shipped
 from icdgen.render import Renderer
 
 
-@pytest.mark.parametrize("left", [".mypy_cache/3.11/a.json", "__pycache__/a.pyc", "target/debug/a.rs", "src/.a.rs.swp"])
-def test_what_tools_leave_beside_the_sources_of_a_runtime_is_not_generated(tmp_path, left):
+@pytest.mark.parametrize(
+    "left",
+    [
+        ".mypy_cache/3.11/a.json",
+        "__pycache__/a.pyc",
+        "target/debug/a.rs",
+        "src/.a.rs.swp",
+    ],
+)
+def test_what_tools_leave_beside_the_sources_of_a_runtime_is_not_generated(
+    tmp_path, left
+):
     for name in ("src/a.rs", "Cargo.toml", left):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
-    assert Renderer("any", runtime=tmp_path).runtime_files() == ["Cargo.toml", "src/a.rs"]
+    assert Renderer("any", runtime=tmp_path).runtime_files() == [
+        "Cargo.toml",
+        "src/a.rs",
+    ]
 
 
 @pytest.fixture
 def tool(tmp_path, monkeypatch):
-    """The folder of the templates of a tool that may keep what it compiles, and has done so."""
+    """The folder of the templates of a tool that may keep what it compiles, and has
+    done so.
+    """
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     monkeypatch.setattr(sys, "pycache_prefix", None)
     monkeypatch.setattr(shipped, "templates", lambda: tmp_path / "templates")
@@ -35,9 +50,13 @@ def kept(top):
     return [path for path in top.rglob("*") if path.is_file() and path.suffix != ".j2"]
 
 
-def test_a_shipped_template_is_compiled_once_and_kept_where_python_keeps_modules(tool, tmp_path, monkeypatch):
+def test_a_shipped_template_is_compiled_once_and_kept_where_python_keeps_modules(
+    tool, tmp_path, monkeypatch
+):
     assert [path.parent for path in kept(tmp_path)] == [tool / "__pycache__"]
-    monkeypatch.setattr("jinja2.Environment.compile", lambda *_, **__: pytest.fail("compiled again"))
+    monkeypatch.setattr(
+        "jinja2.Environment.compile", lambda *_, **__: pytest.fail("compiled again")
+    )
     assert Renderer("any")("a.j2") == "2"
 
 

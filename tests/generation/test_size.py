@@ -1,4 +1,6 @@
-"""How much code there is depends on what is declared, not on how many elements an array has."""
+"""How much code there is depends on what is declared, not on how many elements an array
+has.
+"""
 
 from __future__ import annotations
 
@@ -45,8 +47,15 @@ messages:
 
 
 def lines(lang: str, count: int, folder) -> dict[str, int]:
-    """How many lines each file has that is made of messages with arrays of so many elements."""
-    sizes = {"two": 2 * count, "three": 3 * count, "half": count * 3 // 2, "eighth": count // 8}
+    """How many lines each file has that is made of messages with arrays of so many
+    elements.
+    """
+    sizes = {
+        "two": 2 * count,
+        "three": 3 * count,
+        "half": count * 3 // 2,
+        "eighth": count // 8,
+    }
     text = ICD.format(count=count, pack=10 * count, packs=10 * count * count, **sizes)
     (folder / "demo.yaml").write_text(text, encoding="utf-8")
     loaded = load([folder / "demo.yaml"])

@@ -12,7 +12,10 @@ from icdgen.generation import manifest, write
 
 
 def files(**named: str):
-    return [(PurePosixPath(name.replace("__", "/").replace("_", ".")), text) for name, text in named.items()]
+    return [
+        (PurePosixPath(name.replace("__", "/").replace("_", ".")), text)
+        for name, text in named.items()
+    ]
 
 
 def generate(out, **named: str) -> write.Plan:
@@ -83,7 +86,9 @@ def test_a_manifest_cannot_make_us_remove_files_outside(tmp_path):
     victim.write_text("x")
     out = tmp_path / "out"
     out.mkdir()
-    manifest.path(out, "c").write_text(manifest.text({"../victim": manifest.digest(b"x")}))
+    manifest.path(out, "c").write_text(
+        manifest.text({"../victim": manifest.digest(b"x")})
+    )
     generate(out, a_h="one\n")
     assert victim.exists()
 
@@ -94,7 +99,9 @@ def test_a_broken_manifest_is_no_manifest(tmp_path):
     assert (tmp_path / "a.h").exists()
 
 
-def test_an_interrupted_run_leaves_whole_files_and_the_next_one_finishes(tmp_path, monkeypatch):
+def test_an_interrupted_run_leaves_whole_files_and_the_next_one_finishes(
+    tmp_path, monkeypatch
+):
     generate(tmp_path, a_h="old\n", b_h="old\n")
     real, count = os.replace, [0]
 
@@ -109,12 +116,18 @@ def test_an_interrupted_run_leaves_whole_files_and_the_next_one_finishes(tmp_pat
         generate(tmp_path, a_h="new\n", b_h="new\n")
     monkeypatch.undo()
     assert {(tmp_path / n).read_text() for n in ("a.h", "b.h")} == {"old\n", "new\n"}
-    assert not [p for p in tmp_path.iterdir() if p.name.startswith(".icdgen-") and p.suffix != ".json"]
+    assert not [
+        p
+        for p in tmp_path.iterdir()
+        if p.name.startswith(".icdgen-") and p.suffix != ".json"
+    ]
     generate(tmp_path, a_h="newer\n", b_h="newer\n")
     assert (tmp_path / "b.h").read_text() == "newer\n"
 
 
-def test_a_first_run_that_is_interrupted_may_be_repeated_with_other_content(tmp_path, monkeypatch):
+def test_a_first_run_that_is_interrupted_may_be_repeated_with_other_content(
+    tmp_path, monkeypatch
+):
     real, count = os.replace, [0]
 
     def breaks(source, target):
@@ -139,7 +152,9 @@ def test_a_folder_that_cannot_be_written_is_a_clear_error(tmp_path):
 
 def test_a_manifest_with_names_that_are_none_is_no_obstacle(tmp_path):
     (tmp_path / "folder").mkdir()
-    manifest.path(tmp_path, "c").write_text(manifest.text({"a\0b": "", "folder": "", ".": ""}))
+    manifest.path(tmp_path, "c").write_text(
+        manifest.text({"a\0b": "", "folder": "", ".": ""})
+    )
     generate(tmp_path, a_h="one\n")
     assert (tmp_path / "folder").is_dir() and (tmp_path / "a.h").exists()
     manifest.path(tmp_path, "c").write_text("[" * 100_000)

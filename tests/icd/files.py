@@ -9,7 +9,9 @@ from icdgen.diagnostics import Finding
 from icdgen.icd.loaded import Loaded
 from icdgen.loading import load
 
-HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+HEAD = (
+    "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+)
 
 _FILE = re.compile(r"^# ([a-z_/]+\.yaml)\n", re.MULTILINE)
 
@@ -22,10 +24,14 @@ def status(*fields: str, length: int = 2) -> str:
 
 
 def write(folder: Path, text: str) -> Path:
-    """Writes ``demo.yaml``, and the files that begin with a line such as ``# errata/demo.yaml``."""
+    """Writes ``demo.yaml``, and the files that begin with a line such as ``#
+    errata/demo.yaml``.
+    """
     main, *others = _FILE.split(text)
     path = folder / "demo.yaml"
-    path.write_text(main if main.startswith("icdgen:") else HEAD + main, encoding="utf-8")
+    path.write_text(
+        main if main.startswith("icdgen:") else HEAD + main, encoding="utf-8"
+    )
     for name, content in zip(others[0::2], others[1::2], strict=True):
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(content, encoding="utf-8")
@@ -33,7 +39,9 @@ def write(folder: Path, text: str) -> Path:
 
 
 def loaded(folder: Path, text: str) -> Loaded:
-    """What loading the text gives, with the other files that stand beside ``demo.yaml``."""
+    """What loading the text gives, with the other files that stand beside
+    ``demo.yaml``.
+    """
     beside = [folder / name for name in _FILE.findall(text) if "/" not in name]
     return load([write(folder, text), *beside])
 

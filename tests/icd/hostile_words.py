@@ -25,10 +25,21 @@ def tree() -> dict:
         for number, word in enumerate(WORDS)
     ]  # fmt: skip
     members = [
-        {"value": number, "name": word, "identifier": f"value {number}", "summary": word}
+        {
+            "value": number,
+            "name": word,
+            "identifier": f"value {number}",
+            "summary": word,
+        }
         for number, word in enumerate(WORDS)
     ]
-    mode = {"at": 8 * len(fields), "bits": 8, "name": "mode", "type": "enum", "enum": "<i> mode"}
+    mode = {
+        "at": 8 * len(fields),
+        "bits": 8,
+        "name": "mode",
+        "type": "enum",
+        "enum": "<i> mode",
+    }
     messages = [
         {
             "name": word, "identifier": f"message {number}", "id": number, "kind": "telemetry", "length": 1,

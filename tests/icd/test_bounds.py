@@ -1,4 +1,6 @@
-"""Numbers of the protocol section: none passes the schema that generated code cannot hold."""
+"""Numbers of the protocol section: none passes the schema that generated code cannot
+hold.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +11,15 @@ from icdgen.icd import schema
 
 # Rules hold these, as most depend on other numbers, or they stand in no generated code.
 HELD_ELSEWHERE = {
-    *(f"{crc}/{key}" for crc in ("crc8", "crc16") for key in ("polynomial", "init", "xor_out", "empty", "check")),
-    *(f"checksums/additionalProperties/{key}" for key in ("polynomial", "init", "xor_out", "empty", "check")),
+    *(
+        f"{crc}/{key}"
+        for crc in ("crc8", "crc16")
+        for key in ("polynomial", "init", "xor_out", "empty", "check")
+    ),
+    *(
+        f"checksums/additionalProperties/{key}"
+        for key in ("polynomial", "init", "xor_out", "empty", "check")
+    ),
     *(f"{crc}/printed_constant" for crc in ("crc8", "crc16")),
     "can/extended/packets_left_in_last",
     "can/extended/max_packets",
@@ -24,19 +33,35 @@ def whole_numbers(node: dict, path: tuple[str, ...] = ()) -> Iterator[tuple[str,
         yield "/".join(path), node
     for key, value in node.items():
         if isinstance(value, dict):
-            yield from whole_numbers(value, path if key == "properties" else (*path, key))
+            yield from whole_numbers(
+                value, path if key == "properties" else (*path, key)
+            )
 
 
-NUMBERS = dict(whole_numbers(json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]["protocol"]))
+NUMBERS = dict(
+    whole_numbers(
+        json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]["protocol"]
+    )
+)
 
 
 def test_every_number_of_the_protocol_has_a_largest_value():
-    assert {path for path, number in NUMBERS.items() if "maximum" not in number} == HELD_ELSEWHERE
+    assert {
+        path for path, number in NUMBERS.items() if "maximum" not in number
+    } == HELD_ELSEWHERE
 
 
 def test_times_can_be_compared_by_the_sign_of_their_difference():
-    times = {path: number["maximum"] for path, number in NUMBERS.items() if path.endswith("_ms")}
+    times = {
+        path: number["maximum"]
+        for path, number in NUMBERS.items()
+        if path.endswith("_ms")
+    }
     assert times
     assert set(times.values()) == {2**31 - 1}
-    seconds = {number["maximum"] for path, number in NUMBERS.items() if path.endswith(("_s", "/seconds"))}
+    seconds = {
+        number["maximum"]
+        for path, number in NUMBERS.items()
+        if path.endswith(("_s", "/seconds"))
+    }
     assert seconds == {(2**31 - 1) // 1000}

@@ -18,10 +18,14 @@ from icdgen.icd.curve import Curve
 from icdgen.icd.layout import Scalar
 from icdgen.loading import load
 
-COEFFICIENTS = st.lists(st.floats(-1e9, 1e9, allow_subnormal=False), min_size=2, max_size=6).map(curve.polynomial)
+COEFFICIENTS = st.lists(
+    st.floats(-1e9, 1e9, allow_subnormal=False), min_size=2, max_size=6
+).map(curve.polynomial)
 
 _NUMBERS = st.integers(-300, 600) | st.floats(-1e9, 1e9, allow_subnormal=False)
-_RAWS = st.lists(_NUMBERS, min_size=2, max_size=8, unique_by=float).map(lambda raws: sorted(map(float, raws)))
+_RAWS = st.lists(_NUMBERS, min_size=2, max_size=8, unique_by=float).map(
+    lambda raws: sorted(map(float, raws))
+)
 
 
 @st.composite
@@ -29,8 +33,12 @@ def tables(draw: st.DrawFn) -> Curve:
     """Any tables, and such that rise or fall all along."""
     raws = draw(_RAWS)
     values = draw(st.lists(_NUMBERS.map(float), min_size=len(raws), max_size=len(raws)))
-    values = draw(st.sampled_from((values, sorted(values), sorted(values, reverse=True))))
-    return curve.table(list(zip(raws, values, strict=True)), draw(st.sampled_from(curve.OUTSIDE)))
+    values = draw(
+        st.sampled_from((values, sorted(values), sorted(values, reverse=True)))
+    )
+    return curve.table(
+        list(zip(raws, values, strict=True)), draw(st.sampled_from(curve.OUTSIDE))
+    )
 
 
 @pytest.mark.parametrize(
@@ -51,7 +59,16 @@ def test_a_formula_is_multiplied_out_exactly_and_rounded_once(text, coefficients
 
 
 @pytest.mark.parametrize(
-    "text", ["raw^16", "raw^8*raw^8", "1/raw", "raw/raw", "raw^-1", "raw = value^2", "raw^2 - raw^2 + 1"]
+    "text",
+    [
+        "raw^16",
+        "raw^8*raw^8",
+        "1/raw",
+        "raw/raw",
+        "raw^-1",
+        "raw = value^2",
+        "raw^2 - raw^2 + 1",
+    ],
 )
 def test_what_is_no_polynomial_is_refused(text):
     with pytest.raises(formula.FormulaError):
@@ -72,22 +89,34 @@ def _rounded(exact: Fraction) -> Fraction:
 
 
 def _between(one: Curve, raw: float) -> float:
-    """What the documents say of a table: on the line between two points every step is rounded by itself."""
+    """What the documents say of a table: on the line between two points every step is
+    rounded by itself.
+    """
     points = one.points
     is_beyond = not points[0][0] <= raw <= points[-1][0]
     if is_beyond and one.outside == "refuse":
         return math.nan
     if is_beyond and one.outside == "clamp":
         return points[0][1] if raw < points[0][0] else points[-1][1]
-    at = max([index for index, (start, _) in enumerate(points) if start <= raw], default=0)
-    (x0, y0), (x1, y1) = points[min(at, len(points) - 2)], points[min(at, len(points) - 2) + 1]
+    at = max(
+        [index for index, (start, _) in enumerate(points) if start <= raw], default=0
+    )
+    (x0, y0), (x1, y1) = (
+        points[min(at, len(points) - 2)],
+        points[min(at, len(points) - 2) + 1],
+    )
     slope = _rounded((Fraction(y1) - Fraction(y0)) / (Fraction(x1) - Fraction(x0)))
     start, value = map(Fraction, points[at])
     above = _rounded(Fraction(raw) - start)
     return float(_rounded(_rounded(above * slope) + value))
 
 
-@given(tables(), st.integers(-(2**63), 2**64 - 1) | st.integers(-400, 700) | st.floats(-1e300, 1e300))
+@given(
+    tables(),
+    st.integers(-(2**63), 2**64 - 1)
+    | st.integers(-400, 700)
+    | st.floats(-1e300, 1e300),
+)
 def test_a_table_is_what_its_definition_says_to_the_last_bit(one, raw):
     found, wanted = one.double(raw), _between(one, float(raw))
     assert struct.pack(">d", found) == struct.pack(">d", wanted)
@@ -95,13 +124,20 @@ def test_a_table_is_what_its_definition_says_to_the_last_bit(one, raw):
 
 @given(tables())
 def test_at_its_points_a_table_has_their_values(one):
-    assert [one.double(raw) for raw, _ in one.points] == [value for _, value in one.points]
+    assert [one.double(raw) for raw, _ in one.points] == [
+        value for _, value in one.points
+    ]
 
 
 @given(tables())
 def test_beyond_its_points_a_table_is_as_it_says(one):
     (first, low), (last, high) = one.points[0], one.points[-1]
-    for number in (math.nextafter(first, -math.inf), -math.inf, math.nextafter(last, math.inf), math.inf):
+    for number in (
+        math.nextafter(first, -math.inf),
+        -math.inf,
+        math.nextafter(last, math.inf),
+        math.inf,
+    ):
         value = one.double(number)
         if one.outside == "clamp":
             assert value == (low if number < first else high)
@@ -138,16 +174,27 @@ def test_points_are_numbers_however_they_are_written(tmp_path: Path):
     assert not loaded.findings
     (field,) = loaded.icd.nodes[0].messages[0].fields
     assert field.curve is not None
-    assert field.curve.points == ((-1.0, 0.001), (0.5, 0.001), (2.0, 250.0), (1000.0, -350.0))
+    assert field.curve.points == (
+        (-1.0, 0.001),
+        (0.5, 0.001),
+        (2.0, 250.0),
+        (1000.0, -350.0),
+    )
 
 
-@given(COEFFICIENTS | tables(), st.integers(1, 9), st.booleans(), st.floats(-1e12, 1e12))
+@given(
+    COEFFICIENTS | tables(), st.integers(1, 9), st.booleans(), st.floats(-1e12, 1e12)
+)
 def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, value):
-    field = Scalar(name="any", at=0, bits=bits, type="int" if is_signed else "uint", curve=one)
+    field = Scalar(
+        name="any", at=0, bits=bits, type="int" if is_signed else "uint", curve=one
+    )
     raws = range(field.settable_raws[0], field.settable_raws[1] + 1)
     values = [one.double(raw) for raw in raws]
     pairs = list(pairwise(values))
-    assert field.is_invertible == (bool(pairs) and (all(a < b for a, b in pairs) or all(a > b for a, b in pairs)))
+    assert field.is_invertible == (
+        bool(pairs) and (all(a < b for a, b in pairs) or all(a > b for a, b in pairs))
+    )
     if not field.is_invertible:
         with pytest.raises(codec.CodecError):
             codec.raw_from_physical(field, value)
@@ -165,12 +212,20 @@ def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, 
 def test_a_table_leads_back_to_raw_values_between_its_points():
     points = ((10.0, 1.0), (20.5, 4.0), (70000.0, 5.0))
     ends = {
-        outside: Scalar(name="any", at=0, bits=16, type="uint", curve=curve.table(points, outside)).settable_raws
+        outside: Scalar(
+            name="any", at=0, bits=16, type="uint", curve=curve.table(points, outside)
+        ).settable_raws
         for outside in curve.OUTSIDE
     }
-    assert ends == {"clamp": (10, 65535), "refuse": (10, 65535), "extrapolate": (0, 65535)}
+    assert ends == {
+        "clamp": (10, 65535),
+        "refuse": (10, 65535),
+        "extrapolate": (0, 65535),
+    }
     for outside, raw in (("clamp", None), ("refuse", None), ("extrapolate", 9)):
-        field = Scalar(name="any", at=0, bits=16, type="uint", curve=curve.table(points, outside))
+        field = Scalar(
+            name="any", at=0, bits=16, type="uint", curve=curve.table(points, outside)
+        )
         assert codec.raw_from_physical(field, 1.1) == 10
         if raw is None:
             with pytest.raises(codec.CodecError, match="takes 1 to 4"):
@@ -182,13 +237,21 @@ def test_a_table_leads_back_to_raw_values_between_its_points():
 def test_wider_fields_and_powers_of_floats_are_only_read():
     square = curve.parse("raw^2")
     assert Scalar(name="any", at=0, bits=16, type="uint", curve=square).is_invertible
-    assert not Scalar(name="any", at=0, bits=17, type="uint", curve=square).is_invertible
-    assert not Scalar(name="any", at=0, bits=32, type="float", curve=square).is_invertible
-    assert Scalar(name="any", at=0, bits=32, type="float", curve=curve.parse("raw/3")).is_invertible
+    assert not Scalar(
+        name="any", at=0, bits=17, type="uint", curve=square
+    ).is_invertible
+    assert not Scalar(
+        name="any", at=0, bits=32, type="float", curve=square
+    ).is_invertible
+    assert Scalar(
+        name="any", at=0, bits=32, type="float", curve=curve.parse("raw/3")
+    ).is_invertible
 
 
 def test_a_float_takes_what_is_finite_in_its_width():
-    field = Scalar(name="any", at=0, bits=32, type="float", curve=curve.parse("raw*0.5"))
+    field = Scalar(
+        name="any", at=0, bits=32, type="float", curve=curve.parse("raw*0.5")
+    )
     largest = struct.unpack("<f", bytes.fromhex("ffff7f7f"))[0]
     assert codec.raw_from_physical(field, largest / 2) == 0x7F7FFFFF
     for value in (largest, math.inf, -math.inf, math.nan):
@@ -197,8 +260,13 @@ def test_a_float_takes_what_is_finite_in_its_width():
 
 
 def test_a_result_that_is_no_number_has_always_the_same_bits():
-    field = Scalar(name="any", at=0, bits=32, type="float", curve=curve.parse("raw^2 - raw"))
+    field = Scalar(
+        name="any", at=0, bits=32, type="float", curve=curve.parse("raw^2 - raw")
+    )
     for raw in (0x7FC00001, 0xFFFFFFFF, 0x7F800001, 0xFF800000 - 0x80000000):
         value = codec.physical_double(field, raw)
         assert value is not None
-        assert struct.pack(">d", value).hex() in ("7ff8000000000000", "7ff0000000000000")
+        assert struct.pack(">d", value).hex() in (
+            "7ff8000000000000",
+            "7ff0000000000000",
+        )

@@ -1,4 +1,6 @@
-"""Values that are derived from fields: what formulas mean, and that each step is a double."""
+"""Values that are derived from fields: what formulas mean, and that each step is a
+double.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ from icdgen.icd.formula import FormulaError
 from icdgen.shipped import provide_runtime
 
 NAMES = ("Lon", "Lon HP", "C", "N0", "C/N0", "2D", "W_SF", "x", "-")
-NUMBERS = st.floats() | st.sampled_from((0.0, -0.0, 1.0, math.inf, -math.inf, math.nan, 5e-324, 1.7e308))
+NUMBERS = st.floats() | st.sampled_from(
+    (0.0, -0.0, 1.0, math.inf, -math.inf, math.nan, 5e-324, 1.7e308)
+)
 
 
 provide_runtime()
@@ -108,7 +112,9 @@ def test_the_runtime_divides_as_the_reference(one, other):
 
 @given(NUMBERS, st.integers(-65535, 65535) | st.integers(-20, 20))
 def test_the_runtime_has_the_powers_of_the_reference(base, exponent):
-    assert _same(derived.power(base, float(exponent)), _derived.power(base, float(exponent)))
+    assert _same(
+        derived.power(base, float(exponent)), _derived.power(base, float(exponent))
+    )
 
 
 @pytest.mark.parametrize("exponent", range(23))

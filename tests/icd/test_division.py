@@ -1,4 +1,6 @@
-"""A field that the manual divides in words is its parts, everywhere, and no bit of it is lost or moved."""
+"""A field that the manual divides in words is its parts, everywhere, and no bit of it
+is lost or moved.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ def item(**values) -> Map:
 
 
 def raw_at(at: int, bits: int, orders: tuple[str, str], frame: bytes) -> int:
-    layout = Layout("Demo", len(frame), (Scalar(name="Value", at=at, type="uint", bits=bits),))
+    layout = Layout(
+        "Demo", len(frame), (Scalar(name="Value", at=at, type="uint", bits=bits),)
+    )
     node = Node("demo", "Demo", "", *orders, messages=(), enums=())
     return codec.decode(node, Message("Demo", "telemetry", layout), frame)["Value"]
 
@@ -43,8 +47,15 @@ def test_a_part_holds_the_bits_of_the_value_that_it_names(orders, at, bits, data
     assert part == (value >> start) & ((1 << count) - 1)
 
 
-@given(st.sampled_from((("little", "lsb0"), ("big", "msb0"))), st.integers(0, 15), st.integers(1, 33), st.data())
-def test_where_values_lie_in_one_run_of_bits_every_division_is_possible(orders, at, bits, data):
+@given(
+    st.sampled_from((("little", "lsb0"), ("big", "msb0"))),
+    st.integers(0, 15),
+    st.integers(1, 33),
+    st.data(),
+)
+def test_where_values_lie_in_one_run_of_bits_every_division_is_possible(
+    orders, at, bits, data
+):
     cuts = sorted(data.draw(st.sets(st.integers(0, bits))) | {0, bits})
     parts = [item(name=f"P{a}", at=a, bits=b - a) for a, b in pairwise(cuts)]
     whole = item(name="Whole", at=at, bits=bits, type="uint", bitfields=parts)
@@ -80,7 +91,13 @@ messages:
         ("Fast", 0, 1, "bool"),
     ]
     first, second, fast = one.fields
-    assert (first.unit.symbol, codec.physical_double(first, 3), first.limits.max) == ("s", 1.5, 5)
+    assert (first.unit.symbol, codec.physical_double(first, 3), first.limits.max) == (
+        "s",
+        1.5,
+        5,
+    )
     assert second.summary == "Bits 4 to 14 of Periods. Zero stops it."
     assert fast.summary == "Bit 15 of Periods. Not slow."
-    assert codec.encode(loaded.icd.node("demo"), one, {"First": 3, "Second": 1, "Fast": 1}) == bytes.fromhex("8013")
+    assert codec.encode(
+        loaded.icd.node("demo"), one, {"First": 3, "Second": 1, "Fast": 1}
+    ) == bytes.fromhex("8013")

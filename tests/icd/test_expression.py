@@ -1,4 +1,6 @@
-"""Formulas of fields and derived values have one grammar, with exact and with floating-point results."""
+"""Formulas of fields and derived values have one grammar, with exact and with
+floating-point results.
+"""
 
 from __future__ import annotations
 
@@ -26,14 +28,17 @@ TEXTS = st.recursive(
 
 
 @given(TEXTS, st.integers(-20, 20))
-def test_a_derived_value_of_one_field_is_the_value_of_the_same_formula_of_the_field(text, raw):
+def test_a_derived_value_of_one_field_is_the_value_of_the_same_formula_of_the_field(
+    text, raw
+):
     try:
         terms = formula.coefficients(text)
     except FormulaError:
         return
     exact = sum((term * raw**power for power, term in enumerate(terms)), Fraction(0))
     result = derived.parse(text, ["raw"]).double([float(raw)])
-    # No intermediate value is larger than with all signs positive, so this bounds the errors of rounding.
+    # No intermediate value is larger than with all signs positive, so this bounds the
+    # errors of rounding.
     largest = derived.parse(text.replace("-", "+"), ["raw"]).double([float(abs(raw))])
     assert abs(Fraction(result) - exact) <= Fraction(max(largest, 1.0)) / 10**12
 
@@ -50,8 +55,14 @@ def test_a_derived_value_of_one_field_is_the_value_of_the_same_formula_of_the_fi
         ("raw/(1 - 1)", "it divides by zero"),
         ("raw*0^-1", "it divides by zero"),
         ("raw*(1e99^999)^999", "a power is too large to be meant"),
-        ("raw*" + "1" * (MAX_DIGITS + 1), f"a number has more than {MAX_DIGITS} digits"),
-        ("(" * MAX_DEPTH + "raw" + ")" * MAX_DEPTH, f"more than {MAX_DEPTH} parentheses or signs are open at once"),
+        (
+            "raw*" + "1" * (MAX_DIGITS + 1),
+            f"a number has more than {MAX_DIGITS} digits",
+        ),
+        (
+            "(" * MAX_DEPTH + "raw" + ")" * MAX_DEPTH,
+            f"more than {MAX_DEPTH} parentheses or signs are open at once",
+        ),
         ("raw & 1", "`&` is not part of a formula"),
     ],
 )

@@ -1,4 +1,6 @@
-"""Single facts of the shipped ICDs that were held wrongly once, each against its place in the manual."""
+"""Single facts of the shipped ICDs that were held wrongly once, each against its place
+in the manual.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,13 @@ def icd():
 
 
 def field(icd, node: str, message: str, name: str):
-    (found,) = (f for m in icd.node(node).messages if m.name == message for f in m.fields if f.name == name)
+    (found,) = (
+        f
+        for m in icd.node(node).messages
+        if m.name == message
+        for f in m.fields
+        if f.name == name
+    )
     return found
 
 
@@ -28,17 +36,33 @@ def erratum(icd, id: str):
 def test_a_position_of_16_bits_is_not_told_in_metres(icd):
     """Tables 149 and 166: 32.767 km do not reach the orbit."""
     frame = decode(icd, "cubeacp", "219", bytes.fromhex("e80300000000"))
-    assert " ".join(to_text(frame).split("\n")[5].split()) == "ECEF Position X 1000 1000"
+    assert (
+        " ".join(to_text(frame).split("\n")[5].split()) == "ECEF Position X 1000 1000"
+    )
     assert field(icd, "cubeacp", "ADCS State", "ECEF Position Z").unit is None
-    assert field(icd, "cubeacp", "Raw GPS X", "ECEF Position X").unit.symbol == "m"  # 32 bits, Table 136
+    assert (
+        field(icd, "cubeacp", "Raw GPS X", "ECEF Position X").unit.symbol == "m"
+    )  # 32 bits, Table 136
 
 
 @pytest.mark.parametrize("message", ["Estimation Parameters", "ADCS Configuration"])
-def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(icd, message):
+def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(
+    icd, message
+):
     """Tables 192 and 200: the lower four bits are Cam1's, the upper four Cam2's."""
-    fields = {f.name: f for m in icd.node("cubeacp").messages if m.name == message for f in m.fields}
-    assert "Cam1 and Cam2 Sampling Period" not in {name for name, f in fields.items() if f.unit is not None}
-    assert [(fields[f"Cam{n} period"].bits, fields[f"Cam{n} period"].unit.symbol) for n in (1, 2)] == [(4, "s")] * 2
+    fields = {
+        f.name: f
+        for m in icd.node("cubeacp").messages
+        if m.name == message
+        for f in m.fields
+    }
+    assert "Cam1 and Cam2 Sampling Period" not in {
+        name for name, f in fields.items() if f.unit is not None
+    }
+    assert [
+        (fields[f"Cam{n} period"].bits, fields[f"Cam{n} period"].unit.symbol)
+        for n in (1, 2)
+    ] == [(4, "s")] * 2
 
 
 @pytest.mark.parametrize(
@@ -46,12 +70,32 @@ def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(i
     [
         ("common", "Identification", "Runtime (seconds)", "s"),  # Table 27
         ("common", "Identification", "Runtime (milliseconds)", "ms"),
-        ("common", "Load File Download Block", "BlockLength", "byte"),  # Table 17, section 7.2.3
-        ("common", "File Information", "File Size", "byte"),  # Table 43, against Table 215
+        (
+            "common",
+            "Load File Download Block",
+            "BlockLength",
+            "byte",
+        ),  # Table 17, section 7.2.3
+        (
+            "common",
+            "File Information",
+            "File Size",
+            "byte",
+        ),  # Table 43, against Table 215
         ("bootloader", "Program Information", "File Size", "byte"),  # Table 70
         ("cubeacp", "JPG Conversion Progress", "Progress Percentage", "%"),  # Table 99
-        ("cubeacp", "CubeSense Configuration", "Nadir Max Deviation Percentage", "%"),  # Table 189
-        ("cubeacp", "Set Star Tracker Configuration", "Star Tracker Centroid X", "pixels"),  # Table 188
+        (
+            "cubeacp",
+            "CubeSense Configuration",
+            "Nadir Max Deviation Percentage",
+            "%",
+        ),  # Table 189
+        (
+            "cubeacp",
+            "Set Star Tracker Configuration",
+            "Star Tracker Centroid X",
+            "pixels",
+        ),  # Table 188
     ],
 )
 def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
@@ -61,43 +105,72 @@ def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
 def test_flash_sizes_are_numbers(icd):
     """Section 3.1: halves of 512 kB, of which each of seven areas holds one."""
     boot = icd.node("common").protocol["boot"]
-    internal, upload = boot["internal_flash"], icd.node("common").protocol["file_transfer"]["upload"]
-    assert internal["size_bytes"] == internal["bootloader_bytes"] + internal["application_bytes"] == 1 << 20
+    internal, upload = (
+        boot["internal_flash"],
+        icd.node("common").protocol["file_transfer"]["upload"],
+    )
+    assert (
+        internal["size_bytes"]
+        == internal["bootloader_bytes"] + internal["application_bytes"]
+        == 1 << 20
+    )
     assert upload["destination_bytes"] == internal["application_bytes"]
 
 
 def test_what_is_assumed_of_boot_attempts_and_reads_on_i2c_says_so(icd):
     protocol = icd.node("common").protocol
     assert "attempts" in protocol["boot"]["assumptions"]  # section 3 counts in two ways
-    assert "i2c" in protocol["file_transfer"]["download"]["assumptions"]  # section 7.2.3 names no id for the reads
+    assert (
+        "i2c" in protocol["file_transfer"]["download"]["assumptions"]
+    )  # section 7.2.3 names no id for the reads
 
 
 def test_only_error_flags_are_called_latched(icd):
     """Section 3 sets the SRAM enabled state beside the error flags."""
-    (state,) = (m for m in icd.node("bootloader").messages if m.name == "Bootloader State")
+    (state,) = (
+        m for m in icd.node("bootloader").messages if m.name == "Bootloader State"
+    )
     assert "error flags stay set" in state.summary
     assert "BOOT-014" not in {e.id for e in icd.node("bootloader").errata}
 
 
 def test_a_log_may_hold_the_time_of_the_receiver(icd):
     """Table 216: bit 43."""
-    assert [(row.bit, row.id) for row in icd.node("cubeacp").loggable if row.name == "Raw GPS Time"] == [(43, 177)]
+    assert [
+        (row.bit, row.id)
+        for row in icd.node("cubeacp").loggable
+        if row.name == "Raw GPS Time"
+    ] == [(43, 177)]
     assert "Raw GPS Time" in erratum(icd, "ACP-197").why
 
 
 def test_pages_of_a_copy_are_not_given_as_those_of_the_manual(icd):
     """Its own contents put section 6.3 on page 40, the copy that was captured does not."""
-    assert not [m.name for node in icd.nodes for m in node.messages if m.page is not None]
+    assert not [
+        m.name for node in icd.nodes for m in node.messages if m.page is not None
+    ]
 
 
 @pytest.mark.parametrize(
     ("id", "gone", "holds"),
     [
-        ("COM-017", "whether the bootloader shares", "whichever of its programs runs"),  # sections 1 and 5.4, BOOT-004
+        (
+            "COM-017",
+            "whether the bootloader shares",
+            "whichever of its programs runs",
+        ),  # sections 1 and 5.4, BOOT-004
         ("COM-052", "is also read on I2C", "241 is assumed"),  # section 7.2.3
         ("COM-081", "Neither is said", "For the I2C flag"),  # section 5.3.1
-        ("COM-090", "flag and error to the last one processed", "Id and Processed flag belong"),  # Table 39
-        ("WHL-004", "Kind, length and type are unknown", "telemetry is taken"),  # section 5.1
+        (
+            "COM-090",
+            "flag and error to the last one processed",
+            "Id and Processed flag belong",
+        ),  # Table 39
+        (
+            "WHL-004",
+            "Kind, length and type are unknown",
+            "telemetry is taken",
+        ),  # section 5.1
         ("ACP-198", "is not said", "rules of the UART"),  # section 5.2
     ],
 )
@@ -106,6 +179,16 @@ def test_a_note_does_not_gainsay_the_manual_or_another_note(icd, id, gone, holds
 
 
 def test_what_is_no_fault_is_no_note(icd):
-    """Table 40 and section 5.5 say what a byte too many is; all set and get ids stand in Table 47; and so on."""
+    """Table 40 and section 5.5 say what a byte too many is.
+
+    All set and get ids stand in Table 47; and so on.
+    """
     known = {e.id for node in icd.nodes for e in node.errata}
-    assert not known & {"ACP-011", "COM-094", "COM-107", "ACP-158", "MAG-005", "WHL-006"}
+    assert not known & {
+        "ACP-011",
+        "COM-094",
+        "COM-107",
+        "ACP-158",
+        "MAG-005",
+        "WHL-006",
+    }

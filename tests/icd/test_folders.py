@@ -10,7 +10,9 @@ from icdgen.icd import folders
 from icdgen.loading import load
 from tests.conftest import ROOT
 
-ICD = "icdgen: 1\nnode: {{name: {0}, title: {0}, byte_order: little, bit_order: lsb0}}\n"
+ICD = (
+    "icdgen: 1\nnode: {{name: {0}, title: {0}, byte_order: little, bit_order: lsb0}}\n"
+)
 
 
 def write(folder, *names, text=None):
@@ -33,13 +35,22 @@ def test_icds_in_folders_below_are_found(tmp_path):
 
 def test_a_part_that_is_included_is_read_once_and_belongs_to_its_node(tmp_path):
     write(tmp_path, "icd/parts/common.yaml")
-    write(tmp_path, "icd/battery.yaml", text=ICD.format("battery") + "include: [parts/common.yaml]\n")
+    write(
+        tmp_path,
+        "icd/battery.yaml",
+        text=ICD.format("battery") + "include: [parts/common.yaml]\n",
+    )
     assert nodes(tmp_path) == ["common", "battery"]
 
 
 def test_errata_profiles_and_yaml_of_other_tools_are_no_icds(tmp_path):
     write(tmp_path, "icd/battery.yaml")
-    write(tmp_path, "icd/errata/battery.yaml", "overlays/battery.yaml", text="errata: 1\nnode: battery\nnotes: []\n")
+    write(
+        tmp_path,
+        "icd/errata/battery.yaml",
+        "overlays/battery.yaml",
+        text="errata: 1\nnode: battery\nnotes: []\n",
+    )
     write(tmp_path, "icd/profiles/vendor.yaml", text="profile: 1\nnodes: []\n")
     write(tmp_path, "compose.yaml", "mkdocs.yaml", text="services: {}\nnode: {}\n")
     write(tmp_path, "deploy/play.yaml", text="- hosts: all\n  messages: []\n")
@@ -49,7 +60,15 @@ def test_errata_profiles_and_yaml_of_other_tools_are_no_icds(tmp_path):
 def test_hidden_folders_output_and_environments_are_not_searched(tmp_path):
     write(tmp_path, "icd/battery.yaml", "environment/lib/one.yaml")
     (tmp_path / "environment" / "pyvenv.cfg").write_text("")
-    for name in (".git", "build", "generated", "node_modules", "site", "target", "dist"):
+    for name in (
+        ".git",
+        "build",
+        "generated",
+        "node_modules",
+        "site",
+        "target",
+        "dist",
+    ):
         write(tmp_path, f"{name}/copy.yaml", f"{name}/deep/copy.yaml")
     write(tmp_path, ".hidden.yaml", text="a: 1\n")
     assert nodes(tmp_path) == ["battery"]
@@ -60,7 +79,9 @@ def test_hidden_folders_output_and_environments_are_not_searched(tmp_path):
 def test_a_file_of_the_folder_that_is_meant_as_an_icd_is_reported(tmp_path, text):
     write(tmp_path, "battery.yaml")
     (tmp_path / "broken.yaml").write_text(text)
-    assert [one.place.file for one in load([tmp_path]).findings][:1] == [str(tmp_path / "broken.yaml")]
+    assert [one.place.file for one in load([tmp_path]).findings][:1] == [
+        str(tmp_path / "broken.yaml")
+    ]
 
 
 def test_a_folder_without_icds_says_what_an_icd_is(tmp_path):
@@ -88,8 +109,17 @@ def test_a_search_of_too_many_folders_ends_with_a_finding(tmp_path, monkeypatch)
 def test_a_new_file_below_makes_what_was_remembered_obsolete(tmp_path):
     write(tmp_path, "icd/battery.yaml", "icd/notes.yaml", text="a: 1\n")
     inputs = load([tmp_path]).inputs
-    assert {tmp_path, tmp_path / "icd", tmp_path / "icd" / "notes.yaml"} <= inputs.keys()
+    assert {
+        tmp_path,
+        tmp_path / "icd",
+        tmp_path / "icd" / "notes.yaml",
+    } <= inputs.keys()
 
 
 def test_the_examples_of_devices_are_found():
-    assert sorted(nodes(ROOT / "examples" / "devices")) == ["bme280", "mavlink", "p31u", "ublox"]
+    assert sorted(nodes(ROOT / "examples" / "devices")) == [
+        "bme280",
+        "mavlink",
+        "p31u",
+        "ublox",
+    ]

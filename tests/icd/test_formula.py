@@ -29,18 +29,34 @@ def terms(depth: int) -> st.SearchStrategy[tuple[str, Fraction, Fraction]]:
     inner = terms(depth - 1)
     return st.one_of(
         inner,
-        st.builds(lambda a, b: (f"({a[0]} + {b[0]})", a[1] + b[1], a[2] + b[2]), inner, inner),
-        st.builds(lambda a, b: (f"({a[0]}-{b[0]})", a[1] - b[1], a[2] - b[2]), inner, inner),
-        st.builds(lambda a: (f"-{a[0]}", -a[1], -a[2]), inner),
-        st.builds(lambda a, n: (f"{a[0]}*{n}", a[1] * Fraction(n), a[2] * Fraction(n)), inner, DECIMALS),
-        st.builds(lambda n, a: (f"{n} * {a[0]}", a[1] * Fraction(n), a[2] * Fraction(n)), DECIMALS, inner),
         st.builds(
-            lambda a, n: (f"{a[0]}/{n}", a[1] / Fraction(n), a[2] / Fraction(n)), inner, DECIMALS.filter(Fraction)
+            lambda a, b: (f"({a[0]} + {b[0]})", a[1] + b[1], a[2] + b[2]), inner, inner
+        ),
+        st.builds(
+            lambda a, b: (f"({a[0]}-{b[0]})", a[1] - b[1], a[2] - b[2]), inner, inner
+        ),
+        st.builds(lambda a: (f"-{a[0]}", -a[1], -a[2]), inner),
+        st.builds(
+            lambda a, n: (f"{a[0]}*{n}", a[1] * Fraction(n), a[2] * Fraction(n)),
+            inner,
+            DECIMALS,
+        ),
+        st.builds(
+            lambda n, a: (f"{n} * {a[0]}", a[1] * Fraction(n), a[2] * Fraction(n)),
+            DECIMALS,
+            inner,
+        ),
+        st.builds(
+            lambda a, n: (f"{a[0]}/{n}", a[1] / Fraction(n), a[2] / Fraction(n)),
+            inner,
+            DECIMALS.filter(Fraction),
         ),
     )
 
 
-LINEAR = terms(3).filter(lambda term: term[1] != 0 and len(term[0]) <= formula.MAX_LENGTH)
+LINEAR = terms(3).filter(
+    lambda term: term[1] != 0 and len(term[0]) <= formula.MAX_LENGTH
+)
 SCALES = st.builds(
     Scale,
     st.fractions(max_denominator=10**12).filter(bool),

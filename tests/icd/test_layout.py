@@ -1,4 +1,6 @@
-"""The layout tree: one node per line of the ICD, and the scalars of a frame with their bits."""
+"""The layout tree: one node per line of the ICD, and the scalars of a frame with their
+bits.
+"""
 
 from __future__ import annotations
 
@@ -38,8 +40,12 @@ def test_a_layout_has_one_node_for_each_line_of_the_icd(path):
         for item in message.source.get("fields", ()):
             names = [part["name"] for part in item.get("bitfields", [item])]
             nodes = [one for one in message.layout.nodes if one.name in names]
-            assert [one.name for one in nodes] == names, f"{message.name}: {item['name']}"
-        visits = [visit for visit in walk(message.layout, node.orders) if not visit.owners]
+            assert [
+                one.name for one in nodes
+            ] == names, f"{message.name}: {item['name']}"
+        visits = [
+            visit for visit in walk(message.layout, node.orders) if not visit.owners
+        ]
         assert [visit.node for visit in visits] == list(message.layout.nodes)
 
 
@@ -49,11 +55,17 @@ def test_the_longest_frame_has_a_place_for_each_field(path):
         placed = flatten(message.layout, node.orders)
         assert [one.name for one in placed] == [field.name for field in message.fields]
         for one, field in zip(placed, message.fields, strict=True):
-            assert (one.at, one.bits) == (field.at, field.bits), f"{message.name}: {one.name}"
+            assert (one.at, one.bits) == (
+                field.at,
+                field.bits,
+            ), f"{message.name}: {one.name}"
             assert (one.role == "count") == field.is_count
             if not field.is_count:
                 effective = field.orders_in_effect(node.orders)
-                assert field.derived is not None or (one.byte_order, one.bit_order) == (effective.byte, effective.bit)
+                assert field.derived is not None or (one.byte_order, one.bit_order) == (
+                    effective.byte,
+                    effective.bit,
+                )
 
 
 @pytest.mark.parametrize("path", SETS)
@@ -61,9 +73,14 @@ def test_lengths_of_frames_follow_from_the_sizes_of_their_variable_parts(path):
     for _, node, message in messages(path):
         layout = message.layout
         for most in (False, True):
-            sizes = {name: part.most if most else part.fewest for name, part in layout.parts_by_size.items()}
+            sizes = {
+                name: part.most if most else part.fewest
+                for name, part in layout.parts_by_size.items()
+            }
             placed = flatten(layout, node.orders, sizes)
-            end = max((one.at + one.bits for one in placed if one.role == "field"), default=0)
+            end = max(
+                (one.at + one.bits for one in placed if one.role == "field"), default=0
+            )
             expected = layout.longest if most else layout.shortest
             assert end <= 8 * expected or layout.may_end_early
 
@@ -75,7 +92,9 @@ def test_fields_at_fixed_bits_lie_within_the_fixed_part(path):
             for one in owner.fixed:
                 placed = flatten(Layout(owner.name, owner.length, (one,)), node.orders)
                 assert all(one.at <= place.at for place in placed)
-                assert all(place.at + place.bits <= 8 * owner.length for place in placed)
+                assert all(
+                    place.at + place.bits <= 8 * owner.length for place in placed
+                )
 
 
 @pytest.mark.parametrize("path", SETS)
@@ -88,14 +107,19 @@ def test_owners_of_bits_do_not_overlap_unless_their_conditions_exclude_each_othe
             for piece in pieces_of(place):
                 for bit in range(piece.shift, piece.shift + piece.bits):
                     number = 8 * piece.byte + bit
-                    assert number not in owned, f"{message.name}: {place.name} and {owned[number]}"
+                    assert (
+                        number not in owned
+                    ), f"{message.name}: {place.name} and {owned[number]}"
                     owned[number] = place.name
 
 
 def pieces_of(place):
     """The runs of bits of a scalar; bytes are whole bytes in order."""
     if place.scalar.is_bytes:
-        return [bits.Piece(byte, 0, 8, 0) for byte in range(place.at // 8, (place.at + place.bits) // 8)]
+        return [
+            bits.Piece(byte, 0, 8, 0)
+            for byte in range(place.at // 8, (place.at + place.bits) // 8)
+        ]
     return bits.pieces_at(place.at, place.bits, place.byte_order, place.bit_order)
 
 
@@ -113,8 +137,12 @@ def test_structs_have_fixed_nodes_only_and_share_their_layout(path):
     for _, _, message in messages_of(icd):
         for layout in structs_of(message.layout):
             assert id(layout) in declared
-            assert not layout.sequence and not layout.derived and layout.orders == Orders()
-            assert not any(isinstance(one, Overlay) or one.present_if for one in layout.fixed)
+            assert (
+                not layout.sequence and not layout.derived and layout.orders == Orders()
+            )
+            assert not any(
+                isinstance(one, Overlay) or one.present_if for one in layout.fixed
+            )
 
 
 def messages_of(icd: Icd) -> list[tuple[Icd, Node, Message]]:
@@ -127,20 +155,30 @@ def test_a_counter_is_a_plain_number_of_the_fixed_part_that_can_hold_the_size(pa
         parts = message.layout.parts
         counters = [part.counter for part in parts if not part.is_rest]
         assert len(set(counters)) == len(counters), "a field counts one part"
-        assert not any(part.is_rest for part in parts[:-1]), "only the last part is the rest of the frame"
+        assert not any(
+            part.is_rest for part in parts[:-1]
+        ), "only the last part is the rest of the frame"
         assert not any(
             part.is_rest and part.inner for part in parts
         ), "a field counts elements with arrays of variable length"
         for part in message.layout.counted_parts:
             if not part.is_rest:
-                (counter,) = (one for one in message.layout.fixed if one.name == part.counter)
+                (counter,) = (
+                    one for one in message.layout.fixed if one.name == part.counter
+                )
                 assert isinstance(counter, Scalar) and counter.type == "uint"
-                assert counter.scale is None and counter.const is None and not counter.present_if
+                assert (
+                    counter.scale is None
+                    and counter.const is None
+                    and not counter.present_if
+                )
                 assert part.high < 1 << counter.bits
 
 
 def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
-    """Every field of a frame has the bytes that it has in the longest frame without the gaps."""
+    """Every field of a frame has the bytes that it has in the longest frame without the
+    gaps.
+    """
     icd = read(ROOT / "tests" / "conformance" / "odd_icds")
     (node,) = (one for one in icd.nodes if one.name == "curves")
     assert any(message.layout.parts[-1].inner for message in node.messages)
@@ -153,8 +191,12 @@ def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
                 for name, part in layout.parts_by_size.items()
             }
             gaps = list(layout.gaps(sizes))
-            placed = {one.name: one for one in flatten(layout, Orders("big", "msb0"), sizes)}
-            assert layout.size_of_frame(sizes) == layout.longest - sum(gap.length for gap in gaps)
+            placed = {
+                one.name: one for one in flatten(layout, Orders("big", "msb0"), sizes)
+            }
+            assert layout.size_of_frame(sizes) == layout.longest - sum(
+                gap.length for gap in gaps
+            )
             for one in longest:
                 if one.role == "field" and one.scalar.length is None:
                     is_missing = any(gap.begin <= one.at // 8 < gap.end for gap in gaps)
@@ -165,7 +207,9 @@ def test_arrays_in_elements_take_the_bytes_that_their_counters_give():
 
 def test_an_array_of_structs_is_one_node_however_many_elements_it_can_have():
     icd = read(ROOT / "examples" / "devices" / "ublox")
-    (message,) = (one for node in icd.nodes for one in node.messages if one.name == "NAV-SAT")
+    (message,) = (
+        one for node in icd.nodes for one in node.messages if one.name == "NAV-SAT"
+    )
     lines = list(walk(message.layout, Orders("little", "lsb0")))
     assert len(lines) == 4 + len(structs_of(message.layout)[0].nodes)
     assert len(message.fields) > 1000
@@ -173,13 +217,20 @@ def test_an_array_of_structs_is_one_node_however_many_elements_it_can_have():
 
 def test_a_frame_lists_only_the_elements_that_it_has():
     icd = read(ROOT / "examples" / "devices" / "ublox")
-    (message,) = (one for node in icd.nodes for one in node.messages if one.name == "NAV-SAT")
+    (message,) = (
+        one for node in icd.nodes for one in node.messages if one.name == "NAV-SAT"
+    )
     part = message.layout.sequence[-1]
     orders = Orders("little", "lsb0")
-    none, two = (flatten(message.layout, orders, {part.name: number}) for number in (0, 2))
+    none, two = (
+        flatten(message.layout, orders, {part.name: number}) for number in (0, 2)
+    )
     inner = len(structs_of(message.layout)[0].fixed)
     assert len(two) - len(none) == 2 * inner
-    assert {one.name.split(".")[0] for one in two[len(none) :]} == {f"{part.name}[0]", f"{part.name}[1]"}
+    assert {one.name.split(".")[0] for one in two[len(none) :]} == {
+        f"{part.name}[0]",
+        f"{part.name}[1]",
+    }
 
 
 def test_layouts_of_an_icd_are_the_same_from_the_cache(tmp_path: Path):

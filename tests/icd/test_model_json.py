@@ -1,4 +1,6 @@
-"""A model that was kept is the model that was loaded, and what is kept can hold nothing but models."""
+"""A model that was kept is the model that was loaded, and what is kept can hold nothing
+but models.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,13 @@ def test_the_shipped_icds_come_back_the_same(kept):
 def test_what_two_fields_share_is_shared_again(kept):
     icd, _ = model_json.read(kept)
     enums = {id(enum) for node in icd.nodes for enum in node.enums}
-    used = {id(f.enum) for n in icd.nodes for m in n.messages for f in m.fields if f.enum is not None}
+    used = {
+        id(f.enum)
+        for n in icd.nodes
+        for m in n.messages
+        for f in m.fields
+        if f.enum is not None
+    }
     assert used and used <= enums
 
 
@@ -53,4 +61,7 @@ def test_every_torn_model_is_none_or_a_model(kept):
         assert model_json.read(kept[:end]) is None
     rows = json.loads(kept)
     rows[0] = {"is": "Icd", "nodes": []}
-    assert model_json.read(json.dumps(rows).encode()) == (Icd(()), {Path(path): seen for path, seen in rows[1]})
+    assert model_json.read(json.dumps(rows).encode()) == (
+        Icd(()),
+        {Path(path): seen for path, seen in rows[1]},
+    )

@@ -44,7 +44,9 @@ def test_an_explanation_has_title_reason_and_both_examples():
 
 
 def test_an_unknown_code_is_refused_with_the_nearest():
-    with pytest.raises(rules.UnknownRule, match="there is no rule ICD21; did you mean ICD021"):
+    with pytest.raises(
+        rules.UnknownRule, match="there is no rule ICD21; did you mean ICD021"
+    ):
         rules.explain("ICD21")
 
 
@@ -54,28 +56,42 @@ def test_an_accepted_finding_is_gone(tmp_path):
 
 
 def test_accepting_at_one_place_leaves_the_others(tmp_path):
-    other = status(VOLTAGE, length=6).replace("messages:\n", "").replace("Status", "Other").replace("130", "131")
+    other = (
+        status(VOLTAGE, length=6)
+        .replace("messages:\n", "")
+        .replace("Status", "Other")
+        .replace("130", "131")
+    )
     (found,) = findings(tmp_path, status(VOLTAGE, length=6) + other + ACCEPTED)
     assert found.code == "ICD024"
     assert "`Other`" in found.message
 
 
 def test_the_name_of_a_field_with_an_accepted_finding_is_still_looked_at(tmp_path):
-    overlap = ACCEPTED.replace("{message: Status}", "{message: Status, field: int}").replace("ICD024", "ICD021")
+    overlap = ACCEPTED.replace(
+        "{message: Status}", "{message: Status, field: int}"
+    ).replace("ICD024", "ICD021")
     icd = status(VOLTAGE, "at: 8, bits: 16, name: int, type: uint", length=3)
     assert codes(tmp_path, icd) == ["ICD021"]
     assert codes(tmp_path, icd + overlap)[:1] == ["ICD070"]
 
 
-def test_what_is_described_for_the_rules_about_names_is_described_for_code_too(tmp_path):
+def test_what_is_described_for_the_rules_about_names_is_described_for_code_too(
+    tmp_path,
+):
     icd = status(VOLTAGE, "at: 8, bits: 16, name: Current, type: uint", length=3)
-    accepted = ACCEPTED.replace("{message: Status}", "{message: Status, field: Current}").replace("ICD024", "ICD021")
+    accepted = ACCEPTED.replace(
+        "{message: Status}", "{message: Status, field: Current}"
+    ).replace("ICD024", "ICD021")
     model = loaded(tmp_path, icd + accepted).icd
     assert any(description.icd is model for description in nodes._recent)
 
 
 def test_findings_stand_in_the_order_of_the_file(tmp_path):
-    fields = [f"at: {16 * n}, bits: 24, name: F{n}, type: float, unit: furlong, formula: 1/raw" for n in range(9)]
+    fields = [
+        f"at: {16 * n}, bits: 24, name: F{n}, type: float, unit: furlong, formula: 1/raw"
+        for n in range(9)
+    ]
     found = findings(tmp_path, status(*fields, length=3))
     assert {f.code for f in found} == {"ICD020", "ICD021", "ICD022", "ICD042", "ICD060"}
     assert [f.place for f in found] == sorted(f.place for f in found)

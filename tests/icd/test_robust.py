@@ -1,4 +1,6 @@
-"""Whatever is done to an ICD or its overlay, loading it gives findings and never an exception."""
+"""Whatever is done to an ICD or its overlay, loading it gives findings and never an
+exception.
+"""
 
 from __future__ import annotations
 
@@ -117,18 +119,47 @@ PIECES = st.sampled_from(
             "ICD024",
         ),
         *("''", '"*"', "[]", "{}", "[[1]]", "{a: 1}", "[text]", "{name: x}"),
-        *("", "\n", " ", "  ", ":", "- ", ", ", "}", "{", "]", "[", "'", '"', "#", "\t", "\x00", "é", "?"),
+        *(
+            "",
+            "\n",
+            " ",
+            "  ",
+            ":",
+            "- ",
+            ", ",
+            "}",
+            "{",
+            "]",
+            "[",
+            "'",
+            '"',
+            "#",
+            "\t",
+            "\x00",
+            "é",
+            "?",
+        ),
     ]
 )
-WORDS = st.sampled_from(sorted({w.strip("{}[],:\"'") for w in (ICD + OVERLAY).split()} - {""}))
+WORDS = st.sampled_from(
+    sorted({w.strip("{}[],:\"'") for w in (ICD + OVERLAY).split()} - {""})
+)
 
 
 @st.composite
 def spoilt(draw, text: str) -> str:
     """The text with up to three stretches replaced by something else."""
     for _ in range(draw(st.integers(1, 3))):
-        words = [i for i in range(1, len(text)) if text[i - 1] in " {[," and text[i] not in " \n"]
-        start = draw(st.sampled_from(words)) if words and draw(st.booleans()) else draw(st.integers(0, len(text)))
+        words = [
+            i
+            for i in range(1, len(text))
+            if text[i - 1] in " {[," and text[i] not in " \n"
+        ]
+        start = (
+            draw(st.sampled_from(words))
+            if words and draw(st.booleans())
+            else draw(st.integers(0, len(text)))
+        )
         end = start
         while end < len(text) and text[end] not in ",}]\n":
             end += 1
@@ -156,7 +187,11 @@ def test_the_icd_and_the_overlay_are_nearly_right():
 
 def paths(tree: object, path: tuple = ()) -> Iterator[tuple]:
     """The way to every value of a tree."""
-    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    items = (
+        tree.items()
+        if isinstance(tree, dict)
+        else enumerate(tree) if isinstance(tree, list) else ()
+    )
     for key, value in items:
         yield (*path, key)
         yield from paths(value, (*path, key))

@@ -1,4 +1,6 @@
-"""A field gets the same answer about a role, whether it is read from a file or stands in a layout."""
+"""A field gets the same answer about a role, whether it is read from a file or stands
+in a layout.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,11 @@ from tests.conformance.icds import read
 from tests.conftest import ROOT
 from tests.icd.test_layout import SETS
 
-GENERAL = {name: role for name, role in vars(roles).items() if isinstance(role, roles.Role) and name[0] != "_"}
+GENERAL = {
+    name: role
+    for name, role in vars(roles).items()
+    if isinstance(role, roles.Role) and name[0] != "_"
+}
 
 
 def nodes_of(path: str) -> list[LayoutNode]:
@@ -30,26 +36,58 @@ def nodes_of(path: str) -> list[LayoutNode]:
 @pytest.mark.parametrize("name", GENERAL)
 def test_a_line_and_its_node_have_the_same_reasons_against_a_role(path, name):
     for node in nodes_of(path):
-        assert reasons_against(node.source, GENERAL[name]) == reasons_against(node, GENERAL[name]), node.name
+        assert reasons_against(node.source, GENERAL[name]) == reasons_against(
+            node, GENERAL[name]
+        ), node.name
 
 
 def test_the_table_names_only_features_that_there_are():
     every = [*GENERAL.values(), *roles.PROTOCOL.values()]
-    assert all(set(role.excluded) <= set(roles.FEATURES) and role.types for role in every)
+    assert all(
+        set(role.excluded) <= set(roles.FEATURES) and role.types for role in every
+    )
 
 
 @pytest.mark.parametrize(
     ("line", "role", "reasons"),
     [
         ({"type": "uint", "bits": 8}, roles.COUNTER, []),
-        ({"type": "int", "bits": 8, "formula": "raw*2"}, roles.COUNTER, ["is scaled", "is `int`, not `uint`"]),
-        ({"type": "uint", "bits": 8, "when": {"Mode": 1}}, roles.COUNTER, ["is optional"]),
+        (
+            {"type": "int", "bits": 8, "formula": "raw*2"},
+            roles.COUNTER,
+            ["is scaled", "is `int`, not `uint`"],
+        ),
+        (
+            {"type": "uint", "bits": 8, "when": {"Mode": 1}},
+            roles.COUNTER,
+            ["is optional"],
+        ),
         ({"struct": "Channel"}, roles.COUNTER, ["is a struct"]),
-        ({"type": "float", "bits": 32}, roles.CONDITION, ["is `float`, not `uint`, `int`, `enum` or `bool`"]),
-        ({"type": "uint", "bits": 8, "view": True}, roles.CONDITION, ["is an overlay field"]),
-        ({"type": "uint", "bits": 17}, roles.EXPONENT, ["has 17 bits, but can have 16 at most"]),
-        ({"type": "bool", "bits": 1}, roles.PROTOCOL["type"], ["has 1 bit, but needs 2 at least"]),
-        ({"type": "uint", "bits": 8}, roles.PROTOCOL["mask"], ["is `uint`, not `bytes` or `text`"]),
+        (
+            {"type": "float", "bits": 32},
+            roles.CONDITION,
+            ["is `float`, not `uint`, `int`, `enum` or `bool`"],
+        ),
+        (
+            {"type": "uint", "bits": 8, "view": True},
+            roles.CONDITION,
+            ["is an overlay field"],
+        ),
+        (
+            {"type": "uint", "bits": 17},
+            roles.EXPONENT,
+            ["has 17 bits, but can have 16 at most"],
+        ),
+        (
+            {"type": "bool", "bits": 1},
+            roles.PROTOCOL["type"],
+            ["has 1 bit, but needs 2 at least"],
+        ),
+        (
+            {"type": "uint", "bits": 8},
+            roles.PROTOCOL["mask"],
+            ["is `uint`, not `bytes` or `text`"],
+        ),
     ],
 )
 def test_each_reason_is_the_end_of_a_sentence(line, role, reasons):

@@ -16,7 +16,9 @@ from icdgen.icd.checksum import crc
 from tests.icd.files import codes, findings, status
 
 FEW = settings(max_examples=60, deadline=None)
-RUNS = st.lists(st.tuples(st.integers(0, 40), st.integers(1, 16)), min_size=1, max_size=6)
+RUNS = st.lists(
+    st.tuples(st.integers(0, 40), st.integers(1, 16)), min_size=1, max_size=6
+)
 
 
 def codes_of(text: str) -> list[str]:
@@ -27,7 +29,10 @@ def codes_of(text: str) -> list[str]:
 @FEW
 @given(RUNS, st.integers(1, 6))
 def test_overlaps_and_ends_are_those_that_counting_bits_finds(runs, length):
-    fields = [f"at: {at}, bits: {bits}, name: F{n}, type: uint" for n, (at, bits) in enumerate(runs)]
+    fields = [
+        f"at: {at}, bits: {bits}, name: F{n}, type: uint"
+        for n, (at, bits) in enumerate(runs)
+    ]
     found = codes_of(status(*fields, length=length))
     covered = [bit for at, bits in runs for bit in range(at, at + bits)]
     past = sum(at + bits > length * 8 for at, bits in runs)
@@ -37,24 +42,53 @@ def test_overlaps_and_ends_are_those_that_counting_bits_finds(runs, length):
     assert set(found) <= {"ICD020", "ICD021", "ICD024"}
 
 
-SCALES = [("raw", 1, 0), ("raw*0.5", Fraction(1, 2), 0), ("10-raw", -1, 10), ("raw*-0.3+1", Fraction(-3, 10), 1)]
+SCALES = [
+    ("raw", 1, 0),
+    ("raw*0.5", Fraction(1, 2), 0),
+    ("10-raw", -1, 10),
+    ("raw*-0.3+1", Fraction(-3, 10), 1),
+]
 
 
 @FEW
 @given(
     st.sampled_from(["uint", "int"]),
     st.sampled_from(SCALES),
-    st.dictionaries(st.sampled_from(["min", "max", "above", "below"]), st.integers(-150, 150), min_size=1, max_size=2),
+    st.dictionaries(
+        st.sampled_from(["min", "max", "above", "below"]),
+        st.integers(-150, 150),
+        min_size=1,
+        max_size=2,
+    ),
 )
 def test_limits_are_out_of_reach_where_no_raw_value_is_within(kind, scale, limits):
     formula, factor, offset = scale
     tenths = {key: Fraction(value, 10) for key, value in limits.items()}
-    written = "".join(f", {key}: {limits[key] // 10}.{limits[key] % 10}" for key in limits if limits[key] >= 0)
-    written += "".join(f", {key}: -{-limits[key] // 10}.{-limits[key] % 10}" for key in limits if limits[key] < 0)
+    written = "".join(
+        f", {key}: {limits[key] // 10}.{limits[key] % 10}"
+        for key in limits
+        if limits[key] >= 0
+    )
+    written += "".join(
+        f", {key}: -{-limits[key] // 10}.{-limits[key] % 10}"
+        for key in limits
+        if limits[key] < 0
+    )
     field = f"at: 0, bits: 6, name: Angle, type: {kind}, formula: {formula}{written}"
-    within = {"min": Fraction.__ge__, "max": Fraction.__le__, "above": Fraction.__gt__, "below": Fraction.__lt__}
-    physical = [raw * factor + Fraction(offset) for raw in (range(64) if kind == "uint" else range(-32, 32))]
-    reached = any(all(within[key](value, limit) for key, limit in tenths.items()) for value in physical)
+    within = {
+        "min": Fraction.__ge__,
+        "max": Fraction.__le__,
+        "above": Fraction.__gt__,
+        "below": Fraction.__lt__,
+    }
+    physical = [
+        raw * factor + Fraction(offset)
+        for raw in (range(64) if kind == "uint" else range(-32, 32))
+    ]
+    reached = any(
+        all(within[key](value, limit) for key, limit in tenths.items())
+        for value in physical
+    )
     found = codes_of(status(field, length=1))
     assert (found == []) == reached
     assert set(found) <= {"ICD033", "ICD034"}
@@ -62,17 +96,23 @@ def test_limits_are_out_of_reach_where_no_raw_value_is_within(kind, scale, limit
 
 def test_crc_parameters_mean_what_the_catalogues_mean():
     data = b"123456789"
-    assert crc(data, 32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF) == zlib.crc32(data)
+    assert crc(data, 32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF) == zlib.crc32(
+        data
+    )
     assert crc(data, 16, 0x1021, 0, False, False, 0) == binascii.crc_hqx(data, 0)
     assert crc(data, 16, 0x8005, 0xFFFF, True, True, 0) == 0x4B37  # MODBUS
     assert crc(data, 5, 0x05, 0x1F, True, True, 0x1F) == 0x19  # USB
-    assert crc(data, 64, 0x42F0E1EBA9EA3693, 0, False, False, 0) == 0x6C40DF5F0B497347  # ECMA-182
+    assert (
+        crc(data, 64, 0x42F0E1EBA9EA3693, 0, False, False, 0) == 0x6C40DF5F0B497347
+    )  # ECMA-182
 
 
 @given(st.binary(max_size=50), st.integers(0, 0xFFFF))
 def test_crc_of_any_data(data, init):
     assert crc(data, 16, 0x1021, init, False, False, 0) == binascii.crc_hqx(data, init)
-    assert crc(data, 32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF) == zlib.crc32(data)
+    assert crc(data, 32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF) == zlib.crc32(
+        data
+    )
 
 
 @pytest.mark.parametrize(
@@ -100,7 +140,11 @@ def test_constants_at_the_edge_of_what_fits(tmp_path, kind, bits, const, fits):
 def test_the_place_of_a_finding_is_the_value_that_is_wrong(tmp_path):
     text = status("at: 0, bits:  24 , name: Voltage, type: uint")
     (found,) = findings(tmp_path, text)
-    line = (tmp_path / "demo.yaml").read_text(encoding="utf-8").splitlines()[found.place.line - 1]
+    line = (
+        (tmp_path / "demo.yaml")
+        .read_text(encoding="utf-8")
+        .splitlines()[found.place.line - 1]
+    )
     assert line[found.place.column - 1 :][: found.place.length] == "24"
 
 
@@ -119,6 +163,12 @@ entries:
     evidence: Table 7.
     confidence: likely
 """
-    (found,) = findings(tmp_path, status("at: 0, bits: 16, name: Voltage, type: uint") + overlay)
-    assert (found.code, Path(found.place.file).name, found.place.line) == ("ICD020", "demo.yaml", 8)
+    (found,) = findings(
+        tmp_path, status("at: 0, bits: 16, name: Voltage, type: uint") + overlay
+    )
+    assert (found.code, Path(found.place.file).name, found.place.line) == (
+        "ICD020",
+        "demo.yaml",
+        8,
+    )
     assert Path(found.place.file).parent.name == "errata"

@@ -1,4 +1,6 @@
-"""The shipped ICDs: complete, clean with their errata, and caught by the rules without them."""
+"""The shipped ICDs: complete, clean with their errata, and caught by the rules without
+them.
+"""
 
 from __future__ import annotations
 
@@ -41,20 +43,31 @@ def test_nothing_is_missing(icd):
     for node in icd.nodes:
         kinds = Counter(message.kind for message in node.messages)
         fields = sum(len(message.fields) for message in node.messages)
-        found[node.name] = (kinds["telecommand"], kinds["telemetry"], kinds["configuration"], fields)
+        found[node.name] = (
+            kinds["telecommand"],
+            kinds["telemetry"],
+            kinds["configuration"],
+            fields,
+        )
     assert found == COUNTS
     messages = [message for node in icd.nodes for message in node.messages]
     fields = [field for message in messages for field in message.fields]
     enums = [enum for node in icd.nodes for enum in node.enums]
     assert (len(messages), sum(len(m.ids) for m in messages)) == (171, 209)
-    assert (len(fields), sum(f.scale is not None for f in fields), sum(f.unit is not None for f in fields)) == (
+    assert (
+        len(fields),
+        sum(f.scale is not None for f in fields),
+        sum(f.unit is not None for f in fields),
+    ) == (
         1251,
         346,
         324,
     )
     assert (len(enums), sum(len(e.members) for e in enums)) == (37, 233)
     assert len(icd.node("cubeacp").loggable) == 63
-    assert [(m.kind, m.id) for m in icd.node("cubewheel").missing] == [("telemetry", 186)]
+    assert [(m.kind, m.id) for m in icd.node("cubewheel").missing] == [
+        ("telemetry", 186)
+    ]
 
 
 def test_every_erratum_says_where_why_and_how_sure(icd):
@@ -64,7 +77,9 @@ def test_every_erratum_says_where_why_and_how_sure(icd):
 
 
 def test_what_neither_changes_nor_accepts_is_a_note(icd):
-    entries = [entry for node in icd.nodes for entry in node.errata if not entry.is_note]
+    entries = [
+        entry for node in icd.nodes for entry in node.errata if not entry.is_note
+    ]
     notes = [entry for node in icd.nodes for entry in node.errata if entry.is_note]
     assert all(entry.confidence for entry in entries)
     assert not [entry.id for entry in notes if entry.held or entry.changes]
@@ -74,17 +89,37 @@ def test_what_neither_changes_nor_accepts_is_a_note(icd):
 @pytest.mark.parametrize(
     ("code", "where", "count"),
     [
-        ("ICD024", "SRAM Latchup counters", 5),  # frames longer than what the manual describes
+        (
+            "ICD024",
+            "SRAM Latchup counters",
+            5,
+        ),  # frames longer than what the manual describes
         ("ICD042", "meter", 27),  # units spelt in several ways
-        ("ICD045", "CubeSense1 Current Measurements", 2),  # loggable frames of 4 bytes in slots of 6
-        ("ICD047", "Moment of Inertia Matrix", 7),  # composite frames that differ from their parts
+        (
+            "ICD045",
+            "CubeSense1 Current Measurements",
+            2,
+        ),  # loggable frames of 4 bytes in slots of 6
+        (
+            "ICD047",
+            "Moment of Inertia Matrix",
+            7,
+        ),  # composite frames that differ from their parts
         ("ICD054", "Not Used", 1),  # two members of one name
-        ("ICD062", "154 fields altogether", 1),  # formulas announced the wrong way round
+        (
+            "ICD062",
+            "154 fields altogether",
+            1,
+        ),  # formulas announced the wrong way round
         ("ICD090", "", 2),  # an I2C address printed in three forms that disagree
     ],
 )
-def test_without_the_errata_the_rules_find_the_faults_that_a_machine_can_find(as_printed, code, where, count):
-    findings = [finding for finding in load([as_printed]).findings if finding.code == code]
+def test_without_the_errata_the_rules_find_the_faults_that_a_machine_can_find(
+    as_printed, code, where, count
+):
+    findings = [
+        finding for finding in load([as_printed]).findings if finding.code == code
+    ]
     assert len(findings) == count
     assert any(where in finding.message for finding in findings)
 
@@ -92,8 +127,14 @@ def test_without_the_errata_the_rules_find_the_faults_that_a_machine_can_find(as
 def test_a_manual_that_says_something_else_makes_the_erratum_stale(tmp_path):
     shutil.copytree(ICDS, tmp_path / "icd")
     path = tmp_path / "icd" / "common.yaml"
-    line = next(line for line in path.read_text().splitlines() if "name: Interface version" in line)
-    path.write_text(path.read_text().replace(line, line.replace("const: 1", "const: 2")))
+    line = next(
+        line
+        for line in path.read_text().splitlines()
+        if "name: Interface version" in line
+    )
+    path.write_text(
+        path.read_text().replace(line, line.replace("const: 1", "const: 2"))
+    )
     (finding,) = [f for f in load([path]).findings if f.code == "ICD080"]
     assert "const: 1" in finding.message and "const: 2" in finding.message
     assert finding.place.file.endswith("errata/common.yaml")

@@ -1,4 +1,6 @@
-"""Every value of a file is where the tree says that it is, and means what it looks like."""
+"""Every value of a file is where the tree says that it is, and means what it looks
+like.
+"""
 
 from __future__ import annotations
 
@@ -121,7 +123,9 @@ def test_integers_are_read_as_written(number):
 
 @given(st.text(st.characters(exclude_categories=("Cs",)), max_size=40))
 def test_a_text_in_quotes_is_read_as_written(text):
-    quoted = json.dumps(text)  # JSON strings are YAML, but for characters outside the basic plane; NUL is refused
+    quoted = json.dumps(
+        text
+    )  # JSON strings are YAML, but for characters outside the basic plane; NUL is refused
     if "\\ud" not in quoted and "\\u0000" not in quoted:
         assert source.parse(f"a: {quoted}\n".encode(), "demo.yaml")["a"] == text
 
@@ -132,7 +136,10 @@ def test_any_bytes_give_a_tree_or_findings(data):
         tree = source.parse(data, "demo.yaml")
     except Findings as error:
         assert error.findings
-        assert all(f.place.line >= 1 and f.place.column >= 1 and f.place.length >= 1 for f in error.findings)
+        assert all(
+            f.place.line >= 1 and f.place.column >= 1 and f.place.length >= 1
+            for f in error.findings
+        )
     else:
         assert isinstance(tree, Map)
 

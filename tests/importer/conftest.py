@@ -22,13 +22,22 @@ def vendor() -> Path:
     return VENDOR
 
 
-RULES = Path(__file__).parent / "rules" / "layouts.yaml"  # of the documents that `manuals` draws
+RULES = (
+    Path(__file__).parent / "rules" / "layouts.yaml"
+)  # of the documents that `manuals` draws
 
 
-def imported(manual: Path, words: str | Path = RULES, jobs: int = 1) -> tuple[run.Result, dict[str, dict]]:
-    """Return what an import of a document gives. Raises `Findings` also if that is nothing."""
+def imported(
+    manual: Path, words: str | Path = RULES, jobs: int = 1
+) -> tuple[run.Result, dict[str, dict]]:
+    """Return what an import of a document gives.
+
+    Raises `Findings` also if that is nothing.
+    """
     result, trees = run.run(manual, profile.load(profile.find(str(words))), jobs=jobs)
     if not trees:
         nothing = next(t for t in result.import_findings if t.code == "IMP004")
-        raise Findings([Finding(nothing.code, nothing.message, Place(str(manual)), nothing.help)])
+        raise Findings(
+            [Finding(nothing.code, nothing.message, Place(str(manual)), nothing.help)]
+        )
     return result, trees

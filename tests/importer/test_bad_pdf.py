@@ -15,7 +15,12 @@ from tests.importer.manuals import content
 from tests.importer.manuals.layouts import LAYOUTS
 
 
-def drawn(pages: int = 1, text: str = "Nothing but prose.", encrypt=None, picture: bool = False) -> bytes:
+def drawn(
+    pages: int = 1,
+    text: str = "Nothing but prose.",
+    encrypt=None,
+    picture: bool = False,
+) -> bytes:
     data = BytesIO()
     canvas = Canvas(data, pagesize=A4, encrypt=encrypt, invariant=1)
     for number in range(pages):
@@ -23,7 +28,9 @@ def drawn(pages: int = 1, text: str = "Nothing but prose.", encrypt=None, pictur
             from PIL import Image
             from reportlab.lib.utils import ImageReader
 
-            canvas.drawImage(ImageReader(Image.new("L", (60, 80), 200)), 50, 50, 480, 700)
+            canvas.drawImage(
+                ImageReader(Image.new("L", (60, 80), 200)), 50, 50, 480, 700
+            )
         if text:
             canvas.drawString(72, 700, f"{text} {number}")
         canvas.showPage()
@@ -35,8 +42,16 @@ def drawn(pages: int = 1, text: str = "Nothing but prose.", encrypt=None, pictur
     ("data", "message", "help"),
     [
         (drawn(), "the document has no table", ""),
-        (drawn(encrypt=StandardEncryption("secret", canPrint=0)), "the PDF is encrypted", "remove the password"),
-        (drawn(text="", picture=True), "only pictures of pages: there is no text layer", "text recognition"),
+        (
+            drawn(encrypt=StandardEncryption("secret", canPrint=0)),
+            "the PDF is encrypted",
+            "remove the password",
+        ),
+        (
+            drawn(text="", picture=True),
+            "only pictures of pages: there is no text layer",
+            "text recognition",
+        ),
         (drawn(text=""), "pages without text", "text recognition"),
         (b"%PDF-1.4\n" + b"\x00garbage" * 40, "damaged", "download it again"),
         (b"%PDF-1.7\n", "", ""),
@@ -55,7 +70,10 @@ def test_it_is_a_finding_with_a_remedy(tmp_path, data, message, help):
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.99])
 def test_a_truncated_pdf_is_a_finding_or_gives_findings(tmp_path, share):
-    LAYOUTS["ruled"](content.manual(content.shipped("cubewheel"), {"cubewheel": "CubeWheel"}), tmp_path / "whole.pdf")
+    LAYOUTS["ruled"](
+        content.manual(content.shipped("cubewheel"), {"cubewheel": "CubeWheel"}),
+        tmp_path / "whole.pdf",
+    )
     data = (tmp_path / "whole.pdf").read_bytes()
     (tmp_path / "part.pdf").write_bytes(data[: int(share * len(data))])
     try:

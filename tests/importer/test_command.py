@@ -17,11 +17,25 @@ TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENU
 
 
 def icdgen(*arguments, cwd) -> subprocess.CompletedProcess:
-    """Run icdgen; an import of `pump.txt` gets the rules of the pump unless it has a profile of its own."""
-    rules = ["--profile", "pump.yaml"] if "pump.txt" in arguments and "--profile" not in arguments else []
+    """Run icdgen.
+
+    An import of `pump.txt` gets the rules of the pump unless it has a profile of its
+    own.
+    """
+    rules = (
+        ["--profile", "pump.yaml"]
+        if "pump.txt" in arguments and "--profile" not in arguments
+        else []
+    )
     if rules:
-        listed = LISTED if "List of" in (cwd / "pump.txt").read_text(encoding="utf-8") else ""
-        profile = PUMP.read_text(encoding="utf-8").replace("phrases:", f"{listed}phrases:")
+        listed = (
+            LISTED
+            if "List of" in (cwd / "pump.txt").read_text(encoding="utf-8")
+            else ""
+        )
+        profile = PUMP.read_text(encoding="utf-8").replace(
+            "phrases:", f"{listed}phrases:"
+        )
         (cwd / "pump.yaml").write_text(profile, encoding="utf-8")
     command = [sys.executable, "-m", "icdgen", *map(str, [*arguments, *rules])]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
@@ -48,7 +62,10 @@ def folder(tmp_path):
 def test_an_import_gives_an_icd_that_checks_formats_and_compiles(folder):
     result = icdgen("import", "pump.txt", cwd=folder)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert "icd/pump.yaml: written; 1 message with 3 fields, 1 enumeration with 2 members" in result.stdout
+    assert (
+        "icd/pump.yaml: written; 1 message with 3 fields, 1 enumeration with 2 members"
+        in result.stdout
+    )
     assert result.stderr == ""
     assert icdgen("fmt", "--check", "icd", cwd=folder).returncode == 0
     assert icdgen("check", "icd", cwd=folder).stdout == "no findings\n"
@@ -68,8 +85,15 @@ def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
     icdgen("import", "pump.txt", cwd=folder)
     path = folder / "icd" / "pump.yaml"
     ours = path.read_text(encoding="utf-8")
-    ours = ours.replace("name: Pressure,", "name: Pressure, identifier: Tank Pressure, summary: Of the tank.,")
-    ours = ours.replace("    length: 4\n", "    length: 4\n    summary: Ours.\n    # A comment of ours.\n", 1)
+    ours = ours.replace(
+        "name: Pressure,",
+        "name: Pressure, identifier: Tank Pressure, summary: Of the tank.,",
+    )
+    ours = ours.replace(
+        "    length: 4\n",
+        "    length: 4\n    summary: Ours.\n    # A comment of ours.\n",
+        1,
+    )
     ours = ours.replace(
         "    summary: Ours.\n",
         "    summary: Ours.\n    assumptions: {length: Not printed. It follows from the fields.}\n",
@@ -88,16 +112,29 @@ def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
     new = TEXT.replace("RAWVAL*0.1", "RAWVAL*0.2").replace(
         "1\tRunning\tRunning", "1\tRunning\tRunning\n2\tFailed\tFailed"
     )
-    (folder / "pump.txt").write_text(new.replace("Valve Open", "Valve State"), encoding="utf-8")
+    (folder / "pump.txt").write_text(
+        new.replace("Valve Open", "Valve State"), encoding="utf-8"
+    )
     result = icdgen("import", "pump.txt", "--update", cwd=folder)
-    assert "~ message `Pump State` (140): field `Pressure`: formula `raw*0.1` -> `raw*0.2`" in result.stdout
+    assert (
+        "~ message `Pump State` (140): field `Pressure`: formula `raw*0.1` -> `raw*0.2`"
+        in result.stdout
+    )
     assert "+ enumeration `PumpMode`: member 2 `Failed`" in result.stdout
     assert "field `Valve State`: name `Valve Open` -> `Valve State`" in result.stdout
     text = path.read_text(encoding="utf-8")
-    assert text == ours.replace("raw*0.1", "raw*0.2").replace("Valve Open", "Valve State").replace(
-        "{value: 1, name: Running}", "{value: 1, name: Running}\n      - {value: 2, name: Failed}"
-    ).replace("name: Valve State,                          ", "name: Valve State,                         ") or (
-        "identifier: Tank Pressure" in text and "# A comment of ours." in text and "summary: Ours." in text
+    assert text == ours.replace("raw*0.1", "raw*0.2").replace(
+        "Valve Open", "Valve State"
+    ).replace(
+        "{value: 1, name: Running}",
+        "{value: 1, name: Running}\n      - {value: 2, name: Failed}",
+    ).replace(
+        "name: Valve State,                          ",
+        "name: Valve State,                         ",
+    ) or (
+        "identifier: Tank Pressure" in text
+        and "# A comment of ours." in text
+        and "summary: Ours." in text
     )
     assert overlay.read_text(encoding="utf-8") == "errata: 1\nnode: pump\nentries: []\n"
     assert icdgen("fmt", "--check", "icd/pump.yaml", cwd=folder).returncode == 0
@@ -110,7 +147,10 @@ def test_update_takes_over_what_is_announced_of_all_formulas(folder):
     result = icdgen("import", "pump.txt", "--update", cwd=folder)
     assert "~ formula_for (absent) -> {'telemetry': 'raw'}" in result.stdout
     assert "formula_for: {telemetry: raw}\n" in path.read_text(encoding="utf-8")
-    assert "icd/pump.yaml: unchanged" in icdgen("import", "pump.txt", "--update", cwd=folder).stdout
+    assert (
+        "icd/pump.yaml: unchanged"
+        in icdgen("import", "pump.txt", "--update", cwd=folder).stdout
+    )
     assert icdgen("fmt", "--check", "icd/pump.yaml", cwd=folder).returncode == 0
     (folder / "pump.txt").write_text(TEXT, encoding="utf-8")
     icdgen("import", "pump.txt", "--update", cwd=folder)
@@ -126,7 +166,10 @@ def test_a_dry_run_writes_nothing(folder):
 def test_a_dry_run_says_what_an_update_would_change_in_an_icd_that_is_there(folder):
     icdgen("import", "pump.txt", cwd=folder)
     path = folder / "icd" / "pump.yaml"
-    assert "pump.yaml: unchanged" in icdgen("import", "pump.txt", "--dry-run", cwd=folder).stdout
+    assert (
+        "pump.yaml: unchanged"
+        in icdgen("import", "pump.txt", "--dry-run", cwd=folder).stdout
+    )
     changed = path.read_text(encoding="utf-8").replace("bits: 16", "bits: 15", 1)
     path.write_text(changed, encoding="utf-8")
     result = icdgen("import", "pump.txt", "--dry-run", cwd=folder)
@@ -142,12 +185,15 @@ def test_findings_as_json(folder):
     result = icdgen("import", "pump.txt", "--format", "json", "--dry-run", cwd=folder)
     data = json.loads(result.stdout)
     assert [t["is"] for t in data["tables"]] == ["list", "message", "enumeration"]
-    assert {"code", "severity", "message", "help", "table", "page", "line"} == set(data["findings"][0])
+    assert {"code", "severity", "message", "help", "table", "page", "line"} == set(
+        data["findings"][0]
+    )
 
 
 def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
     (folder / "words.yaml").write_text(
-        "profile: 1\nrules:\n  - {tablez: {}}\ntypes:\n  WORD: {type: word}\n", encoding="utf-8"
+        "profile: 1\nrules:\n  - {tablez: {}}\ntypes:\n  WORD: {type: word}\n",
+        encoding="utf-8",
     )
     result = icdgen("import", "pump.txt", "--profile", "words.yaml", cwd=folder)
     assert result.returncode == 1
@@ -161,11 +207,23 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
     [
         ("captions: [1]", "this entry of `captions` must be text, not the number 1"),
         ("phrases: {unit: a}", "`unit` must be a list, not the text 'a'"),
-        ("types: {WORD: 3}", "`X`: a mapping such as `{type: uint, bits: 16}`".replace("X", "WORD")),
+        (
+            "types: {WORD: 3}",
+            "`X`: a mapping such as `{type: uint, bits: 16}`".replace("X", "WORD"),
+        ),
         ("nodes: [{match: [a]}]", "`name` is missing from this entry of `nodes`"),
-        ("nodes: [{name: a, tables: [1]}]", "`tables`: the first and the last table number: `[57, 68]`"),
-        ("damage: [{table: 97}]", "add `before:`, the number in the row below the heading"),
-        ("damage: [{}]", "`{printed: ..., meant: ...}` or `{table: 97, before: 171, group: ...}`"),
+        (
+            "nodes: [{name: a, tables: [1]}]",
+            "`tables`: the first and the last table number: `[57, 68]`",
+        ),
+        (
+            "damage: [{table: 97}]",
+            "add `before:`, the number in the row below the heading",
+        ),
+        (
+            "damage: [{}]",
+            "`{printed: ..., meant: ...}` or `{table: 97, before: 171, group: ...}`",
+        ),
         ("shares: [Common]", "did you mean `shared`?"),
     ],
 )
@@ -179,11 +237,18 @@ def test_each_fault_of_a_profile_has_its_remedy(tmp_path, line, said):
 
 
 def test_a_profile_without_rules_is_an_error_with_a_remedy(folder):
-    (folder / "words.yaml").write_text("profile: 1\nheadings: {fields: {name: [Signal]}}\n", encoding="utf-8")
+    (folder / "words.yaml").write_text(
+        "profile: 1\nheadings: {fields: {name: [Signal]}}\n", encoding="utf-8"
+    )
     for option in ([], ["--workbench"], ["--explain", "1"]):
-        result = icdgen("import", "pump.txt", "--profile", "words.yaml", *option, cwd=folder)
+        result = icdgen(
+            "import", "pump.txt", "--profile", "words.yaml", *option, cwd=folder
+        )
         assert result.returncode == 1 and not (folder / "icd").exists()
-        assert "words.yaml:1:1: error[IMP001]: the profile has no `rules:`" in result.stderr
+        assert (
+            "words.yaml:1:1: error[IMP001]: the profile has no `rules:`"
+            in result.stderr
+        )
         assert "--explore" in result.stderr and "--workbench" in result.stderr
 
 
@@ -196,13 +261,19 @@ def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
 @pytest.mark.parametrize("option", [[], ["--dry-run"], ["--format", "json"]])
 def test_an_import_whose_result_has_errors_ends_with_1(folder, option):
     wide = MESSAGE.replace("\t4\n", "\t3\n", 1)
-    (folder / "pump.txt").write_text(wide + ENUM, encoding="utf-8")  # a field lies beyond the message
+    (folder / "pump.txt").write_text(
+        wide + ENUM, encoding="utf-8"
+    )  # a field lies beyond the message
     result = icdgen("import", "pump.txt", *option, cwd=folder)
     assert result.returncode == 1, result.stdout
     if "json" in option:
-        assert {one["severity"] for one in json.loads(result.stdout)["check"]} == {"error"}
+        assert {one["severity"] for one in json.loads(result.stdout)["check"]} == {
+            "error"
+        }
     else:
-        assert "error[" not in result.stdout  # the manual was read; only the result has errors
+        assert (
+            "error[" not in result.stdout
+        )  # the manual was read; only the result has errors
         assert "`icdgen check icd/pump.yaml`" in result.stdout.splitlines()[-1]
         assert "1 error" in result.stdout.splitlines()[-1]
     assert (folder / "icd").exists() == ("--dry-run" not in option)
@@ -210,18 +281,23 @@ def test_an_import_whose_result_has_errors_ends_with_1(folder, option):
 
 def test_a_definition_whose_result_has_errors_ends_with_1(folder):
     (folder / "fan.dbc").write_text(
-        'VERSION ""\n\nBU_: ECU\n\nBO_ 100 Fan: 8 ECU\n SG_ Speed : 0|8@1+ (1,0) [0|255] "" ECU\n', encoding="utf-8"
+        'VERSION ""\n\nBU_: ECU\n\nBO_ 100 Fan: 8 ECU\n SG_ Speed : 0|8@1+ (1,0) [0|255] "" ECU\n',
+        encoding="utf-8",
     )
     assert icdgen("import", "fan.dbc", "--dry-run", cwd=folder).returncode == 0
     (folder / "icd" / "errata").mkdir(parents=True)
-    (folder / "icd" / "errata" / "fan.yaml").write_text("errata: 1\nnode: engine\nentries: []\n", encoding="utf-8")
+    (folder / "icd" / "errata" / "fan.yaml").write_text(
+        "errata: 1\nnode: engine\nentries: []\n", encoding="utf-8"
+    )
     result = icdgen("import", "fan.dbc", "--dry-run", cwd=folder)
     assert result.returncode == 1
     assert "`icdgen check icd/fan.yaml` would have 1 error" in result.stdout
 
 
 def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(folder):
-    (folder / "pump.txt").write_text(TEXT.replace("\t16\t8", "\tl6\t8"), encoding="utf-8")
+    (folder / "pump.txt").write_text(
+        TEXT.replace("\t16\t8", "\tl6\t8"), encoding="utf-8"
+    )
     result = icdgen("import", "pump.txt", cwd=folder)
     assert result.returncode == 1
     assert (
@@ -234,7 +310,11 @@ def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(f
 
 def test_nothing_is_written_where_one_of_several_files_is_there(folder):
     two = TEXT.replace("List of Telemetry", "List of Pump Telemetry")
-    two += two.replace("Pump", "Tank").replace("\n140", "\n150").replace("ID\t140", "ID\t150")
+    two += (
+        two.replace("Pump", "Tank")
+        .replace("\n140", "\n150")
+        .replace("ID\t140", "ID\t150")
+    )
     (folder / "pump.txt").write_text(two, encoding="utf-8")
     (folder / "icd").mkdir()
     (folder / "icd" / "tank.yaml").write_text("", encoding="utf-8")
@@ -248,9 +328,19 @@ def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
 
     manual = content.manual(content.shipped("common"), {"common": "Common"})
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
-    rules = RULES.read_text(encoding="utf-8").replace("Data Type: type", "Data Type: text")  # fields have no type
+    rules = RULES.read_text(encoding="utf-8").replace(
+        "Data Type: type", "Data Type: text"
+    )  # fields have no type
     (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
-    result = icdgen("import", "manual.pdf", "--report", "report.html", "--profile", "rules.yaml", cwd=tmp_path)
+    result = icdgen(
+        "import",
+        "manual.pdf",
+        "--report",
+        "report.html",
+        "--profile",
+        "rules.yaml",
+        cwd=tmp_path,
+    )
     assert (result.returncode, result.stderr) == (1, "")
     assert "IMP026" in result.stdout
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -1,4 +1,6 @@
-"""What an import says is explained, is said in one order, is never merged, and never ends in a traceback."""
+"""What an import says is explained, is said in one order, is never merged, and never
+ends in a traceback.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,15 @@ SOURCES = [
 
 
 def test_every_code_that_an_import_gives_has_a_page_with_an_example():
-    given = {code for path in SOURCES for code in re.findall(r'"(IMP[0-9]{3})"', path.read_text("utf-8"))}
+    given = {
+        code
+        for path in SOURCES
+        for code in re.findall(r'"(IMP[0-9]{3})"', path.read_text("utf-8"))
+    }
     assert given == set(findings.pages())
-    assert all(re.search(r"^ {4}\S", page.text, re.M) for page in findings.pages().values())
+    assert all(
+        re.search(r"^ {4}\S", page.text, re.M) for page in findings.pages().values()
+    )
 
 
 def test_icdgen_rule_explains_and_lists_the_findings_of_an_import(tmp_path):
@@ -33,7 +41,10 @@ def test_icdgen_rule_explains_and_lists_the_findings_of_an_import(tmp_path):
 
 
 def draw_message(path, below: float = 0, crop=None) -> None:
-    """A ruled message table near the lower edge of the page; ``below``: points by which its last row lies under it."""
+    """A ruled message table near the lower edge of the page.
+
+    ``below``: points by which its last row lies under it.
+    """
     canvas = Canvas(str(path), pagesize=(400, 300), invariant=1)
     if crop:
         canvas.setCropBox(crop)
@@ -64,7 +75,9 @@ def test_text_below_the_edge_of_the_page_is_left_out_and_said(tmp_path):
 
 
 @pytest.mark.parametrize("crop", [None, (0, 50, 400, 300), (0, 150, 200, 300)])
-def test_a_table_over_the_edge_of_the_page_costs_neither_summary_nor_report(tmp_path, crop):
+def test_a_table_over_the_edge_of_the_page_costs_neither_summary_nor_report(
+    tmp_path, crop
+):
     draw_message(tmp_path / "pump.pdf", below=30, crop=crop)
     run = icdgen("import", "pump.pdf", "--report", "report.html", cwd=tmp_path)
     assert "Traceback" not in run.stderr
@@ -73,14 +86,24 @@ def test_a_table_over_the_edge_of_the_page_costs_neither_summary_nor_report(tmp_
 
 
 def test_findings_stand_in_the_same_order_in_each_run(tmp_path):
-    text = "".join(MESSAGE.replace("INT", f"WORD{n}").replace("ID\t140", f"ID\t{n}") for n in range(100, 120))
+    text = "".join(
+        MESSAGE.replace("INT", f"WORD{n}").replace("ID\t140", f"ID\t{n}")
+        for n in range(100, 120)
+    )
     (tmp_path / "pump.txt").write_text(text, encoding="utf-8")
-    runs = {icdgen("import", "pump.txt", "--dry-run", "--format", "json", cwd=tmp_path).stdout for _ in range(3)}
+    runs = {
+        icdgen(
+            "import", "pump.txt", "--dry-run", "--format", "json", cwd=tmp_path
+        ).stdout
+        for _ in range(3)
+    }
     assert len(runs) == 1
 
 
 def test_equal_findings_of_one_place_are_counted(tmp_path):
-    text = MESSAGE.replace("\t16\t8\tMode", "\tx\t8\tMode\tUINT\tx\n\tx\t8\tMode") + ENUM
+    text = (
+        MESSAGE.replace("\t16\t8\tMode", "\tx\t8\tMode\tUINT\tx\n\tx\t8\tMode") + ENUM
+    )
     result, _ = read(tmp_path, text)
     assert found(result, "IMP023") == [
         "table 1 (`Pump State Telemetry Format`), field `Mode`: `bit` is `x`, which is not a number; the same in 1 more row"
@@ -90,7 +113,9 @@ def test_equal_findings_of_one_place_are_counted(tmp_path):
 def test_a_message_that_is_left_out_is_not_called_certain(tmp_path):
     result, tree = read(tmp_path, MESSAGE.replace("ID\t140", "Id\tx") + ENUM)
     assert "messages" not in tree
-    assert "its rule gives no id; the message was left out" in found(result, "IMP031")[0]
+    assert (
+        "its rule gives no id; the message was left out" in found(result, "IMP031")[0]
+    )
     assert result.sureness()[CERTAIN] == 1  # the enumeration
 
 
@@ -99,7 +124,10 @@ def test_nothing_found_names_the_headings_that_were_seen_and_gives_a_report(tmp_
     (tmp_path / "odd.txt").write_text(text, encoding="utf-8")
     run = icdgen("import", "odd.txt", "--report", "report.html", cwd=tmp_path)
     assert run.returncode == 1
-    assert "no rule applies to tables 1, 2 with the headings `Place | Size | Thing`" in run.stdout
+    assert (
+        "no rule applies to tables 1, 2 with the headings `Place | Size | Thing`"
+        in run.stdout
+    )
     assert "Things" in (tmp_path / "report.html").read_text("utf-8")
     assert not (tmp_path / "icd").exists()
 
@@ -117,14 +145,18 @@ def test_json_is_json_whatever_happens(tmp_path):
 
 
 def test_a_row_without_offset_does_not_vanish_in_the_row_above(tmp_path):
-    result, _ = read(tmp_path, MESSAGE.replace("\t24\t1\tValve Open", "\t\t\tValve Open") + ENUM)
-    assert result.failed  # its name and type stand below those of the row above, which then are none
+    result, _ = read(
+        tmp_path, MESSAGE.replace("\t24\t1\tValve Open", "\t\t\tValve Open") + ENUM
+    )
+    assert (
+        result.failed
+    )  # its name and type stand below those of the row above, which then are none
 
 
 def test_a_column_without_a_role_is_named_with_its_cells(tmp_path):
-    text = MESSAGE.replace("Data Type\tDescription", "Data Type\tDescription\tGain").replace(
-        "Valve open\n", "Valve open\t2.5\n"
-    )
+    text = MESSAGE.replace(
+        "Data Type\tDescription", "Data Type\tDescription\tGain"
+    ).replace("Valve open\n", "Valve open\t2.5\n")
     result, _ = read(tmp_path, text + ENUM)
     assert "gives the column `Gain` no role: `2.5`" in found(result, "IMP102")[0]
 

@@ -23,7 +23,11 @@ def objects(*bodies: bytes, root: int = 1, xref: bool = True) -> bytes:
     if xref:
         data += b"xref\n0 %d\n0000000000 65535 f \n" % (len(bodies) + 1)
         data += b"".join(b"%010d 00000 n \n" % place for place in places)
-    data += b"trailer\n<< /Size %d /Root %d 0 R >>\nstartxref\n%d\n%%%%EOF\n" % (len(bodies) + 1, root, start)
+    data += b"trailer\n<< /Size %d /Root %d 0 R >>\nstartxref\n%d\n%%%%EOF\n" % (
+        len(bodies) + 1,
+        root,
+        start,
+    )
     return data
 
 
@@ -51,28 +55,42 @@ def text(words: str) -> bytes:
 
 
 HOSTILE = {
-    "a tree of pages that holds itself": objects(CATALOG, b"<< /Type /Pages /Kids [2 0 R 2 0 R] /Count 9 >>"),
+    "a tree of pages that holds itself": objects(
+        CATALOG, b"<< /Type /Pages /Kids [2 0 R 2 0 R] /Count 9 >>"
+    ),
     "pages that hold each other": objects(
         CATALOG,
         b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
         b"<< /Type /Pages /Kids [2 0 R] /Parent 2 0 R /Count 1 >>",
     ),
     "no table of objects": objects(*page(text("prose")), xref=False),
-    "a table of objects that lies": objects(*page(text("prose"))).replace(b"0000000015", b"0000000099"),
+    "a table of objects that lies": objects(*page(text("prose"))).replace(
+        b"0000000015", b"0000000099"
+    ),
     "a root that is not there": objects(*page(text("prose")), root=77),
-    "contents that are half a gigabyte": objects(*page(stream(b" " * 500_000_000, squeezed=True))),
+    "contents that are half a gigabyte": objects(
+        *page(stream(b" " * 500_000_000, squeezed=True))
+    ),
     "a page as large as a country": objects(*page(text("prose"), b"[0 0 1e9 1e9]")),
     "a page without size": objects(*page(text("prose"), b"[0 0 0 0]")),
-    "more rules than any table": objects(*page(stream(b"0 0 m 9 9 l S\n" * 30_000, squeezed=True))),
-    "a drawing of ten megabytes": objects(*page(stream(b"0 0 m 9 9 l S\n" * 700_000, squeezed=True))),
+    "more rules than any table": objects(
+        *page(stream(b"0 0 m 9 9 l S\n" * 30_000, squeezed=True))
+    ),
+    "a drawing of ten megabytes": objects(
+        *page(stream(b"0 0 m 9 9 l S\n" * 700_000, squeezed=True))
+    ),
     "ten thousand pages": objects(
         CATALOG,
-        b"<< /Type /Pages /Count 10000 /Kids [%s] >>" % b" ".join(b"%d 0 R" % n for n in range(3, 10_003)),
+        b"<< /Type /Pages /Count 10000 /Kids [%s] >>"
+        % b" ".join(b"%d 0 R" % n for n in range(3, 10_003)),
         *[b"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 595 842] >>"] * 10_000,
     ),
-    "operators without operands": objects(*page(stream(b"Tj TJ Tf Td cm q Q Q Q BT ET re l m " * 500))),
+    "operators without operands": objects(
+        *page(stream(b"Tj TJ Tf Td cm q Q Q Q BT ET re l m " * 500))
+    ),
     "a font that is its own parent": objects(
-        *page(text("prose"))[:-1], b"<< /Type /Font /Subtype /Type0 /DescendantFonts [5 0 R] >>"
+        *page(text("prose"))[:-1],
+        b"<< /Type /Font /Subtype /Type0 /DescendantFonts [5 0 R] >>",
     ),
 }
 
@@ -85,8 +103,20 @@ def test_a_hostile_pdf_is_a_finding_in_bounded_time_and_memory(name, tmp_path):
         resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
-    command = [sys.executable, "-m", "icdgen", "import", "hostile.pdf", "--jobs", "1", "--report", "report.html"]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, preexec_fn=bounded)
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        "import",
+        "hostile.pdf",
+        "--jobs",
+        "1",
+        "--report",
+        "report.html",
+    ]
+    run = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, preexec_fn=bounded
+    )
     assert run.returncode == 1, (run.returncode, run.stderr[-2000:])
     assert "Traceback" not in run.stderr
     assert "error[IMP00" in run.stdout + run.stderr

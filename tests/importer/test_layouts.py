@@ -27,21 +27,36 @@ def back(manual: content.Manual, layout: str, path) -> list[str]:
     LAYOUTS[layout](manual, path)
     result, trees = imported(path)
     assert set(trees) == set(manual.trees)
-    # A rule for tables that a layout does not have applies to none; random fields may share a name. Nothing else is wrong.
-    assert {import_finding.code for import_finding in result.import_findings if import_finding.severity == "error"} <= {
+    # A rule for tables that a layout does not have applies to none; random fields may
+    # share a name. Nothing else is wrong.
+    assert {
+        import_finding.code
+        for import_finding in result.import_findings
+        if import_finding.severity == "error"
+    } <= {
         "IMP101",
         "IMP107",
     }
-    return [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])]
+    return [
+        line
+        for name, tree in manual.trees.items()
+        for line in differences(tree, trees[name])
+    ]
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_shipped_icds_come_back_from_every_layout(layout, tmp_path):
-    trees = content.shipped("common", "bootloader") | content.shipped("cubemag") | content.shipped("cubewheel")
+    trees = (
+        content.shipped("common", "bootloader")
+        | content.shipped("cubemag")
+        | content.shipped("cubewheel")
+    )
     assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
 
 
-@pytest.mark.parametrize(("layout", "skip"), [(name, 20 * index) for index, name in enumerate(LAYOUTS)])
+@pytest.mark.parametrize(
+    ("layout", "skip"), [(name, 20 * index) for index, name in enumerate(LAYOUTS)]
+)
 def test_large_tables_come_back_from_every_layout(layout, skip, tmp_path):
     trees = content.shipped("cubeacp", most=14, skip=8 + skip % 100)
     assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
@@ -51,7 +66,9 @@ def test_large_tables_come_back_from_every_layout(layout, skip, tmp_path):
 def test_a_manual_of_one_page_without_lists_and_prose_comes_back(layout, tmp_path):
     trees = content.shipped("cubewheel")
     manual = content.manual(trees, TITLES, noise=False)
-    manual.parts = [part for part in manual.parts if getattr(part, "kind", "") != "list"]
+    manual.parts = [
+        part for part in manual.parts if getattr(part, "kind", "") != "list"
+    ]
     LAYOUTS[layout](manual, tmp_path / "cubewheel.pdf")
     _, got = imported(tmp_path / "cubewheel.pdf")
     assert differences(trees["cubewheel"], got["cubewheel"]) == []
@@ -59,28 +76,52 @@ def test_a_manual_of_one_page_without_lists_and_prose_comes_back(layout, tmp_pat
 
 @settings(
     max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True,
-    phases=[Phase.explicit, Phase.generate],  # to draw and read a document for each step of shrinking takes minutes
+    # To draw and read a document for each step of shrinking takes minutes.
+    phases=[Phase.explicit, Phase.generate],
 )  # fmt: skip
 @given(tree=random_icds.trees(), layout=st.sampled_from(sorted(LAYOUTS)))
 def test_random_icds_come_back(tree, layout, tmp_path_factory):
     path = tmp_path_factory.mktemp("random") / "manual.pdf"
-    assert back(content.manual({"device": tree}, {"device": "Device"}), layout, path) == []
+    assert (
+        back(content.manual({"device": tree}, {"device": "Device"}), layout, path) == []
+    )
 
 
 def test_the_rest_of_a_name_that_reads_like_headings_begins_no_table(tmp_path):
-    names = ["Wheel SD-card Sun Panel Mode Value", "Wheel SD-card Sun Panel State Level", "Gain"]
-    fields = [
-        {"at": 64 * index, "bits": 64, "name": name, "type": "float", "unit": "deg"} for index, name in enumerate(names)
+    names = [
+        "Wheel SD-card Sun Panel Mode Value",
+        "Wheel SD-card Sun Panel State Level",
+        "Gain",
     ]
-    message = {"name": "Panels", "kind": "telecommand", "id": 1, "length": 24, "group": "Power", "fields": fields}
+    fields = [
+        {"at": 64 * index, "bits": 64, "name": name, "type": "float", "unit": "deg"}
+        for index, name in enumerate(names)
+    ]
+    message = {
+        "name": "Panels",
+        "kind": "telecommand",
+        "id": 1,
+        "length": 24,
+        "group": "Power",
+        "fields": fields,
+    }
     tree = {"icdgen": 1, "node": {"name": "device"}, "messages": [message]}
-    assert back(content.manual({"device": tree}, {"device": "Device"}), "small", tmp_path / "manual.pdf") == []
+    assert (
+        back(
+            content.manual({"device": tree}, {"device": "Device"}),
+            "small",
+            tmp_path / "manual.pdf",
+        )
+        == []
+    )
 
 
 def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_path):
     manual = content.manual(content.shipped("common"), TITLES)
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
-    one, two = imported(tmp_path / "manual.pdf", jobs=1), imported(tmp_path / "manual.pdf", jobs=2)
+    one, two = imported(tmp_path / "manual.pdf", jobs=1), imported(
+        tmp_path / "manual.pdf", jobs=2
+    )
     assert one[1] == two[1]
     assert one[0].import_findings == two[0].import_findings
 
@@ -94,4 +135,7 @@ def test_pages_in_the_icd_are_those_on_which_the_tables_begin(tmp_path):
     with pdfplumber.open(tmp_path / "manual.pdf") as file:
         for message in random.Random(7).sample(trees["common"]["messages"], 8):
             source = message["source"]
-            assert f"Table {source['table']}: {message['name']}" in file.pages[source["page"] - 1].extract_text()
+            assert (
+                f"Table {source['table']}: {message['name']}"
+                in file.pages[source["page"] - 1].extract_text()
+            )

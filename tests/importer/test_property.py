@@ -1,4 +1,6 @@
-"""Whatever a page's text is turned into: never a traceback, and never a field that the page does not show."""
+"""Whatever a page's text is turned into: never a traceback, and never a field that the
+page does not show.
+"""
 
 from __future__ import annotations
 
@@ -38,14 +40,20 @@ TEXT = LIST + MESSAGE + ENUM + (
 
 
 def shown_numbers(text: str) -> set[int]:
-    """Every number of the page, and what arrays, ranges and units of bytes may make of them."""
-    found = {int(n) for n in re.findall("[0-9]+", text)} | {int(n, 16) for n in re.findall("0x([0-9A-Fa-f]+)", text)}
+    """Every number of the page, and what arrays, ranges and units of bytes may make of
+    them.
+    """
+    found = {int(n) for n in re.findall("[0-9]+", text)} | {
+        int(n, 16) for n in re.findall("0x([0-9A-Fa-f]+)", text)
+    }
     return found | {8 * n for n in found}
 
 
 def _is_shown(word: str, squeezed: str) -> bool:
     """Whether the page shows a word; or two that touch after one of them was moved."""
-    return word in squeezed or any(word[:i] in squeezed and word[i:] in squeezed for i in range(1, len(word)))
+    return word in squeezed or any(
+        word[:i] in squeezed and word[i:] in squeezed for i in range(1, len(word))
+    )
 
 
 def check(trees: dict, text: str) -> None:
@@ -56,22 +64,44 @@ def check(trees: dict, text: str) -> None:
     for tree in trees.values():
         for message in tree.get("messages", ()):
             for one in message.get("fields", ()):
-                for factor in re.findall(r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?", one.get("formula", "")):
+                for factor in re.findall(
+                    r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?", one.get("formula", "")
+                ):
                     assert factor in text or factor.removeprefix("0") in text, one
-                assert all(_is_shown(word, squeezed) for word in re.findall("[A-Za-z]+", one["name"])), one
-                assert all(word in squeezed for word in one.get("unit", "").split()), one
-                spans = {b - a + 1 for a in numbers for b in numbers if b >= a} if len(numbers) < 60 else numbers
-                assert one["bits"] in numbers | widths | spans | {8 * s for s in spans}, one
+                assert all(
+                    _is_shown(word, squeezed)
+                    for word in re.findall("[A-Za-z]+", one["name"])
+                ), one
+                assert all(
+                    word in squeezed for word in one.get("unit", "").split()
+                ), one
+                spans = (
+                    {b - a + 1 for a in numbers for b in numbers if b >= a}
+                    if len(numbers) < 60
+                    else numbers
+                )
+                assert one["bits"] in numbers | widths | spans | {
+                    8 * s for s in spans
+                }, one
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(
+    max_examples=150,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+    derandomize=True,
+)
 @given(data=st.data())
-def test_shuffled_cut_and_dropped_cells_of_a_text_are_read_or_reported(data, tmp_path_factory):
+def test_shuffled_cut_and_dropped_cells_of_a_text_are_read_or_reported(
+    data, tmp_path_factory
+):
     rows = [line.split("\t") for line in TEXT.split("\n")]
     for _ in range(data.draw(st.integers(1, 12))):
         row = data.draw(st.integers(0, len(rows) - 1))
         cell = data.draw(st.integers(0, len(rows[row]) - 1)) if rows[row] else 0
-        what = data.draw(st.sampled_from(("drop", "cut", "swap", "move", "torn", "gone", "twice")))
+        what = data.draw(
+            st.sampled_from(("drop", "cut", "swap", "move", "torn", "gone", "twice"))
+        )
         if not rows[row]:
             continue
         if what == "drop":
@@ -92,7 +122,10 @@ def test_shuffled_cut_and_dropped_cells_of_a_text_are_read_or_reported(data, tmp
     path = tmp_path_factory.mktemp("text") / "manual.txt"
     path.write_text(text, encoding="utf-8")
     rules = path.with_name("rules.yaml")
-    rules.write_text(PUMP.read_text(encoding="utf-8").replace("phrases:", f"{RULES}phrases:"), encoding="utf-8")
+    rules.write_text(
+        PUMP.read_text(encoding="utf-8").replace("phrases:", f"{RULES}phrases:"),
+        encoding="utf-8",
+    )
     result, trees = run.run(path, profile.load(rules), jobs=1)
     check(trees, text)
     explore.report(result.tables, "manual.txt")
@@ -100,7 +133,9 @@ def test_shuffled_cut_and_dropped_cells_of_a_text_are_read_or_reported(data, tmp
 
 
 @pytest.mark.parametrize("layout", ["sections", "registers"])
-def test_shuffled_and_dropped_words_of_pages_are_read_or_reported(layout, tmp_path, monkeypatch):
+def test_shuffled_and_dropped_words_of_pages_are_read_or_reported(
+    layout, tmp_path, monkeypatch
+):
     WILD[layout].draw(tmp_path / "motor.pdf")
     (tmp_path / "rules.yaml").write_text(WILD[layout].profile, encoding="utf-8")
     words = profile.load(tmp_path / "rules.yaml")
@@ -108,7 +143,9 @@ def test_shuffled_and_dropped_words_of_pages_are_read_or_reported(layout, tmp_pa
     for seed in range(25):
         chance = random.Random(seed)
         spoiled = [_spoiled(page, chance) for page in pages]
-        monkeypatch.setattr(pdf, "_pages", lambda path, wanted, jobs, made=spoiled: iter(made))
+        monkeypatch.setattr(
+            pdf, "_pages", lambda path, wanted, jobs, made=spoiled: iter(made)
+        )
         try:
             _, trees = run.run(tmp_path / "motor.pdf", words, jobs=1)
         except Findings:

@@ -20,14 +20,24 @@ WORDS = profile.load()
     ("text", "formula", "unit", "words"),
     [
         ("(formatted value) [deg] = RAWVAL*0.01", "raw*0.01", "deg", ""),
-        ("Formatted value is obtained using the formula: (formatted value) = RAWVAL/ 10000.0", "raw/10000.0", "", ""),
+        (
+            "Formatted value is obtained using the formula: (formatted value) = RAWVAL/ 10000.0",
+            "raw/10000.0",
+            "",
+            "",
+        ),
         (
             "Raw parameter value is obtained using the formula: (formatted value) [m] = RAWVAL*0.1",
             "raw*0.1",
             "m",
             "raw",
         ),
-        ("(raw parameter) = (formatted value)*10.0 (formatted value is in [m] units)", "raw = value*10.0", "m", ""),
+        (
+            "(raw parameter) = (formatted value)*10.0 (formatted value is in [m] units)",
+            "raw = value*10.0",
+            "m",
+            "",
+        ),
         ("physical value [°C] = raw value × 0.1 – 40", "raw*0.1 - 40", "°C", ""),
         ("Formatted value = 0.5 * (RAWVAL − 32)", "0.5*(raw - 32)", "", ""),
         ("(formatted value) [kg.m²] = RAWVAL*.5.", "raw*0.5", "kg.m²", ""),
@@ -41,7 +51,12 @@ WORDS = profile.load()
 )
 def test_formulas_and_units_are_read_in_both_directions(text, formula, unit, words):
     read = descriptions.read(text, WORDS)
-    assert (read.formula, read.unit, read.formula_for, read.problems) == (formula, unit, words, [])
+    assert (read.formula, read.unit, read.formula_for, read.problems) == (
+        formula,
+        unit,
+        words,
+        [],
+    )
 
 
 @pytest.mark.parametrize(
@@ -55,7 +70,10 @@ def test_a_formula_that_cannot_be_read_is_a_problem_and_not_a_shorter_one(text):
     assert read.problems
 
 
-@given(st.fractions(min_value=Fraction(1, 1000), max_value=1000, max_denominator=1000), st.integers(-500, 500))
+@given(
+    st.fractions(min_value=Fraction(1, 1000), max_value=1000, max_denominator=1000),
+    st.integers(-500, 500),
+)
 def test_what_a_formula_computes_survives_being_printed(factor, offset):
     shift = f"{'+' if offset >= 0 else '-'} {abs(offset)}"
     printed = f"(formatted value) [V] = RAWVAL * {factor.numerator}/{factor.denominator} {shift}"
@@ -83,8 +101,14 @@ def test_a_magic_number_is_one_only_without_an_alternative(text, const):
     [
         ("ID 132 Frame Length (bytes) 6", {"id": "132", "telemetry_length": "6"}),
         ("ID: 0x84 Length: 6 bytes", {"id": "0x84", "length": "6"}),
-        ("ID 132 (0x84) Frame Length (bytes) 6", {"id": "132", "telemetry_length": "6"}),
-        ("Set ID/Get ID 3 / 131 Parameters Length (bytes) 1", {"both_ids": "3/131", "telecommand_length": "1"}),
+        (
+            "ID 132 (0x84) Frame Length (bytes) 6",
+            {"id": "132", "telemetry_length": "6"},
+        ),
+        (
+            "Set ID/Get ID 3 / 131 Parameters Length (bytes) 1",
+            {"both_ids": "3/131", "telecommand_length": "1"},
+        ),
         ("ID 7 Parameters (bytes) Length 1", {"id": "7", "telecommand_length": "1"}),
     ],
 )
@@ -93,7 +117,9 @@ def test_labels_are_read_in_whatever_cells_they_stand(text, values):
     assert labels.begins(text, WORDS)
 
 
-@pytest.mark.parametrize("text", ["ID 5 is used by the loader", "Description ID 5", "5 ID", "0 8 ID UINT ID"])
+@pytest.mark.parametrize(
+    "text", ["ID 5 is used by the loader", "Description ID 5", "5 ID", "0 8 ID UINT ID"]
+)
 def test_prose_and_fields_do_not_begin_a_message(text):
     assert not labels.begins(text, WORDS)
 

@@ -1,4 +1,7 @@
-"""`icdgen --lang xlsx` and `--lang csv` write tables for reviews; the shipped profile `tables` reads the same layouts back."""
+"""`icdgen --lang xlsx` and `--lang csv` write tables for reviews.
+
+The shipped profile `tables` reads the same layouts back.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +24,23 @@ LANGUAGES = ("csv", "xlsx")
 
 
 def generate(language: str, out: Path, *more: object) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", "icdgen", "--lang", language, "--out", str(out), *map(str, more)]
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        "--lang",
+        language,
+        "--out",
+        str(out),
+        *map(str, more),
+    ]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
 
 
 def layouts(node: Node) -> dict:
-    """What the tables show of a node: each message with the places and values of its fields."""
+    """What the tables show of a node: each message with the places and values of its
+    fields.
+    """
     made = {}
     for message in node.messages:
         if message.node != node.name:
@@ -37,7 +51,12 @@ def layouts(node: Node) -> dict:
             for line in lines(message.layout) if not line.is_read_only and not line.is_count
         ]  # fmt: skip
         ids = message.id, message.set_id, message.get_id
-        made[message.name] = message.kind, ids, message.length, sorted(fields, key=lambda field: field[1])
+        made[message.name] = (
+            message.kind,
+            ids,
+            message.length,
+            sorted(fields, key=lambda field: field[1]),
+        )
     return made
 
 
@@ -45,7 +64,9 @@ def back(table: Path, rules: Path | None, folder: Path) -> dict:
     """The layouts of the ICD that an import of a table gives."""
     from icdgen.icd.fmt import emit
 
-    result, trees = run.run(table, profile.load(rules or profile.find("tables")), jobs=1)
+    result, trees = run.run(
+        table, profile.load(rules or profile.find("tables")), jobs=1
+    )
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
     folder.mkdir()
     (name,) = trees
@@ -97,18 +118,28 @@ messages:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_arrays_structs_constants_and_messages_without_fields_come_back(language, tmp_path):
+def test_arrays_structs_constants_and_messages_without_fields_come_back(
+    language, tmp_path
+):
     (tmp_path / "device.yaml").write_text(DEVICE, encoding="utf-8")
     run_ = generate(language, tmp_path / "tables", tmp_path / "device.yaml")
     assert run_.returncode == 0, run_.stderr
     shipped = (ROOT / "icd" / "profiles" / "tables.yaml").read_text(encoding="utf-8")
-    orders = shipped.replace("byte_order: little, bit_order: lsb0", "byte_order: big, bit_order: msb0")
+    orders = shipped.replace(
+        "byte_order: little, bit_order: lsb0", "byte_order: big, bit_order: msb0"
+    )
     (tmp_path / "rules.yaml").write_text(orders, encoding="utf-8")
     (node,) = load([tmp_path / "device.yaml"]).icd.nodes
-    assert back(tmp_path / "tables" / f"device.{language}", tmp_path / "rules.yaml", tmp_path / "back") == layouts(node)
+    assert back(
+        tmp_path / "tables" / f"device.{language}",
+        tmp_path / "rules.yaml",
+        tmp_path / "back",
+    ) == layouts(node)
 
 
-def test_a_workbook_has_the_same_bytes_at_any_time_so_that_check_can_compare_it(tmp_path):
+def test_a_workbook_has_the_same_bytes_at_any_time_so_that_check_can_compare_it(
+    tmp_path,
+):
     assert generate("xlsx", tmp_path, "icd/cubewheel.yaml").returncode == 0
     before = (tmp_path / "cubewheel.xlsx").read_bytes()
     time.sleep(2.1)  # times in ZIP archives have steps of two seconds
@@ -124,7 +155,10 @@ def test_both_formats_have_the_same_cells_and_a_text_is_no_formula(tmp_path):
     with open(tmp_path / "device.csv", encoding="utf-8", newline="") as file:
         table = list(csv.reader(file))
     sheet = openpyxl.load_workbook(tmp_path / "device.xlsx").active
-    title, *rows = [["" if cell is None else str(cell) for cell in row] for row in sheet.iter_rows(values_only=True)]
+    title, *rows = [
+        ["" if cell is None else str(cell) for cell in row]
+        for row in sheet.iter_rows(values_only=True)
+    ]
     assert title[0] == "Device (device): big-endian, msb0"
     assert rows == table
     assert next(cell for cell in sheet["A"] if cell.value == "=Check").data_type == "s"

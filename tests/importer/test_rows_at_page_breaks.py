@@ -1,4 +1,6 @@
-"""Rows where pages end and begin, drawn line by line as engines set them: nothing moves to the row beside it."""
+"""Rows where pages end and begin, drawn line by line as engines set them: nothing moves
+to the row beside it.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,13 @@ class Sheet:
     def __init__(self, path: Path) -> None:
         self.canvas = Canvas(str(path), pagesize=(500, 400), invariant=1)
 
-    def line(self, y: float, *cells: str, columns: tuple[int, ...] = COLUMNS, bold: bool = False) -> None:
+    def line(
+        self,
+        y: float,
+        *cells: str,
+        columns: tuple[int, ...] = COLUMNS,
+        bold: bool = False,
+    ) -> None:
         self.canvas.setFont("Helvetica-Bold" if bold else "Helvetica", 8)
         for x, text in zip(columns, cells, strict=False):
             self.canvas.drawString(x, 400 - y, text)
@@ -38,7 +46,11 @@ class Sheet:
         """The beginning of a message with one field, 16 bits wide."""
         self.line(250, "Table 1: Pump State Telemetry Format", bold=True)
         self.line(270, "ID", "140", "Frame Length (bytes)", "4")
-        self.line(290, *[f"{title} (bits)" if i < 2 else title for i, title in enumerate(HEADS)], bold=True)
+        self.line(
+            290,
+            *[f"{title} (bits)" if i < 2 else title for i, title in enumerate(HEADS)],
+            bold=True,
+        )
 
 
 def fields(path: Path) -> list[tuple[str, str | None]]:
@@ -47,16 +59,24 @@ def fields(path: Path) -> list[tuple[str, str | None]]:
     return [(field["name"], field.get("formula")) for field in message["fields"]]
 
 
-def test_the_end_of_a_row_above_the_only_other_row_of_a_page_stays_with_its_row(tmp_path):
+def test_the_end_of_a_row_above_the_only_other_row_of_a_page_stays_with_its_row(
+    tmp_path,
+):
     sheet = Sheet(tmp_path / "pump.pdf")
     sheet.message()
     sheet.line(310, "0", "16", "Speed", "UINT", "Formatted value is obtained using")
     sheet.down(280, 330, 36, 86, 136, 236, 296, 460)
     sheet.page()
-    sheet.line(60, *[f"{title} (bits)" if i < 2 else title for i, title in enumerate(HEADS)], bold=True)
+    sheet.line(
+        60,
+        *[f"{title} (bits)" if i < 2 else title for i, title in enumerate(HEADS)],
+        bold=True,
+    )
     sheet.line(80, "", "", "", "", "the formula: (formatted value) = RAWVAL*0.5")
     sheet.line(100, "16", "16", "Flow", "UINT", "Formatted value is obtained using")
-    sheet.line(100 + STEP, "", "", "", "", "the formula: (formatted value) = RAWVAL*0.25")
+    sheet.line(
+        100 + STEP, "", "", "", "", "the formula: (formatted value) = RAWVAL*0.25"
+    )
     sheet.down(50, 120, 36, 86, 136, 236, 296, 460)
     sheet.page()
     sheet.canvas.save()
@@ -91,7 +111,10 @@ LIST = (40, 62, 84, 200, 400)
 def groups(path: Path) -> dict[str, str | None]:
     """The groups of the messages by their names."""
     _, trees = imported(path)
-    return {message["name"]: message.get("group") for message in next(iter(trees.values()))["messages"]}
+    return {
+        message["name"]: message.get("group")
+        for message in next(iter(trees.values()))["messages"]
+    }
 
 
 def listing(sheet: Sheet, y: float, rows: list[tuple[str, ...]]) -> float:
@@ -110,9 +133,17 @@ def formats(sheet: Sheet, y: float) -> None:
     """The formats of the messages of the list."""
     for number, (one, two, name, _, _) in enumerate(MESSAGES, 2):
         sheet.line(y, f"Table {number}: {name} Message Format", bold=True)
-        sheet.line(y + 16, "Set ID/Get ID", f"{one}/{two}", columns=(40, 110), bold=True)
-        sheet.line(y + 16, "Parameters Length (bytes)", "1", columns=(200, 330), bold=True)
-        sheet.line(y + 32, *[f"{title} (bits)" if i < 2 else title for i, title in enumerate(HEADS)], bold=True)
+        sheet.line(
+            y + 16, "Set ID/Get ID", f"{one}/{two}", columns=(40, 110), bold=True
+        )
+        sheet.line(
+            y + 16, "Parameters Length (bytes)", "1", columns=(200, 330), bold=True
+        )
+        sheet.line(
+            y + 32,
+            *[f"{title} (bits)" if i < 2 else title for i, title in enumerate(HEADS)],
+            bold=True,
+        )
         sheet.line(y + 48, "0", "8", "Level", "UINT", "How much")
         y += 80
 
@@ -126,14 +157,20 @@ def test_a_group_heading_wider_than_the_column_of_ids_below_it_is_one(tmp_path):
     formats(sheet, 190)
     sheet.page()
     sheet.canvas.save()
-    assert groups(tmp_path / "pump.pdf") == {"Pump Setting": "Configuration", "Valve Setting": "Configuration"}
+    assert groups(tmp_path / "pump.pdf") == {
+        "Pump Setting": "Configuration",
+        "Valve Setting": "Configuration",
+    }
 
 
 def test_a_group_heading_that_ends_a_page_below_the_rules_of_its_list_is_one(tmp_path):
     columns = (40, 80, 120, 210, 400)
     sheet = Sheet(tmp_path / "pump.pdf")
     sheet.line(250, "Table 1: List of Pump Configuration Messages", bold=True)
-    for top, rows in ((262, [("Set ID", "Get ID", *TITLES[2:]), MESSAGES[0]]), (52, [MESSAGES[1]])):
+    for top, rows in (
+        (262, [("Set ID", "Get ID", *TITLES[2:]), MESSAGES[0]]),
+        (52, [MESSAGES[1]]),
+    ):
         for index, row in enumerate(rows):
             sheet.line(top + 11 + 16 * index, *row, columns=columns)
         bottom = top + 16 * len(rows)
@@ -146,10 +183,15 @@ def test_a_group_heading_that_ends_a_page_below_the_rules_of_its_list_is_one(tmp
     formats(sheet, 120)
     sheet.page()
     sheet.canvas.save()
-    assert groups(tmp_path / "pump.pdf") == {"Pump Setting": None, "Valve Setting": "Access"}
+    assert groups(tmp_path / "pump.pdf") == {
+        "Pump Setting": None,
+        "Valve Setting": "Access",
+    }
 
 
-def test_group_headings_over_all_columns_do_not_part_a_table_whose_sides_run_along_it(tmp_path):
+def test_group_headings_over_all_columns_do_not_part_a_table_whose_sides_run_along_it(
+    tmp_path,
+):
     columns = (40, 80, 120, 210, 400)
     sheet = Sheet(tmp_path / "pump.pdf")
     sheet.line(250, "Table 1: List of Pump Configuration Messages", bold=True)
@@ -167,7 +209,10 @@ def test_group_headings_over_all_columns_do_not_part_a_table_whose_sides_run_alo
     formats(sheet, 160)
     sheet.page()
     sheet.canvas.save()
-    assert groups(tmp_path / "pump.pdf") == {"Pump Setting": "Access", "Valve Setting": "Control"}
+    assert groups(tmp_path / "pump.pdf") == {
+        "Pump Setting": "Access",
+        "Valve Setting": "Control",
+    }
 
 
 def test_a_table_whose_first_cell_is_empty_is_read_or_reported(tmp_path):
@@ -181,4 +226,6 @@ def test_a_table_whose_first_cell_is_empty_is_read_or_reported(tmp_path):
     sheet.page()
     sheet.canvas.save()
     result, _ = imported(tmp_path / "pump.pdf")
-    assert "Shade | Hue" in [" | ".join(filter(None, table.titles)) for table in result.tables]
+    assert "Shade | Hue" in [
+        " | ".join(filter(None, table.titles)) for table in result.tables
+    ]

@@ -1,4 +1,6 @@
-"""A figure or a heading that cannot be read, in each layout of `wild.py`: a finding says so, on its page."""
+"""A figure or a heading that cannot be read, in each layout of `wild.py`: a finding
+says so, on its page.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,18 @@ from tests.importer.manuals.wild import UNSEEN, WILD
 LAYOUTS = WILD | UNSEEN | TYPESET | office.OFFICE
 BY_BROWSER = ("prose", "ranges", "frames", "sheet")
 BY_TYPST = ("article", "two columns")
-HEADS = {"Offset", "Size", "Bits", "Type", "Unit", "Scale", "Field", "Name", "Byte", "Position"}
+HEADS = {
+    "Offset",
+    "Size",
+    "Bits",
+    "Type",
+    "Unit",
+    "Scale",
+    "Field",
+    "Name",
+    "Byte",
+    "Position",
+}
 
 
 def drawn(layout: str, path):
@@ -34,24 +47,50 @@ def spoilt(page: Page, index: int) -> Page:
     words = list(page.words)
     word = words[index]
     words[index] = word._replace(text=f"{word.text[0]}?{word.text[1:]}")
-    return Page(page.number, page.width, page.height, words, page.across, page.down, page.fills)
+    return Page(
+        page.number, page.width, page.height, words, page.across, page.down, page.fills
+    )
 
 
 def matters(word: Word, result: run.Result, page: Page, names: set[str]) -> bool:
-    """Whether a word stands in a table, or says which byte a line is of, and is a figure or a heading. Any name is right
-    that the page prints."""
-    boxes = [box for table in result.document.tables for box in table.boxes if box.page == page.number]
-    inside = any(b.x0 - 1 <= word.x0 <= b.x1 + 1 and b.top - 1 <= word.middle <= b.bottom + 1 for b in boxes)
+    """Whether a word stands in a table, or says which byte a line is of, and is a
+    figure or a heading.
+
+    Any name is right that the page prints.
+    """
+    boxes = [
+        box
+        for table in result.document.tables
+        for box in table.boxes
+        if box.page == page.number
+    ]
+    inside = any(
+        b.x0 - 1 <= word.x0 <= b.x1 + 1 and b.top - 1 <= word.middle <= b.bottom + 1
+        for b in boxes
+    )
     inside = inside or word.text.startswith("Byte")
-    return inside and word.text not in names and (word.text in HEADS or any(c.isdigit() for c in word.text))
+    return (
+        inside
+        and word.text not in names
+        and (word.text in HEADS or any(c.isdigit() for c in word.text))
+    )
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(layout, tmp_path, monkeypatch):
+def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(
+    layout, tmp_path, monkeypatch
+):
     path = drawn(layout, tmp_path / "motor.pdf")
     (tmp_path / "rules.yaml").write_text(LAYOUTS[layout].profile, encoding="utf-8")
-    words, wanted = profile.load(tmp_path / "rules.yaml"), {"messages": LAYOUTS[layout].messages}
-    names = {part for one in wanted["messages"] for f in one["fields"] for part in (one["name"], f["name"])}
+    words, wanted = profile.load(tmp_path / "rules.yaml"), {
+        "messages": LAYOUTS[layout].messages
+    }
+    names = {
+        part
+        for one in wanted["messages"]
+        for f in one["fields"]
+        for part in (one["name"], f["name"])
+    }
     with pdfplumber.open(path) as file:
         pages = [extract(page) for page in file.pages]
 
@@ -69,13 +108,18 @@ def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(layout,
             if not matters(word, whole, page, names):
                 continue
             tried += 1
-            result, tree = imported([*pages[:number], spoilt(page, index), *pages[number + 1 :]])
+            result, tree = imported(
+                [*pages[:number], spoilt(page, index), *pages[number + 1 :]]
+            )
             said = [
                 t
                 for t in result.import_findings
-                if (t.severity != "note" or t.code == "IMP032") and t.spot.page == page.number
+                if (t.severity != "note" or t.code == "IMP032")
+                and t.spot.page == page.number
             ]
-            if differences(wanted, tree, tables=False) and all((t.code, t.message) in before for t in said):
+            if differences(wanted, tree, tables=False) and all(
+                (t.code, t.message) in before for t in said
+            ):
                 silent.append(word.text)
     assert tried > 5
     assert silent == []

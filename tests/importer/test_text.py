@@ -50,16 +50,28 @@ def read(tmp_path, text: str, rules: str = ""):
 
 
 def fields(tree) -> list[tuple]:
-    return [(f["at"], f["bits"], f["name"], f["type"]) for f in tree["messages"][0]["fields"]]
+    return [
+        (f["at"], f["bits"], f["name"], f["type"])
+        for f in tree["messages"][0]["fields"]
+    ]
 
 
-WHOLE = [(0, 16, "Pressure", "int"), (16, 8, "Mode", "enum"), (24, 1, "Valve Open", "bool")]
+WHOLE = [
+    (0, 16, "Pressure", "int"),
+    (16, 8, "Mode", "enum"),
+    (24, 1, "Valve Open", "bool"),
+]
 
 
 def test_a_message_and_its_enumeration_are_read(tmp_path):
     _, tree = read(tmp_path, MESSAGE + ENUM)
     message = tree["messages"][0]
-    assert (message["name"], message["id"], message["kind"], message["length"]) == ("Pump State", 140, "telemetry", 4)
+    assert (message["name"], message["id"], message["kind"], message["length"]) == (
+        "Pump State",
+        140,
+        "telemetry",
+        4,
+    )
     assert fields(tree) == WHOLE
     assert message["fields"][0] | {} == {
         "at": 0,
@@ -69,7 +81,10 @@ def test_a_message_and_its_enumeration_are_read(tmp_path):
         "unit": "kPa",
         "formula": "raw*0.1",
     }
-    assert tree["enums"][0]["members"] == [{"value": 0, "name": "Off"}, {"value": 1, "name": "Running"}]
+    assert tree["enums"][0]["members"] == [
+        {"value": 0, "name": "Off"},
+        {"value": 1, "name": "Running"},
+    ]
 
 
 @pytest.mark.parametrize(
@@ -104,11 +119,19 @@ def found(result, code: str) -> list[str]:
 
 
 def test_what_cannot_be_read_is_reported_and_not_invented(tmp_path):
-    text = MESSAGE.replace("\t16\t8\t", "\tl6\t8\t").replace("RAWVAL*0.1", "RAWVAL**2").replace("BOOL", "WORD") + ENUM
+    text = (
+        MESSAGE.replace("\t16\t8\t", "\tl6\t8\t")
+        .replace("RAWVAL*0.1", "RAWVAL**2")
+        .replace("BOOL", "WORD")
+        + ENUM
+    )
     result, tree = read(tmp_path, text)
     assert fields(tree) == [(0, 16, "Pressure", "int")]
     assert "formula" not in tree["messages"][0]["fields"][0]
-    assert "field `Mode`: `bit` is `l6`, which is not a number" in found(result, "IMP023")[0]
+    assert (
+        "field `Mode`: `bit` is `l6`, which is not a number"
+        in found(result, "IMP023")[0]
+    )
     assert "a formula is there and cannot be read" in found(result, "IMP040")[0]
     assert "the type `WORD` is unknown" in found(result, "IMP026")[0]
     assert "no field covers bit 16 to 31" in found(result, "IMP035")[0]
@@ -123,19 +146,30 @@ def test_a_reference_to_a_table_that_is_not_there_is_reported(tmp_path):
 
 def test_number_and_title_that_point_to_different_tables_are_reported(tmp_path):
     other = ENUM.replace("8:", "9:").replace("PumpMode", "ValveMode")
-    result, tree = read(tmp_path, MESSAGE.replace("Table 8:", "Table 9:") + ENUM + other)
+    result, tree = read(
+        tmp_path, MESSAGE.replace("Table 8:", "Table 9:") + ENUM + other
+    )
     assert "points to table 9 by number and to table 8" in found(result, "IMP051")[0]
     assert tree["messages"][0]["fields"][1]["enum"] == "PumpMode"
 
 
 def test_words_that_contradict_their_formula_are_kept_and_reported(tmp_path):
-    text = MESSAGE.replace("Formatted value is obtained", "Raw parameter value is obtained") + ENUM
+    text = (
+        MESSAGE.replace(
+            "Formatted value is obtained", "Raw parameter value is obtained"
+        )
+        + ENUM
+    )
     result, tree = read(tmp_path, text)
     assert tree["messages"][0]["fields"][0]["formula_for"] == "raw"
-    assert "`Pressure` is announced as giving the raw value" in found(result, "IMP041")[0]
+    assert (
+        "`Pressure` is announced as giving the raw value" in found(result, "IMP041")[0]
+    )
 
 
-RAW = MESSAGE.replace("Formatted value is obtained", "Raw parameter value is obtained").replace(
+RAW = MESSAGE.replace(
+    "Formatted value is obtained", "Raw parameter value is obtained"
+).replace(
     "\t24\t1\tValve Open\tBOOL\tValve open\n",
     "\t24\t8\tLevel\tUINT\tLevel. Raw parameter value is obtained using the formula: (formatted value) [%] = RAWVAL*0.5\n",
 )
@@ -144,8 +178,14 @@ RAW = MESSAGE.replace("Formatted value is obtained", "Raw parameter value is obt
 def test_words_that_contradict_every_formula_of_a_kind_are_kept_once(tmp_path):
     _, tree = read(tmp_path, RAW + ENUM)
     assert tree["formula_for"] == {"telemetry": "raw"}
-    assert [field["formula"] for field in tree["messages"][0]["fields"] if "formula" in field] == ["raw*0.1", "raw*0.5"]
-    assert not [field for field in tree["messages"][0]["fields"] if "formula_for" in field]
+    assert [
+        field["formula"]
+        for field in tree["messages"][0]["fields"]
+        if "formula" in field
+    ] == ["raw*0.1", "raw*0.5"]
+    assert not [
+        field for field in tree["messages"][0]["fields"] if "formula_for" in field
+    ]
 
 
 LIST = """\
@@ -163,14 +203,20 @@ def test_lists_and_details_that_disagree_are_reported(tmp_path):
     result, tree = read(tmp_path, LIST + MESSAGE + ENUM, LISTED)
     assert tree["messages"][0]["listed"] == {"length": 6}
     assert tree["messages"][0]["group"] == "General"
-    assert "its length is `4`, the list (table 1) says `6`" in found(result, "IMP060")[0]
+    assert (
+        "its length is `4`, the list (table 1) says `6`" in found(result, "IMP060")[0]
+    )
     assert tree["missing"][0]["id"] == 141
     assert "`Tank State` is listed" in found(result, "IMP061")[0]
 
 
 def test_a_table_without_a_rule_is_named(tmp_path):
-    result, _ = read(tmp_path, "Table 3: Colours\n\nShade\tHue\nred\t1\n\n" + MESSAGE + ENUM)
-    assert found(result, "IMP100") == ["no rule applies to table 1 with the headings `Shade | Hue`"]
+    result, _ = read(
+        tmp_path, "Table 3: Colours\n\nShade\tHue\nred\t1\n\n" + MESSAGE + ENUM
+    )
+    assert found(result, "IMP100") == [
+        "no rule applies to table 1 with the headings `Shade | Hue`"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -190,13 +236,17 @@ def test_a_text_without_anything_to_import_is_a_finding(tmp_path, data, message)
 
 
 def test_a_field_that_names_no_table_has_no_enumeration(tmp_path):
-    tables = MESSAGE.replace(" Possible values are in Table 8: PumpMode Enumeration Values", "")
+    tables = MESSAGE.replace(
+        " Possible values are in Table 8: PumpMode Enumeration Values", ""
+    )
     result, tree = read(tmp_path, tables + ENUM)
     assert "field `Mode`: its values are not given" in found(result, "IMP050")[0]
     assert tree["messages"][0]["fields"][1]["type"] == "uint"
 
 
-def test_a_cell_that_the_source_leaves_out_is_put_back_only_where_the_rule_says_so(tmp_path):
+def test_a_cell_that_the_source_leaves_out_is_put_back_only_where_the_rule_says_so(
+    tmp_path,
+):
     text = MESSAGE.replace("\t24\t1", "24\t1") + ENUM
     assert fields(read(tmp_path, text)[1]) == WHOLE
     without = PUMP.read_text(encoding="utf-8").replace("    absent: [Channels]\n", "")
@@ -207,7 +257,11 @@ def test_a_cell_that_the_source_leaves_out_is_put_back_only_where_the_rule_says_
 
 def test_headings_in_two_rows_are_found_without_a_key_for_them(tmp_path):
     text = (
-        MESSAGE.replace(TITLES, "Channels\tOffset\tLength\tName\tData\tDescription\n\t(bits)\t(bits)\t\tType\t") + ENUM
+        MESSAGE.replace(
+            TITLES,
+            "Channels\tOffset\tLength\tName\tData\tDescription\n\t(bits)\t(bits)\t\tType\t",
+        )
+        + ENUM
     )
     result, tree = read(tmp_path, text)
     assert fields(tree) == WHOLE and not result.failed

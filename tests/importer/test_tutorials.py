@@ -1,4 +1,6 @@
-"""The two pages from a data sheet to C that talks: what they tell one to type gives what they show."""
+"""The two pages from a data sheet to C that talks: what they tell one to type gives
+what they show.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,12 @@ def folder(tmp_path) -> Path:
     """What the first lines of the first page make of a clone."""
     (commands,) = blocks(PAGES[0], "sh")
     *_, make, copy, enter = commands.strip().split("\n")
-    subprocess.run(["bash", "-ec", f"{make}; {copy}; {enter}; ls port.h"], cwd=ROOT, check=True, env=home(tmp_path))
+    subprocess.run(
+        ["bash", "-ec", f"{make}; {copy}; {enter}; ls port.h"],
+        cwd=ROOT,
+        check=True,
+        env=home(tmp_path),
+    )
     return tmp_path / "wind"
 
 
@@ -52,7 +59,11 @@ def free_port() -> int:
 
 def home(path: Path) -> dict[str, str]:
     programs = str(Path(sys.executable).parent)
-    return {**os.environ, "HOME": str(path), "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
+    return {
+        **os.environ,
+        "HOME": str(path),
+        "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
+    }
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -60,7 +71,10 @@ def test_every_command_gives_what_the_page_shows(name, folder, free_port):
     simulators = []
     try:
         for command, shown in steps(name):
-            command, shown = (re.sub(r"\b400[01]\b", str(free_port), text) for text in (command, shown))
+            command, shown = (
+                re.sub(r"\b400[01]\b", str(free_port), text)
+                for text in (command, shown)
+            )
             if command.startswith("icdgen sim"):  # in a terminal of its own
                 simulator = subprocess.Popen(
                     ["bash", "-c", f"exec {command}"],
@@ -81,7 +95,9 @@ def test_every_command_gives_what_the_page_shows(name, folder, free_port):
                 timeout=300,
             )
             got = (ran.stdout + ran.stderr).strip()
-            assert got == shown or (not shown and ran.returncode == 0), f"{command}\n{got}"
+            assert got == shown or (
+                not shown and ran.returncode == 0
+            ), f"{command}\n{got}"
     finally:
         for simulator in simulators:
             simulator.kill()
@@ -92,8 +108,12 @@ def test_every_command_gives_what_the_page_shows(name, folder, free_port):
 def test_what_a_page_prints_of_a_file_is_what_the_file_holds(name, folder):
     for language in ("c", "yaml"):
         for block in blocks(name, language):
-            files = [path for path in FILES.rglob("*.*") if path.suffix in (".c", ".yaml")]
-            held = any(block.strip() in path.read_text(encoding="utf-8") for path in files)
+            files = [
+                path for path in FILES.rglob("*.*") if path.suffix in (".c", ".yaml")
+            ]
+            held = any(
+                block.strip() in path.read_text(encoding="utf-8") for path in files
+            )
             assert held or "source: {page: 1}" in block, block
 
 
@@ -101,19 +121,29 @@ def test_the_excerpt_of_the_icd_is_what_the_import_writes(folder):
     for command, _ in steps(PAGES[1]):
         if command.startswith(("python", "icdgen import sirocco.pdf --profile")):
             subprocess.run(
-                ["bash", "-c", command], cwd=folder, env=home(folder.parent), check=True, capture_output=True
+                ["bash", "-c", command],
+                cwd=folder,
+                env=home(folder.parent),
+                check=True,
+                capture_output=True,
             )
-    excerpt = next(block for block in blocks(PAGES[1], "yaml") if "source: {page: 1}" in block)
+    excerpt = next(
+        block for block in blocks(PAGES[1], "yaml") if "source: {page: 1}" in block
+    )
     assert excerpt in (folder / "icd" / "sirocco.yaml").read_text(encoding="utf-8")
 
 
 def test_what_the_pages_need_comes_with_the_extra():
     import tomllib
 
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
+        "project"
+    ]["optional-dependencies"]
     named = {re.split("[>=<]", one)[0] for one in extras["tutorial"]}
     imported = {"fpdf": "fpdf2", "reportlab": "reportlab"}
     for script in FILES.glob("*.py"):
-        for module in re.findall(r"^(?:from|import) (\w+)", script.read_text(encoding="utf-8"), re.MULTILINE):
+        for module in re.findall(
+            r"^(?:from|import) (\w+)", script.read_text(encoding="utf-8"), re.MULTILINE
+        ):
             assert module in sys.stdlib_module_names or imported[module] in named
     assert "pdfplumber" in named and "pip install '.[tutorial]'" in page(PAGES[0])

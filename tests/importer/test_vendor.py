@@ -19,13 +19,29 @@ def shipped(name: str) -> dict:
 
 @pytest.mark.parametrize("form", ["pdf", "txt"])
 def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
-    result, trees = imported(vendor / f"firmware-reference-manual-7.2.{form}", "cubeadcs")
-    assert {n: differences(shipped(n), trees[n]) for n in trees} == {"common": [], "bootloader": [], "cubeacp": []}
-    assert len([one for one in result.survey.found if one.table.label is not None]) == 216
+    result, trees = imported(
+        vendor / f"firmware-reference-manual-7.2.{form}", "cubeadcs"
+    )
+    assert {n: differences(shipped(n), trees[n]) for n in trees} == {
+        "common": [],
+        "bootloader": [],
+        "cubeacp": [],
+    }
+    assert (
+        len([one for one in result.survey.found if one.table.label is not None]) == 216
+    )
     assert not [one for one in result.survey.found if one.what == UNKNOWN]
-    assert sum(one.what == BACKGROUND and one.table.label is not None for one in result.survey.found) == 8
+    assert (
+        sum(
+            one.what == BACKGROUND and one.table.label is not None
+            for one in result.survey.found
+        )
+        == 8
+    )
     assert [
-        import_finding.message for import_finding in result.import_findings if import_finding.severity == "error"
+        import_finding.message
+        for import_finding in result.import_findings
+        if import_finding.severity == "error"
     ] == []
     assert result.interpretation is not None  # by rules, and by nothing else
 
@@ -33,11 +49,16 @@ def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
 @pytest.mark.parametrize("form", ["pdf", "txt"])
 def test_the_addendum_gives_the_shipped_vendor_layer(vendor, form):
     _, trees = imported(vendor / f"cubemag-cubewheel-addendum.{form}", "addendum")
-    assert {n: differences(shipped(n), trees[n]) for n in trees} == {"cubemag": [], "cubewheel": []}
+    assert {n: differences(shipped(n), trees[n]) for n in trees} == {
+        "cubemag": [],
+        "cubewheel": [],
+    }
 
 
 @pytest.mark.parametrize("form", ["pdf", "txt"])
-def test_tables_as_files_give_the_same_vendor_layer_byte_for_byte(vendor, form, tmp_path):
+def test_tables_as_files_give_the_same_vendor_layer_byte_for_byte(
+    vendor, form, tmp_path
+):
     result, trees = imported(vendor / f"cubemag-cubewheel-addendum.{form}", "addendum")
     table_files.write(result.tables, tmp_path / "tables", result.document)
     _, again = imported(tmp_path / "tables", "addendum")

@@ -1,4 +1,6 @@
-"""Documents as vendors of sensors and modems set them: the rules of each give its ICD back."""
+"""Documents as vendors of sensors and modems set them: the rules of each give its ICD
+back.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +27,21 @@ def test_a_document_in_the_wild_comes_back(layout, tmp_path):
         pytest.importorskip("typst")
     wild.draw(tmp_path / "motor.pdf")
     (tmp_path / "rules.yaml").write_text(wild.profile, encoding="utf-8")
-    result, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
-    assert differences({"messages": wild.messages}, next(iter(trees.values())), tables=False) == []
+    result, trees = run.run(
+        tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
+    assert (
+        differences(
+            {"messages": wild.messages}, next(iter(trees.values())), tables=False
+        )
+        == []
+    )
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
 
 
-@pytest.mark.parametrize("caption", ["{name} (0x{id:02X})", "Table {number}: {name} (0x{id:02X})"])
+@pytest.mark.parametrize(
+    "caption", ["{name} (0x{id:02X})", "Table {number}: {name} (0x{id:02X})"]
+)
 def test_prose_between_a_caption_and_its_table_parts_them_not(tmp_path, caption):
     style = getSampleStyleSheet()
     body = style["BodyText"]
@@ -38,7 +49,14 @@ def test_prose_between_a_caption_and_its_table_parts_them_not(tmp_path, caption)
     for number, message in enumerate(MESSAGES, 1):
         rows = [["Offset (bits)", "Length (bits)", "Name", "Data Type", "Unit"]]
         rows += [
-            [str(f["at"]), str(f["bits"]), f["name"], f["type"].upper(), f.get("unit", "-")] for f in message["fields"]
+            [
+                str(f["at"]),
+                str(f["bits"]),
+                f["name"],
+                f["type"].upper(),
+                f.get("unit", "-"),
+            ]
+            for f in message["fields"]
         ]
         text = caption.format(number=number, name=message["name"], id=message["id"])
         story += [
@@ -55,6 +73,18 @@ def test_prose_between_a_caption_and_its_table_parts_them_not(tmp_path, caption)
         "Offset (bits): bit, Length (bits): bits, Name: name, Data Type: type, Unit: unit",
     )  # fmt: skip
     (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
-    _, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
-    plain = [m | {"fields": [{k: v for k, v in f.items() if k != "formula"} for f in m["fields"]]} for m in MESSAGES]
-    assert differences({"messages": plain}, next(iter(trees.values())), tables=False) == []
+    _, trees = run.run(
+        tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
+    plain = [
+        m
+        | {
+            "fields": [
+                {k: v for k, v in f.items() if k != "formula"} for f in m["fields"]
+            ]
+        }
+        for m in MESSAGES
+    ]
+    assert (
+        differences({"messages": plain}, next(iter(trees.values())), tables=False) == []
+    )

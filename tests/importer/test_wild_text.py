@@ -1,4 +1,6 @@
-"""What documents print besides plain numbers: factors, signs of units, wide ids, chapters, frames in lines."""
+"""What documents print besides plain numbers: factors, signs of units, wide ids,
+chapters, frames in lines.
+"""
 
 from __future__ import annotations
 
@@ -37,8 +39,12 @@ FACTORS = r"""rules:
         ("Scale", "LSB = 0.5 dps", "raw*0.5", "dps"),
     ],
 )
-def test_factors_and_signs_of_units_become_formulas_and_units(tmp_path, heading, cell, formula, unit):
-    table = f"Offset (bits)\tLength (bits)\tName\tType\t{heading}\n0\t16\tA\tINT\t{cell}\n"
+def test_factors_and_signs_of_units_become_formulas_and_units(
+    tmp_path, heading, cell, formula, unit
+):
+    table = (
+        f"Offset (bits)\tLength (bits)\tName\tType\t{heading}\n0\t16\tA\tINT\t{cell}\n"
+    )
     role = {"Scale": "Scale: formula", "Unit": "Unit: unit"}[heading]
     _, tree = read(tmp_path, HEADING + table, FACTORS.replace("COLUMN", role), NODE)
     field = tree["messages"][0]["fields"][0]
@@ -48,15 +54,21 @@ def test_factors_and_signs_of_units_become_formulas_and_units(tmp_path, heading,
 @pytest.mark.parametrize("cell", ["10^-3 T", "0.1 to 0.5", "see 3.1", "sqrt(raw)"])
 def test_a_factor_that_cannot_be_read_is_an_error_and_not_guessed(tmp_path, cell):
     table = f"Offset (bits)\tLength (bits)\tName\tType\tScale\n0\t16\tA\tINT\t{cell}\n"
-    result, tree = read(tmp_path, HEADING + table, FACTORS.replace("COLUMN", "Scale: formula"), NODE)
+    result, tree = read(
+        tmp_path, HEADING + table, FACTORS.replace("COLUMN", "Scale: formula"), NODE
+    )
     assert "formula" not in tree["messages"][0]["fields"][0]
     assert found(result, "IMP040") and result.failed
 
 
 def test_a_unit_that_is_not_built_in_is_declared_with_its_sign_in_letters(tmp_path):
     table = "Offset (bits)\tLength (bits)\tName\tType\tUnit\n0\t16\tA\tINT\tk\u03a9\n"
-    _, tree = read(tmp_path, HEADING + table, FACTORS.replace("COLUMN", "Unit: unit"), NODE)
-    assert tree["units"] == [{"symbol": "k\u03a9", "identifier": "kohm", "quantity": "not stated"}]
+    _, tree = read(
+        tmp_path, HEADING + table, FACTORS.replace("COLUMN", "Unit: unit"), NODE
+    )
+    assert tree["units"] == [
+        {"symbol": "k\u03a9", "identifier": "kohm", "quantity": "not stated"}
+    ]
 
 
 BYTES = "Offset\tSize\tName\tType\n0\t1\tMode\tU8\n1\t2\tSpeed\tU16\n3\t4\tTime\tU32\n"
@@ -73,15 +85,29 @@ def test_an_id_that_the_node_has_no_room_for_is_one_line_of_the_report(tmp_path)
     assert [m["name"] for m in tree["messages"]] == ["Slow"]
     assert "its id 263 (0x107) is above 255" in found(result, "IMP037")[0]
     _, tree = read(tmp_path, text, RULE, NODE.replace("lsb0}", "lsb0, id_bits: 16}"))
-    assert [m["id"] for m in tree["messages"]] == [263, 33] and tree["node"]["id_bits"] == 16
+    assert [m["id"] for m in tree["messages"]] == [263, 33] and tree["node"][
+        "id_bits"
+    ] == 16
 
 
 def test_bytes_or_bits_are_stated_and_never_inferred(tmp_path):
     text = HEADING + BYTES
-    assert fields(read(tmp_path, text, RULE, NODE)[1]) == [(0, 8, "Mode"), (8, 16, "Speed"), (24, 32, "Time")]
-    result, _ = read(tmp_path, text, RULE.replace("Offset: byte, Size: bytes", "Offset: bit, Size: bits"), NODE)
+    assert fields(read(tmp_path, text, RULE, NODE)[1]) == [
+        (0, 8, "Mode"),
+        (8, 16, "Speed"),
+        (24, 32, "Time"),
+    ]
+    result, _ = read(
+        tmp_path,
+        text,
+        RULE.replace("Offset: byte, Size: bytes", "Offset: bit, Size: bits"),
+        NODE,
+    )
     (message,) = found(result, "IMP105")
-    assert "its type `U8` has 8 bits, its size is 1; the same in 2 more rows: `Speed`, `Time`" in message
+    assert (
+        "its type `U8` has 8 bits, its size is 1; the same in 2 more rows: `Speed`, `Time`"
+        in message
+    )
 
 
 def test_a_heading_that_gives_an_id_without_a_table_is_reported(tmp_path):
@@ -91,7 +117,12 @@ def test_a_heading_that_gives_an_id_without_a_table_is_reported(tmp_path):
     assert found(result, "IMP039") == [
         "`6.1 Halt (0x12)` gives the id of a message, and no table below it was read as one"
     ]
-    inner, _ = read(tmp_path, f"5 Telemetry\n\n5.1 State (0x21)\n\n5.1.1 Layout\n\n{BYTES}", RULE, NODE)
+    inner, _ = read(
+        tmp_path,
+        f"5 Telemetry\n\n5.1 State (0x21)\n\n5.1.1 Layout\n\n{BYTES}",
+        RULE,
+        NODE,
+    )
     assert not found(inner, "IMP039")
 
 
@@ -126,7 +157,9 @@ def test_tables_numbered_by_chapter_are_found_by_their_numbers(tmp_path, a, b):
     _, tree = read(tmp_path, CHAPTERS.format(a=a, b=b), CHAPTER_RULES, NODE)
     [message] = tree["messages"]
     assert message["fields"][0]["enum"] == "Modes"
-    assert message.get("source", {}).get("table") == (None if a else 1)  # an ICD has whole numbers
+    assert message.get("source", {}).get("table") == (
+        None if a else 1
+    )  # an ICD has whole numbers
 
 
 LINES = "Byte0~Byte1: voltage, 10 mV\nByte2~Byte3: current, 1 mA\nByte4: state\n"
@@ -142,7 +175,8 @@ LINE_RULES = r"""rules:
 def test_a_frame_in_lines_is_a_table(tmp_path):
     _, tree = read(tmp_path, HEADING + LINES, LINE_RULES, NODE)
     assert [
-        (f["at"], f["bits"], f["name"], f.get("formula"), f.get("unit")) for f in tree["messages"][0]["fields"]
+        (f["at"], f["bits"], f["name"], f.get("formula"), f.get("unit"))
+        for f in tree["messages"][0]["fields"]
     ] == [
         (0, 16, "voltage", "raw*10", "mV"),
         (16, 16, "current", None, "mA"),
@@ -152,7 +186,9 @@ def test_a_frame_in_lines_is_a_table(tmp_path):
 
 @pytest.mark.parametrize("wrong", ["Byte1~Byte2", "Byte3~Byte4", "By?te2"])
 def test_a_byte_that_is_missing_between_lines_is_reported(tmp_path, wrong):
-    result, _ = read(tmp_path, HEADING + LINES.replace("Byte2~Byte3", wrong), LINE_RULES, NODE)
+    result, _ = read(
+        tmp_path, HEADING + LINES.replace("Byte2~Byte3", wrong), LINE_RULES, NODE
+    )
     assert found(result, "IMP035") or found(result, "IMP105")
 
 

@@ -1,6 +1,8 @@
-"""The whole manual of the shipped ICDs, drawn in each layout and imported again: how much differs.
+"""The whole manual of the shipped ICDs, drawn in each layout and imported again: how
+much differs.
 
-python -m tests.importer.whole [LAYOUT ...]     # minutes; without names the eight layouts of `further.py`
+python -m tests.importer.whole [LAYOUT ...]     # minutes; without names the eight
+layouts of `further.py`
 """
 
 from __future__ import annotations
@@ -22,18 +24,29 @@ def main() -> int:
     """One line for each layout, and its differences below; fails where there is one."""
     failed = False
     for name in sys.argv[1:] or FURTHER:
-        manual = content.manual(content.shipped("common", "bootloader", "cubeacp"), TITLES)
+        manual = content.manual(
+            content.shipped("common", "bootloader", "cubeacp"), TITLES
+        )
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "manual.pdf")
             (FURTHER | LAYOUTS)[name](manual, path)
             start = time.process_time()
             result, got = imported(path)
         took = time.process_time() - start
-        found = [line for node, tree in manual.trees.items() for line in differences(tree, got.get(node, {}))]
+        found = [
+            line
+            for node, tree in manual.trees.items()
+            for line in differences(tree, got.get(node, {}))
+        ]
         print(
             f"{name}: {len(found)} differences, {result.document.pages} pages, {took:.0f} s, {dict(result.sureness())}"
         )
-        print(*(f"    {line}" for line in found), sep="\n", end="\n" * bool(found), flush=True)
+        print(
+            *(f"    {line}" for line in found),
+            sep="\n",
+            end="\n" * bool(found),
+            flush=True,
+        )
         failed = failed or bool(found)
     return failed
 

@@ -35,10 +35,17 @@ def everything(known) -> bytes:
 def write(tmp_path, known):
     """Writes a log of random frames: path, and its entries."""
 
-    def write(mask: bytes, count: int, truncated: bytes = b"") -> tuple[Path, list[logs.Entry]]:
+    def write(
+        mask: bytes, count: int, truncated: bytes = b""
+    ) -> tuple[Path, list[logs.Entry]]:
         source, slots = Random(count), known.mask.selected(mask)
         entries = [
-            (1_600_000_000 + n, n * 7 % 1000, [source.randbytes(slot.length) for slot in slots]) for n in range(count)
+            (
+                1_600_000_000 + n,
+                n * 7 % 1000,
+                [source.randbytes(slot.length) for slot in slots],
+            )
+            for n in range(count)
         ]
         data = logs.encode(known, mask, entries)
         path = tmp_path / "log.bin"

@@ -18,7 +18,10 @@ def test_a_log_is_listed(write, everything, known):
     path, _ = write(everything, 3, b"rest")
     result = icdgen(path)
     assert result.returncode == 0, result.stderr
-    assert "3 entries of" in result.stdout and "2020-09-13T12:26:40.000Z to 2020-09-13T12:26:42.014Z" in result.stdout
+    assert (
+        "3 entries of" in result.stdout
+        and "2020-09-13T12:26:40.000Z to 2020-09-13T12:26:42.014Z" in result.stdout
+    )
     assert "note: the last 4 bytes belong to no whole entry" in result.stdout
     for slot in known.mask.bits.values():
         assert slot.name in result.stdout
@@ -27,14 +30,21 @@ def test_a_log_is_listed(write, everything, known):
 def test_what_cannot_be_a_log_is_refused(tmp_path, known):
     header = known.log_file.header_bytes
     for name, data, why in (
-        ("README.md", b"telemetry of zebras, yaks and antelopes " * 100, "its entries have no times"),
+        (
+            "README.md",
+            b"telemetry of zebras, yaks and antelopes " * 100,
+            "its entries have no times",
+        ),
         ("random.bin", Random(1).randbytes(5000), "its entries have no times"),
         ("ones.bin", b"\xff" * (header + 5000), "its entries have no times"),
     ):
         (tmp_path / name).write_bytes(data)
         for words in ((), ("--out", tmp_path / "out.csv")):
             result = icdgen(tmp_path / name, *words)
-            assert result.returncode == 2 and f"{name} is no log of cubeacp: {why}" in result.stderr, result
+            assert (
+                result.returncode == 2
+                and f"{name} is no log of cubeacp: {why}" in result.stderr
+            ), result
     assert not (tmp_path / "out.csv").exists()
 
 
@@ -54,13 +64,18 @@ def test_what_can_hardly_be_a_log_is_doubted(tmp_path, write, everything, known)
     entry = (len(data) - size) // 3
     path.write_bytes(data[:size] + data[-entry:] + data[size:-entry])
     path.with_name("zeros.bin").write_bytes(bytes(5000))
-    assert "the mask selects no frame; is this a log of cubeacp?" in icdgen(path.with_name("zeros.bin")).stdout
+    assert (
+        "the mask selects no frame; is this a log of cubeacp?"
+        in icdgen(path.with_name("zeros.bin")).stdout
+    )
     listed, converted = icdgen(path), icdgen(path, "--format", "csv")
     for said in (listed.stdout, converted.stderr):
         assert "1 bit that no frame has; is this a log of cubeacp?" in said
         assert "time jump at byte" in said
     bits = sorted(known.mask.bits)[:2]
-    mask = sum(1 << (bit ^ 7 if known.mask.msb0 else bit) for bit in bits).to_bytes(known.mask.size, "little")
+    mask = sum(1 << (bit ^ 7 if known.mask.msb0 else bit) for bit in bits).to_bytes(
+        known.mask.size, "little"
+    )
     path, _ = write(mask, 3)
     assert "is this a log" not in icdgen(path).stdout
 

@@ -72,16 +72,24 @@ def log(icd, known, everything, write):
 
 def test_csv(icd, known, log):
     found, entries = log
-    head, *rows = csv.reader(io.StringIO(converted(text.to_csv, icd, known, found.path)))
+    head, *rows = csv.reader(
+        io.StringIO(converted(text.to_csv, icd, known, found.path))
+    )
     assert head == ["time", *(column.name for column in found.plan.columns)]
     assert [milliseconds(row[0]) for row in rows] == times(entries)
-    shown = [[str(v).lower() if isinstance(v, bool) else str(v) for v in row] for row in expected(icd, known, entries)]
+    shown = [
+        [str(v).lower() if isinstance(v, bool) else str(v) for v in row]
+        for row in expected(icd, known, entries)
+    ]
     assert [row[1:] for row in rows] == shown
 
 
 def test_json_lines(icd, known, log):
     found, entries = log
-    rows = [json.loads(line) for line in converted(text.to_json_lines, icd, known, found.path).splitlines()]
+    rows = [
+        json.loads(line)
+        for line in converted(text.to_json_lines, icd, known, found.path).splitlines()
+    ]
     assert [milliseconds(row.pop("time")) for row in rows] == times(entries)
     assert [list(row.values()) for row in rows] == expected(icd, known, entries)
 
@@ -97,13 +105,20 @@ def test_parquet(icd, known, log, tmp_path, monkeypatch, piece):
     parquet.to_parquet(found, tmp_path / "log.parquet", None, seen.append)
     assert sum(seen) == COUNT * found.plan.entry_bytes
     table = pq.read_table(tmp_path / "log.parquet")
-    assert [round(t.timestamp() * 1000) for t in table["time"].to_pylist()] == times(entries)
-    rows = zip(*(table[column.name].to_pylist() for column in found.plan.columns), strict=True)
+    assert [round(t.timestamp() * 1000) for t in table["time"].to_pylist()] == times(
+        entries
+    )
+    rows = zip(
+        *(table[column.name].to_pylist() for column in found.plan.columns), strict=True
+    )
     hexed = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
     assert hexed == expected(icd, known, entries)
     with_unit = next(column for column in found.plan.columns if column.unit)
     metadata = table.schema.field(with_unit.name).metadata
-    assert metadata[b"unit"].decode() == with_unit.unit and metadata[b"frame"].decode() == with_unit.frame
+    assert (
+        metadata[b"unit"].decode() == with_unit.unit
+        and metadata[b"frame"].decode() == with_unit.frame
+    )
 
 
 def test_only_the_first_entries(icd, known, log, tmp_path):
@@ -115,7 +130,9 @@ def test_only_the_first_entries(icd, known, log, tmp_path):
     assert converted(text.to_csv, icd, known, found.path, 7).count("\n") == 8
 
 
-def test_a_log_without_entries_or_frames_is_a_table_too(icd, known, everything, write, tmp_path):
+def test_a_log_without_entries_or_frames_is_a_table_too(
+    icd, known, everything, write, tmp_path
+):
     import pyarrow.parquet as pq
 
     for mask, count in ((everything, 0), (bytes(known.mask.size), 3)):
@@ -170,7 +187,9 @@ messages:
 TURNED = re.sub(r"(name: [bdefgij], type: \w+)", r"\1, byte_order: little", ODD)
 
 
-@pytest.mark.parametrize("text_of_icd", [ODD, TURNED], ids=["as the node", "of their own"])
+@pytest.mark.parametrize(
+    "text_of_icd", [ODD, TURNED], ids=["as the node", "of their own"]
+)
 def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     from random import Random
 
@@ -191,15 +210,23 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
     table = pq.read_table(tmp_path / "log.parquet")
     wanted = expected(icd, known, logs.decode(known, data).entries)
-    rows = zip(*(table[column.name].to_pylist() for column in found.plan.columns), strict=True)
+    rows = zip(
+        *(table[column.name].to_pylist() for column in found.plan.columns), strict=True
+    )
     got = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
-    assert [list(map(_same, row)) for row in got] == [list(map(_same, row)) for row in wanted]
+    assert [list(map(_same, row)) for row in got] == [
+        list(map(_same, row)) for row in wanted
+    ]
     written = converted(text.to_json_lines, icd, known, found.path)
     lines = [list(json.loads(line).values())[1:] for line in written.splitlines()]
     numbers = [
-        index for index, column in enumerate(found.plan.columns) if column.kind != "float"
+        index
+        for index, column in enumerate(found.plan.columns)
+        if column.kind != "float"
     ]  # floats are printed short
-    assert [[row[index] for index in numbers] for row in lines] == [[row[index] for index in numbers] for row in wanted]
+    assert [[row[index] for index in numbers] for row in lines] == [
+        [row[index] for index in numbers] for row in wanted
+    ]
 
 
 def test_golden_vectors_have_times_that_a_log_can_hold(tmp_path):
@@ -210,8 +237,15 @@ def test_golden_vectors_have_times_that_a_log_can_hold(tmp_path):
     loaded = load([tmp_path / "odd.yaml"])
     assert loaded.icd is not None and loaded.ok
     (node,) = json.loads(protocol.text(loaded.icd) or "")["nodes"]
-    asked = [case["request"] for case in node["cases"] if case["request"]["op"] == "log_encode"]
-    assert {entry["seconds"] for one in asked for entry in one["entries"]} >= {0, 0xFFFFFF}
+    asked = [
+        case["request"]
+        for case in node["cases"]
+        if case["request"]["op"] == "log_encode"
+    ]
+    assert {entry["seconds"] for one in asked for entry in one["entries"]} >= {
+        0,
+        0xFFFFFF,
+    }
 
 
 def _same(value: object) -> object:

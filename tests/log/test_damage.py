@@ -1,4 +1,6 @@
-"""Damaged telemetry logs: whole entries are kept, damaged ones are left out and reported, clock jumps lose nothing."""
+"""Damaged telemetry logs: whole entries are kept, damaged ones are left out and
+reported, clock jumps lose nothing.
+"""
 
 from __future__ import annotations
 
@@ -66,16 +68,24 @@ def frame(kind: str, number: int, seconds: int, milliseconds: int) -> bytes:
     if kind == "zeros":
         return head + bytes(36)
     if kind == "counter":
-        return head + b"".join((number + at).to_bytes(4, "little") + bytes(2) for at in range(6))
+        return head + b"".join(
+            (number + at).to_bytes(4, "little") + bytes(2) for at in range(6)
+        )
     time = seconds.to_bytes(4, "little") + milliseconds.to_bytes(2, "little")
     return head + bytes(10) + time + Random(number).randbytes(20)
 
 
 def log_of(icd: Icd, kind: str, times: list[int]) -> tuple[bytes, list[bytes]]:
     """A log with entries at these milliseconds, and its entries as bytes."""
-    entries = [(*divmod(t, 1000), [frame(kind, n, *divmod(t, 1000))]) for n, t in enumerate(times)]
+    entries = [
+        (*divmod(t, 1000), [frame(kind, n, *divmod(t, 1000))])
+        for n, t in enumerate(times)
+    ]
     data = logs.encode(facts.of(icd, icd.nodes[0]), b"\x01", entries)
-    return data, [data[at : at + ENTRY] for at in range(len(data) - ENTRY * len(times), len(data), ENTRY)]
+    return data, [
+        data[at : at + ENTRY]
+        for at in range(len(data) - ENTRY * len(times), len(data), ENTRY)
+    ]
 
 
 def steady(step: int = 1000) -> list[int]:
@@ -86,7 +96,9 @@ def read(icd: Icd, path: Path, data: bytes):
     path.write_bytes(data)
     source = open_source(icd, icd.nodes[0], path)
     text = b"".join(source.pieces(None))
-    return [text[at : at + ENTRY] for at in range(0, len(text), ENTRY)], source.integrity
+    return [
+        text[at : at + ENTRY] for at in range(0, len(text), ENTRY)
+    ], source.integrity
 
 
 @pytest.fixture(scope="module")
@@ -100,34 +112,53 @@ STEPS = st.sampled_from([10, 1000, 60_000, 3_600_000])
 
 
 def hides_itself(kind: str, size: int) -> bool:
-    """Whether so many bytes bring the copy of the time, in the data, to the place of the time."""
+    """Whether so many bytes bring the copy of the time, in the data, to the place of
+    the time.
+    """
     return kind == "own time" and size % ENTRY in (20, ENTRY - 20)
 
 
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(kind=st.sampled_from(NAMES), place=PLACES, size=SIZES, step=STEPS)
-def test_missing_bytes_lose_their_neighbourhood_and_invent_no_row(icd, path, kind, place, size, step):
+def test_missing_bytes_lose_their_neighbourhood_and_invent_no_row(
+    icd, path, kind, place, size, step
+):
     assume(not hides_itself(kind, size))
     data, entries = log_of(icd, kind, steady(step))
     at = len(data) - ENTRY * COUNT + place
     rows, found = read(icd, path, data[:at] + data[at + size :])
     gone = {place // ENTRY + n for n in range(size // ENTRY + 2)}
     invented = set(rows) - set(entries)
-    # Where whole entries are missing the halves of two remain in place. The row beside a reported range may have a wrong time.
+    # Where whole entries are missing the halves of two remain in place. The row beside
+    # a reported range may have a wrong time.
     assert len(invented) <= bool(found.damages or found.truncated or size % ENTRY == 0)
     assert len(rows) >= COUNT - len(gone) - 3
     is_cut_off = place % ENTRY == 0 and place + size >= ENTRY * COUNT
-    if not is_cut_off and (entries[-1] not in rows or set(entries[: place // ENTRY]) - set(rows)):
+    if not is_cut_off and (
+        entries[-1] not in rows or set(entries[: place // ENTRY]) - set(rows)
+    ):
         assert found.damages or found.truncated
 
 
 @settings(max_examples=150, deadline=None, derandomize=True)
-@given(kind=st.sampled_from(NAMES), place=PLACES, size=SIZES, step=STEPS, filler=st.sampled_from(["noise", "00", "ff"]))
-def test_inserted_bytes_lose_their_neighbourhood_and_invent_no_row(icd, path, kind, place, size, step, filler):
+@given(
+    kind=st.sampled_from(NAMES),
+    place=PLACES,
+    size=SIZES,
+    step=STEPS,
+    filler=st.sampled_from(["noise", "00", "ff"]),
+)
+def test_inserted_bytes_lose_their_neighbourhood_and_invent_no_row(
+    icd, path, kind, place, size, step, filler
+):
     assume(not hides_itself(kind, size))
     data, entries = log_of(icd, kind, steady(step))
     at = len(data) - ENTRY * COUNT + place
-    added = Random(size).randbytes(size) if filler == "noise" else bytes.fromhex(filler) * size
+    added = (
+        Random(size).randbytes(size)
+        if filler == "noise"
+        else bytes.fromhex(filler) * size
+    )
     rows, found = read(icd, path, data[:at] + added + data[at:])
     invented = set(rows) - set(entries)
     if place >= ENTRY * (COUNT - 1):
@@ -140,8 +171,16 @@ def test_inserted_bytes_lose_their_neighbourhood_and_invent_no_row(icd, path, ki
 
 
 @settings(max_examples=150, deadline=None, derandomize=True)
-@given(kind=st.sampled_from(NAMES), place=PLACES, size=SIZES, step=STEPS, seed=st.integers(0, 9))
-def test_overwritten_bytes_lose_their_neighbourhood(icd, path, kind, place, size, step, seed):
+@given(
+    kind=st.sampled_from(NAMES),
+    place=PLACES,
+    size=SIZES,
+    step=STEPS,
+    seed=st.integers(0, 9),
+)
+def test_overwritten_bytes_lose_their_neighbourhood(
+    icd, path, kind, place, size, step, seed
+):
     data, entries = log_of(icd, kind, steady(step))
     start = len(data) - ENTRY * COUNT
     damaged = bytearray(data)
@@ -153,7 +192,9 @@ def test_overwritten_bytes_lose_their_neighbourhood(icd, path, kind, place, size
     kept = {entries[n][:6]: n for n in touched}
     wrong = [row for row in set(rows) - set(entries) if row[:6] not in kept]
     near = [row for row in wrong if any(_near(row, n, step) for n in touched)]
-    assert len(wrong) - len(near) <= bool(found.damages or found.jumps or touched[0] == 0 or touched[-1] == COUNT - 1)
+    assert len(wrong) - len(near) <= bool(
+        found.damages or found.jumps or touched[0] == 0 or touched[-1] == COUNT - 1
+    )
     assert len(rows) >= COUNT - len(touched) - 3
 
 
@@ -165,7 +206,9 @@ def _near(row: bytes, number: int, step: int) -> bool:
 
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(
-    kind=st.sampled_from(NAMES), places=st.lists(st.integers(2, 10), min_size=1, max_size=5), size=st.integers(1, 45)
+    kind=st.sampled_from(NAMES),
+    places=st.lists(st.integers(2, 10), min_size=1, max_size=5),
+    size=st.integers(1, 45),
 )
 def test_several_damages_are_each_reported(icd, path, kind, places, size):
     data, entries = log_of(icd, kind, steady())
@@ -176,11 +219,16 @@ def test_several_damages_are_each_reported(icd, path, kind, places, size):
         del damaged[at : at + size]
     rows, found = read(icd, path, bytes(damaged))
     assert len(set(rows) - set(entries)) <= len(found.damages)
-    assert len(found.damages) + bool(found.truncated) >= len(places) and len(rows) >= COUNT - 3 * len(places)
+    assert len(found.damages) + bool(found.truncated) >= len(places) and len(
+        rows
+    ) >= COUNT - 3 * len(places)
 
 
 JUMPS = st.lists(
-    st.tuples(st.integers(1, COUNT - 1), st.sampled_from([-FIRST * 1000, -3_600_000, 3_600_000, 10**11, -(10**11)])),
+    st.tuples(
+        st.integers(1, COUNT - 1),
+        st.sampled_from([-FIRST * 1000, -3_600_000, 3_600_000, 10**11, -(10**11)]),
+    ),
     max_size=4,
 )
 
@@ -198,7 +246,9 @@ def test_a_clock_that_is_set_loses_no_row(icd, path, kind, jumps, step):
     data, entries = log_of(icd, kind, times)
     rows, found = read(icd, path, data)
     assert rows == entries and not found.damages
-    assert bool(found.jumps) == any(not 0 <= b - a <= max(60_000, 5 * step) for a, b in itertools.pairwise(times))
+    assert bool(found.jumps) == any(
+        not 0 <= b - a <= max(60_000, 5 * step) for a, b in itertools.pairwise(times)
+    )
 
 
 def test_a_log_of_single_entries_between_pauses_is_whole(icd, path):
@@ -213,7 +263,9 @@ def test_a_log_of_single_entries_between_pauses_is_whole(icd, path):
 @pytest.mark.parametrize("count", [0, 1, 2, 3])
 @pytest.mark.parametrize("step", [0, 1000, 10**9, -(10**4)])
 def test_a_short_log_is_whole(icd, path, count, step):
-    data, entries = log_of(icd, "zeros", [FIRST * 1000 + n * step for n in range(count)])
+    data, entries = log_of(
+        icd, "zeros", [FIRST * 1000 + n * step for n in range(count)]
+    )
     rows, found = read(icd, path, data)
     assert rows == entries and not found.damages
 
@@ -250,28 +302,46 @@ def test_every_format_leaves_out_the_same_damage_and_ends_with_status_1(icd, tmp
     source.write_text(ICD_TEXT)
     place = f"damaged: bytes {start + 20 * ENTRY:,} to {start + 21 * ENTRY - 8:,} (39 bytes); about 1 row is left out"
     listed = icdgen(log, "--icd", source)
-    assert listed.returncode == 1 and place in listed.stdout and "59 entries" in listed.stdout
+    assert (
+        listed.returncode == 1
+        and place in listed.stdout
+        and "59 entries" in listed.stdout
+    )
     kept = [n + 1 for n in range(COUNT) if n != 20]
     for form in ("csv", "jsonl"):
         result = icdgen(log, "--icd", source, "--format", form)
         assert result.returncode == 1 and place in result.stderr
         if form == "csv":
-            numbers = [int(row["f__number"]) for row in csv.DictReader(io.StringIO(result.stdout))]
+            numbers = [
+                int(row["f__number"])
+                for row in csv.DictReader(io.StringIO(result.stdout))
+            ]
         else:
-            numbers = [json.loads(line)["f__number"] for line in result.stdout.splitlines()]
+            numbers = [
+                json.loads(line)["f__number"] for line in result.stdout.splitlines()
+            ]
         assert numbers == kept
     result = icdgen(log, "--icd", source, "--out", tmp_path / "out.parquet")
     assert result.returncode == 1 and place in result.stderr
     assert pq.read_table(tmp_path / "out.parquet")["f__number"].to_pylist() == kept
-    assert icdgen(log, "--icd", source, "--format", "csv", "--head", "5").returncode == 0  # the damage lies behind
+    assert (
+        icdgen(log, "--icd", source, "--format", "csv", "--head", "5").returncode == 0
+    )  # the damage lies behind
 
 
-def test_damage_between_pieces_that_are_decoded_at_once(icd, path, tmp_path, monkeypatch):
+def test_damage_between_pieces_that_are_decoded_at_once(
+    icd, path, tmp_path, monkeypatch
+):
     import pyarrow.parquet as pq
 
     data, _entries = log_of(icd, "noise", steady())
     path.write_bytes(data[:1000] + data[1007:])
     for piece in (1, ENTRY, 500):
         monkeypatch.setattr(parquet, "PIECE", piece)
-        parquet.to_parquet(open_source(icd, icd.nodes[0], path), tmp_path / "out", None, lambda size: None)
+        parquet.to_parquet(
+            open_source(icd, icd.nodes[0], path),
+            tmp_path / "out",
+            None,
+            lambda size: None,
+        )
         assert pq.read_table(tmp_path / "out").num_rows == COUNT - 1

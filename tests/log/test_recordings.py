@@ -1,4 +1,6 @@
-"""`icdgen log` of what a receiver wrote to a file, of a link whose messages travel in envelopes."""
+"""`icdgen log` of what a receiver wrote to a file, of a link whose messages travel in
+envelopes.
+"""
 
 from __future__ import annotations
 
@@ -49,11 +51,20 @@ EPOCH, OTHER = bytes.fromhex("01614AB37B0F"), bytes.fromhex("0107000102")
 
 @pytest.fixture
 def capture(tmp_path) -> Path:
-    """Three messages; one that the ICD does not have, one damaged, noise, and the beginning of another."""
+    """Three messages.
+
+    One that the ICD does not have, one damaged, noise, and the beginning of another.
+    """
     damaged = bytearray(ubx(EPOCH))
     damaged[-1] ^= 1
     path = tmp_path / "capture.ubx"
-    path.write_bytes(ubx(CLOCK_DATA, EPOCH, OTHER) + damaged + b"noise" + ubx(CLOCK_DATA) + ubx(EPOCH)[:9])
+    path.write_bytes(
+        ubx(CLOCK_DATA, EPOCH, OTHER)
+        + damaged
+        + b"noise"
+        + ubx(CLOCK_DATA)
+        + ubx(EPOCH)[:9]
+    )
     return path
 
 
@@ -61,14 +72,24 @@ def test_a_recording_is_listed(capture):
     result = icdgen("receiver", capture, "--icd", UBX)
     assert result.returncode == 0, result.stderr
     lines = result.stdout.splitlines()
-    assert lines[0] == f"{capture}: telemetry of receiver, {capture.stat().st_size} bytes, 3 messages"
+    assert (
+        lines[0]
+        == f"{capture}: telemetry of receiver, {capture.stat().st_size} bytes, 3 messages"
+    )
     assert [line.split() for line in lines if re.match(r" *\d", line)] == [
         ["290", "Navigation", "Clock", "2", "40", "5"],
         ["353", "End", "of", "Epoch", "1", "4", "1"],
     ]
-    for note in ("wrong checksum (1)", "ids that the ICD does not have: 263 (1)", "belong to no whole message: 9"):
+    for note in (
+        "wrong checksum (1)",
+        "ids that the ICD does not have: 263 (1)",
+        "belong to no whole message: 9",
+    ):
         assert note in result.stdout
-    assert f"bytes that belong to no message: {len(ubx(OTHER)) + len(ubx(EPOCH)) + 5}" in result.stdout
+    assert (
+        f"bytes that belong to no message: {len(ubx(OTHER)) + len(ubx(EPOCH)) + 5}"
+        in result.stdout
+    )
 
 
 def test_a_row_is_a_message_and_what_is_wrong_is_said(capture, tmp_path):
@@ -76,10 +97,26 @@ def test_a_row_is_a_message_and_what_is_wrong_is_said(capture, tmp_path):
     assert result.returncode == 0, result.stderr
     assert "wrong checksum (1)" in result.stderr and "no message" in result.stderr
     rows = list(csv.DictReader(io.StringIO(result.stdout)))
-    assert [row["message"] for row in rows] == ["Navigation Clock", "End of Epoch", "Navigation Clock"]
-    assert [row["navigation_clock__time_of_week_ms"] for row in rows] == ["259765066", "", "259765066"]
-    assert [row["end_of_epoch__time_of_week_ms"] for row in rows] == ["", "259765066", ""]
-    assert [row["navigation_clock__clock_drift"] for row in rows] == ["1000", "", "1000"]
+    assert [row["message"] for row in rows] == [
+        "Navigation Clock",
+        "End of Epoch",
+        "Navigation Clock",
+    ]
+    assert [row["navigation_clock__time_of_week_ms"] for row in rows] == [
+        "259765066",
+        "",
+        "259765066",
+    ]
+    assert [row["end_of_epoch__time_of_week_ms"] for row in rows] == [
+        "",
+        "259765066",
+        "",
+    ]
+    assert [row["navigation_clock__clock_drift"] for row in rows] == [
+        "1000",
+        "",
+        "1000",
+    ]
 
 
 def test_only_some_messages(capture):
@@ -89,14 +126,22 @@ def test_only_some_messages(capture):
     ]
     first = icdgen(capture, "--icd", UBX, "--format", "jsonl", "--head", "1")
     assert len(first.stdout.splitlines()) == 1
-    assert "End of Epoch" not in icdgen(capture, "290", "--icd", UBX, "--format", "csv").stdout
+    assert (
+        "End of Epoch"
+        not in icdgen(capture, "290", "--icd", UBX, "--format", "csv").stdout
+    )
 
 
 def test_what_was_sent_to_the_device(tmp_path):
     path = tmp_path / "sent"
     path.write_bytes(ubx(bytes.fromhex("0601012201"), bytes.fromhex("0122")))
-    said = icdgen(path, "--icd", UBX, "--direction", "telecommand", "--format", "jsonl").stdout
-    assert [json.loads(line)["message"] for line in said.splitlines()] == ["Set Message Rate", "Poll Clock"]
+    said = icdgen(
+        path, "--icd", UBX, "--direction", "telecommand", "--format", "jsonl"
+    ).stdout
+    assert [json.loads(line)["message"] for line in said.splitlines()] == [
+        "Set Message Rate",
+        "Poll Clock",
+    ]
 
 
 def test_what_cannot_be_is_said(capture, tmp_path):
@@ -106,17 +151,33 @@ def test_what_cannot_be_is_said(capture, tmp_path):
     content = (LINKS / "slip.yaml").read_text().replace("slip", "none")
     packets.write_text(content)
     for words, said in (
-        ((other, "--icd", UBX), "holds no telemetry of receiver: bytes that belong to no message: 3,999"),
-        ((other, "--icd", UBX, "--out", tmp_path / "x.csv"), "holds no telemetry of receiver"),
+        (
+            (other, "--icd", UBX),
+            "holds no telemetry of receiver: bytes that belong to no message: 3,999",
+        ),
+        (
+            (other, "--icd", UBX, "--out", tmp_path / "x.csv"),
+            "holds no telemetry of receiver",
+        ),
         ((capture, "--icd", packets), "ends with the packet that carries it"),
-        ((capture, "Set Message Rate", "--icd", UBX), "Set Message Rate is no telemetry of receiver"),
+        (
+            (capture, "Set Message Rate", "--icd", UBX),
+            "Set Message Rate is no telemetry of receiver",
+        ),
         ((capture, "End of Epok", "--icd", UBX), "has no message `End of Epok`"),
         ((tmp_path / "missing", "--icd", UBX), "cannot read"),
         ((tmp_path, "--icd", UBX), "is a folder"),
-        ((capture, "--icd", UBX, "--format", "parquet"), "does not go to standard output"),
+        (
+            (capture, "--icd", UBX, "--format", "parquet"),
+            "does not go to standard output",
+        ),
     ):
         result = icdgen(*words)
-        assert result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr
+        assert (
+            result.returncode == 2
+            and said in result.stderr
+            and "Traceback" not in result.stderr
+        ), result.stderr
     assert not (tmp_path / "x.csv").exists()
 
 
@@ -217,10 +278,15 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     icd, random = loaded.icd, Random(1)
     node = icd.nodes[0]
     frames = [
-        (one.message, row.frame) for one in make(icd, node).messages for row in one.rows if _is_sent(icd, one, row)
+        (one.message, row.frame)
+        for one in make(icd, node).messages
+        for row in one.rows
+        if _is_sent(icd, one, row)
     ]
     random.shuffle(frames)
-    sent = b"".join(recorded(icd, node, {one.name: [data]})["telemetry"] for one, data in frames)
+    sent = b"".join(
+        recorded(icd, node, {one.name: [data]})["telemetry"] for one, data in frames
+    )
     (tmp_path / "sent").write_bytes(sent)
     wanted = []
     for message, data in frames:
@@ -231,18 +297,29 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     said = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
     rows = [json.loads(line) for line in said.stdout.splitlines()]
     assert {row.pop("source") for row in rows} == {7}
-    assert [(row.pop("message"), [_short(one) for one in row.values()]) for row in rows] == [
-        (name, [_short(one) for one in values]) for name, values in wanted
-    ]
+    assert [
+        (row.pop("message"), [_short(one) for one in row.values()]) for row in rows
+    ] == [(name, [_short(one) for one in values]) for name, values in wanted]
     icdgen(tmp_path / "sent", *icd_option, "--out", tmp_path / "sent.parquet")
-    table = pq.read_table(tmp_path / "sent.parquet").drop_columns(["source"]).to_pylist()
-    got = [(row.pop("message"), [_same(_read(one)) for one in row.values() if one is not None]) for row in table]
+    table = (
+        pq.read_table(tmp_path / "sent.parquet").drop_columns(["source"]).to_pylist()
+    )
+    got = [
+        (
+            row.pop("message"),
+            [_same(_read(one)) for one in row.values() if one is not None],
+        )
+        for row in table
+    ]
     assert got == wanted
 
 
 def _is_sent(icd, one, row) -> bool:
     """Whether it is the frame of that message, and one that is not refused."""
-    known = [variant.message for variant in ids_of(icd, icd.nodes[0]).telemetry[one.message.telemetry_id]]
+    known = [
+        variant.message
+        for variant in ids_of(icd, icd.nodes[0]).telemetry[one.message.telemetry_id]
+    ]
     try:
         codec.decode(icd.nodes[0], one.message, row.frame)
         return codec.message_of_frame(icd, known, row.frame) is one.message
@@ -251,24 +328,41 @@ def _is_sent(icd, one, row) -> bool:
 
 
 def _short(value: object) -> object:
-    """As text has it: floats in their shortest form, null for what is no number or infinite."""
+    """As text has it: floats in their shortest form, null for what is no number or
+    infinite.
+    """
     if value == "nan" or (isinstance(value, float) and math.isinf(value)):
         return None
-    return struct.unpack("<f", struct.pack("<f", value))[0] if isinstance(value, float) else value
+    return (
+        struct.unpack("<f", struct.pack("<f", value))[0]
+        if isinstance(value, float)
+        else value
+    )
 
 
 def _read(value: object) -> object:
     return value.hex() if isinstance(value, bytes) else value
 
 
-@pytest.mark.parametrize("name", ["slip", "cobs", "hdlc", "mavlink2", "sbp", "ccsds", "kiss"])
+@pytest.mark.parametrize(
+    "name", ["slip", "cobs", "hdlc", "mavlink2", "sbp", "ccsds", "kiss"]
+)
 def test_every_delimiter(name, tmp_path):
     file = LINKS / f"{name}.yaml"
     icd = load([file]).icd
     node = icd.nodes[0]
-    frames = {one.message.name: [row.frame for row in one.rows[:5]] for one in make(icd, node).messages}
+    frames = {
+        one.message.name: [row.frame for row in one.rows[:5]]
+        for one in make(icd, node).messages
+    }
     sent = recorded(icd, node, frames)["telemetry"]
     (tmp_path / "sent").write_bytes(sent)
-    wanted = {one.name: len(frames[one.name]) for one in node.messages if one.telemetry_id is not None}
+    wanted = {
+        one.name: len(frames[one.name])
+        for one in node.messages
+        if one.telemetry_id is not None
+    }
     tally = Recording(icd, node, tmp_path / "sent").survey(None, lambda size: None)
-    assert {name: times for (_, name), times in tally.messages.items()} == wanted and not tally.faults
+    assert {
+        name: times for (_, name), times in tally.messages.items()
+    } == wanted and not tally.faults

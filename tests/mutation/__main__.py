@@ -1,8 +1,10 @@
-"""``python -m tests.mutation``: changes one number of the ICDs at a time and runs the unchanged vectors on the changed code.
+"""``python -m tests.mutation``: changes one number of the ICDs at a time and runs the
+unchanged vectors on the changed code.
 
-Prints, for each language and kind of change: the mutants; those that the rules refuse (and, where code can be made from them
-all the same, how many of these the vectors kill); those that the vectors kill; those that provably mean the same as the
-unchanged ICD; and the survivors. Ends with status 0 if there are none.
+Prints, for each language and kind of change: the mutants; those that the rules refuse
+(and, where code can be made from them all the same, how many of these the vectors
+kill); those that the vectors kill; those that provably mean the same as the unchanged
+ICD; and the survivors. Ends with status 0 if there are none.
 """
 
 from __future__ import annotations
@@ -24,29 +26,51 @@ def table(scores: dict[str, Score], refused: dict[str, int]) -> str:
     """One block a language, one line a kind of change."""
     lines = [f"{'language':10}{'change':12}" + "".join(f"{word:>12}" for word in HEAD)]
     for name, score in scores.items():
-        kinds = list(dict.fromkeys([*refused, *score.killed, *score.same, *score.survived]))
+        kinds = list(
+            dict.fromkeys([*refused, *score.killed, *score.same, *score.survived])
+        )
         rows = []
         for kind in kinds:
             ends = (score.killed[kind], score.same[kind], len(score.survived[kind]))
             rows.append(
-                (refused.get(kind, 0) + sum(ends), refused.get(kind, 0), score.also[kind], score.not_also[kind], *ends)
+                (
+                    refused.get(kind, 0) + sum(ends),
+                    refused.get(kind, 0),
+                    score.also[kind],
+                    score.not_also[kind],
+                    *ends,
+                )
             )
         rows.append(tuple(map(sum, zip(*rows, strict=True))))
         for kind, row in zip([*kinds, "all"], rows, strict=True):
-            lines.append(f"{name:10}{kind:12}" + "".join(f"{number:12,}" for number in row))
+            lines.append(
+                f"{name:10}{kind:12}" + "".join(f"{number:12,}" for number in row)
+            )
     return "\n".join(lines)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
-    parser.add_argument("--lang", default="c,python,rust", help=f"of {', '.join(LANGUAGES)} (default: %(default)s)")
-    parser.add_argument("--sample", type=int, help="so many mutants, chosen by --seed (default: all)")
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.mutation", description=__doc__
+    )
+    parser.add_argument(
+        "--lang",
+        default="c,python,rust",
+        help=f"of {', '.join(LANGUAGES)} (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--sample", type=int, help="so many mutants, chosen by --seed (default: all)"
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kind", help="only this kind of change")
     parser.add_argument(
-        "--table", type=Path, help="a file that holds the table so far, for it takes the better part of an hour"
+        "--table",
+        type=Path,
+        help="a file that holds the table so far, for it takes the better part of an hour",
     )
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     names = options.lang.split(",")
     for name in names:
@@ -55,20 +79,34 @@ def main(arguments: list[str] | None = None) -> int:
         if LANGUAGES[name].missing():
             parser.error(f"{name} needs {', '.join(LANGUAGES[name].missing())}")
     icd = icd_of(options.icds)
-    files = read_vectors(COMMITTED) if COMMITTED.is_dir() and not options.icds else vectors_of(icd)
+    files = (
+        read_vectors(COMMITTED)
+        if COMMITTED.is_dir() and not options.icds
+        else vectors_of(icd)
+    )
     chosen = [mutant for mutant in mutants(icd) if options.kind in (None, mutant.kind)]
     if options.sample is not None:
-        chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
+        chosen = random.Random(options.seed).sample(
+            chosen, min(options.sample, len(chosen))
+        )
     start = time.perf_counter()
     scores: dict[str, Score] = {}
     refused: dict[str, int] = {}
-    for done, scores, refused in measure(icd, files, chosen, [LANGUAGES[name] for name in names]):
+    for done, scores, refused in measure(
+        icd, files, chosen, [LANGUAGES[name] for name in names]
+    ):
         print(f"{done:,} of {len(chosen):,} mutants", file=sys.stderr, flush=True)
         if options.table:
             options.table.write_text(report(scores, refused))
     print(report(scores, refused), end="")
     print(f"{len(chosen):,} mutants in {time.perf_counter() - start:.0f} s")
-    return 1 if any(score.crashed or any(score.survived.values()) for score in scores.values()) else 0
+    return (
+        1
+        if any(
+            score.crashed or any(score.survived.values()) for score in scores.values()
+        )
+        else 0
+    )
 
 
 def report(scores: dict[str, Score], refused: dict[str, int]) -> str:

@@ -14,14 +14,18 @@ from tests.mutation.mutants import Mutant
 MOST_MUTANTS = 400
 MOST_FIELDS = 6000
 
-# The generators can make code in spite of these, so the vectors are tried on it although no user would get it: an overlap,
-# and bytes at the end that no field describes.
+# The generators can make code in spite of these, so the vectors are tried on it
+# although no user would get it: an overlap, and bytes at the end that no field
+# describes.
 TRIED = frozenset({"ICD021", "ICD024"})
 
 
 @dataclass
 class Batch:
-    """Mutants by the name of their node; those that the rules refuse, with the findings; those that code can be made from."""
+    """Mutants by the name of their node.
+
+    Those that the rules refuse, with the findings; those that code can be made from.
+    """
 
     mutants: dict[str, Mutant]
     refused: dict[str, list[str]] = field(default_factory=dict)  # name -> codes
@@ -36,7 +40,9 @@ def split(mutants: Iterable[Mutant]) -> Iterator[list[Mutant]]:
     batch: list[Mutant] = []
     fields = 0
     for mutant in mutants:
-        size = 1 + sum(_size(message, mutant.tree) for message in mutant.tree.get("messages") or ())
+        size = 1 + sum(
+            _size(message, mutant.tree) for message in mutant.tree.get("messages") or ()
+        )
         if batch and (fields + size > MOST_FIELDS or len(batch) >= MOST_MUTANTS):
             yield batch
             batch, fields = [], 0
@@ -47,33 +53,52 @@ def split(mutants: Iterable[Mutant]) -> Iterator[list[Mutant]]:
 
 
 def _size(owner: dict, tree: dict) -> int:
-    """Fields of a message or a struct, each element of an array and each field of a struct one."""
+    """Fields of a message or a struct, each element of an array and each field of a
+    struct one.
+    """
     structs = {one["name"]: one for one in tree.get("structs") or ()}
     size = 0
     for row in owner.get("fields") or ():
         count = row.get("count", 1)
         struct = structs.get(row.get("struct"))
         times = count if isinstance(count, int) else row.get("up_to", 1)
-        size += times * (_size(struct, tree) if struct is not None and struct is not owner else 1)
+        size += times * (
+            _size(struct, tree) if struct is not None and struct is not owner else 1
+        )
     return size
 
 
-def prepare(mutants: list[Mutant], folder: Path, accepted: dict[tuple, set[str]] | None = None) -> Batch:
-    """Writes the ICDs to an empty folder and loads them. ``accepted``: codes that the unchanged message has too."""
+def prepare(
+    mutants: list[Mutant], folder: Path, accepted: dict[tuple, set[str]] | None = None
+) -> Batch:
+    """Writes the ICDs to an empty folder and loads them.
+
+    ``accepted``: codes that the unchanged message has too.
+    """
     batch = Batch({f"m{number:05}": mutant for number, mutant in enumerate(mutants)})
     for name, mutant in batch.mutants.items():
         tree = {**mutant.tree, "node": {"name": name, **mutant.tree["node"]}}
-        (folder / f"{name}.yaml").write_text(json.dumps(tree, ensure_ascii=False, indent=1), encoding="utf-8")
+        (folder / f"{name}.yaml").write_text(
+            json.dumps(tree, ensure_ascii=False, indent=1), encoding="utf-8"
+        )
     loaded = load([folder])
     for finding in loaded.findings:
         name = Path(finding.place.file).stem
-        if finding.severity == "error" and finding.code not in (accepted or {}).get(key(batch.mutants[name]), ()):
+        if finding.severity == "error" and finding.code not in (accepted or {}).get(
+            key(batch.mutants[name]), ()
+        ):
             batch.refused.setdefault(name, []).append(finding.code)
     built = {node.name for node in loaded.icd.nodes}
     for name in batch.mutants:
         if name not in built:
             batch.refused.setdefault(name, ["unreadable"])
-    batch.icd = Icd(tuple(node for node in loaded.icd.nodes if TRIED.issuperset(batch.refused.get(node.name, ()))))
+    batch.icd = Icd(
+        tuple(
+            node
+            for node in loaded.icd.nodes
+            if TRIED.issuperset(batch.refused.get(node.name, ()))
+        )
+    )
     return batch
 
 
@@ -83,6 +108,10 @@ def key(mutant: Mutant) -> tuple:
 
 
 def baseline(unchanged: list[Mutant], folder: Path) -> dict[tuple, set[str]]:
-    """Codes of the errors that the small ICDs have without any change: cut out of its node, a message loses its errata."""
+    """Codes of the errors that the small ICDs have without any change: cut out of its
+    node, a message loses its errata.
+    """
     batch = prepare(unchanged, folder)
-    return {key(batch.mutants[name]): set(codes) for name, codes in batch.refused.items()}
+    return {
+        key(batch.mutants[name]): set(codes) for name, codes in batch.refused.items()
+    }

@@ -8,7 +8,9 @@ from icdgen.icd.places import NodePlace
 
 
 def same(node: Node, message: Message, other_node: Node, other: Message) -> bool:
-    """Whether the reference codec reads and writes every bit alike, and everything else that code is made from is equal."""
+    """Whether the reference codec reads and writes every bit alike, and everything else
+    that code is made from is equal.
+    """
     return _facts(node, message) == _facts(other_node, other)
 
 
@@ -20,8 +22,19 @@ def _facts(node: Node, message: Message) -> tuple:
         )
         for f in message.fields
     ]  # fmt: skip
-    parts = [(part.name, part.counter, part.step, part.most, part.plus) for part in message.layout.counted_parts]
-    return message.name, message.kind, message.ids, message.length, parts, message.may_end_early, fields
+    parts = [
+        (part.name, part.counter, part.step, part.most, part.plus)
+        for part in message.layout.counted_parts
+    ]
+    return (
+        message.name,
+        message.kind,
+        message.ids,
+        message.length,
+        parts,
+        message.may_end_early,
+        fields,
+    )
 
 
 def _place(node: Node, field: NodePlace) -> object:

@@ -11,7 +11,13 @@ from pathlib import Path
 
 from icdgen.icd.model import Icd
 from tests.conformance.build import build
-from tests.conformance.cases import Case, MessageCases, enum_cases, member_names, node_itself
+from tests.conformance.cases import (
+    Case,
+    MessageCases,
+    enum_cases,
+    member_names,
+    node_itself,
+)
 from tests.conformance.compare import difference
 from tests.conformance.driver import Testee
 from tests.conformance.languages import Language
@@ -25,13 +31,28 @@ from tests.mutation.mutants import Mutant, unchanged
 
 # Not optimised: a mutant is built once and run for a moment.
 LANGUAGES = {
-    "c": Language("c", c_language.BACKENDS, ("gcc",), partial(c_language.build, compiler="gcc", flags=("-O0",))),
+    "c": Language(
+        "c",
+        c_language.BACKENDS,
+        ("gcc",),
+        partial(c_language.build, compiler="gcc", flags=("-O0",)),
+    ),
     "python": next(one for one in python_language.LANGUAGES if one.name == "python"),
-    "rust": Language("rust", rust_language.BACKENDS, ("cargo", "rustc"), partial(rust_language.build, profile="dev")),
+    "rust": Language(
+        "rust",
+        rust_language.BACKENDS,
+        ("cargo", "rustc"),
+        partial(rust_language.build, profile="dev"),
+    ),
 }
 
 ANY = "@"  # stands for the mutant's node in requests that are made once
-STEPS = (6, 40, 400, 10**9)  # so many cases are tried on a mutant before its answers are looked at
+STEPS = (
+    6,
+    40,
+    400,
+    10**9,
+)  # so many cases are tried on a mutant before its answers are looked at
 
 
 @dataclass
@@ -39,9 +60,15 @@ class Score:
     """What became of the mutants in one language, by kind of change."""
 
     killed: Counter = field(default_factory=Counter)
-    also: Counter = field(default_factory=Counter)  # refused by the rules, and killed too
-    not_also: Counter = field(default_factory=Counter)  # refused by the rules, and the vectors would not have noticed
-    same: Counter = field(default_factory=Counter)  # survived, and provably mean the same
+    also: Counter = field(
+        default_factory=Counter
+    )  # refused by the rules, and killed too
+    not_also: Counter = field(
+        default_factory=Counter
+    )  # refused by the rules, and the vectors would not have noticed
+    same: Counter = field(
+        default_factory=Counter
+    )  # survived, and provably mean the same
     survived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
     crashed: list[str] = field(default_factory=list)
 
@@ -63,7 +90,11 @@ class Vectors:
 
     def __init__(self, files: dict[str, dict]) -> None:
         self.files, self.enums = files, member_names(files)
-        self.messages = {(node, m["name"]): m for node, data in files.items() for m in data["messages"]}
+        self.messages = {
+            (node, m["name"]): m
+            for node, data in files.items()
+            for m in data["messages"]
+        }
         self.made: dict[tuple, list[Prepared]] = {}
 
     def of(self, mutant: Mutant) -> list[Prepared]:
@@ -77,12 +108,18 @@ class Vectors:
     def _cases(self, mutant: Mutant) -> Iterable[Case]:
         data = self.files[mutant.node]
         if mutant.enum is not None:
-            return (case for case in enum_cases({**data, "node": ANY}) if case.request["enum"] == mutant.enum)
+            return (
+                case
+                for case in enum_cases({**data, "node": ANY})
+                if case.request["enum"] == mutant.enum
+            )
         if mutant.message is None:
             return [node_itself({**data, "node": ANY})]
         message = self.messages[mutant.node, mutant.message]
         cases = MessageCases(ANY, message, self.enums, data["never_set"])
-        return sorted(cases.all(), key=lambda case: case.request["op"] != "constants")  # a cheap and telling one first
+        return sorted(
+            cases.all(), key=lambda case: case.request["op"] != "constants"
+        )  # a cheap and telling one first
 
 
 def _prepared(case: Case) -> Prepared:
@@ -94,7 +131,11 @@ def _prepared(case: Case) -> Prepared:
 def measure(
     icd: Icd, files: dict[str, dict], chosen: list[Mutant], languages: list[Language]
 ) -> Iterator[tuple[int, dict[str, Score], dict[str, int]]]:
-    """After each batch: how many mutants are done, the score of each language, how many the rules refuse. Raises `BuildError`."""
+    """After each batch: how many mutants are done, the score of each language, how many
+    the rules refuse.
+
+    Raises `BuildError`.
+    """
     scores = {language.name: Score() for language in languages}
     refused: Counter = Counter()
     vectors = Vectors(files)
@@ -108,12 +149,26 @@ def measure(
             batch = prepare(part, folder / "icd", accepted)
             refused.update(batch.mutants[name].kind for name in batch.refused)
             for language in languages:
-                run(icd, batch, language, vectors, scores[language.name], folder / "build")
+                run(
+                    icd,
+                    batch,
+                    language,
+                    vectors,
+                    scores[language.name],
+                    folder / "build",
+                )
         done += len(part)
         yield done, scores, dict(refused)
 
 
-def run(icd: Icd, batch: Batch, language: Language, vectors: Vectors, score: Score, folder: Path) -> None:
+def run(
+    icd: Icd,
+    batch: Batch,
+    language: Language,
+    vectors: Vectors,
+    score: Score,
+    folder: Path,
+) -> None:
     """Builds the batch and runs every mutant's vectors until one fails."""
     alive = [node.name for node in batch.icd.nodes]
     if not alive:
@@ -121,7 +176,11 @@ def run(icd: Icd, batch: Batch, language: Language, vectors: Vectors, score: Sco
     testee = Testee(build(language, batch.icd, folder))
     first = 0
     for last in STEPS:
-        alive = [name for name in alive if _lives(testee, batch, name, vectors, score, first, last)]
+        alive = [
+            name
+            for name in alive
+            if _lives(testee, batch, name, vectors, score, first, last)
+        ]
         first = last
     testee.close()
     for name in alive:
@@ -134,13 +193,24 @@ def run(icd: Icd, batch: Batch, language: Language, vectors: Vectors, score: Sco
             score.survived[mutant.kind].append(mutant.about)
 
 
-def _lives(testee: Testee, batch: Batch, name: str, vectors: Vectors, score: Score, first: int, last: int) -> bool:
+def _lives(
+    testee: Testee,
+    batch: Batch,
+    name: str,
+    vectors: Vectors,
+    score: Score,
+    first: int,
+    last: int,
+) -> bool:
     mutant = batch.mutants[name]
     cases = vectors.of(mutant)[first:last]
     replies = testee.ask([case.line(name) for case in cases])
     if name not in batch.refused and any(reply is None for reply in replies):
         score.crashed.append(f"{mutant.kind}: {mutant.about}: {testee.complaint()}")
-    if all(difference(case.answer, reply) is None for case, reply in zip(cases, replies, strict=True)):
+    if all(
+        difference(case.answer, reply) is None
+        for case, reply in zip(cases, replies, strict=True)
+    ):
         return True
     (score.also if name in batch.refused else score.killed)[mutant.kind] += 1
     return False

@@ -1,8 +1,10 @@
-"""``python -m tests.mutation.protocol``: changes one number of a protocol section at a time and asks the unchanged vectors.
+"""``python -m tests.mutation.protocol``: changes one number of a protocol section at a
+time and asks the unchanged vectors.
 
-A mutant is a node that includes the real one and has nothing of its own but the changed protocol section, so that several
-are nodes of one build. Ends with status 0 if each is refused by ``icdgen check``, is noticed by a vector in every language,
-or has the very same facts, from which all code is made.
+A mutant is a node that includes the real one and has nothing of its own but the changed
+protocol section, so that several are nodes of one build. Ends with status 0 if each is
+refused by ``icdgen check``, is noticed by a vector in every language, or has the very
+same facts, from which all code is made.
 """
 
 from __future__ import annotations
@@ -59,16 +61,25 @@ class Mutant:
 
 
 def mutants(icd: Icd) -> Iterator[Mutant]:
-    """Every number one more and one less, every truth value the other way round; reasons of assumptions are words."""
+    """Every number one more and one less, every truth value the other way round.
+
+    Reasons of assumptions are words.
+    """
     for node in icd.nodes:
         for path, value in _leaves(node.protocol):
             if isinstance(value, bool):
                 yield Mutant(node.name, path, not value)
             elif isinstance(value, int):
-                yield from (Mutant(node.name, path, value + by) for by in (1, -1) if value + by >= 0)
+                yield from (
+                    Mutant(node.name, path, value + by)
+                    for by in (1, -1)
+                    if value + by >= 0
+                )
 
 
-def _leaves(value: object, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], object]]:
+def _leaves(
+    value: object, path: tuple[str | int, ...] = ()
+) -> Iterator[tuple[tuple[str | int, ...], object]]:
     if isinstance(value, dict):
         for key, item in value.items():
             yield from _leaves(item, (*path, key))
@@ -84,7 +95,10 @@ class Judge:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.trees = {node.name: _plain(node.source) for node in load([SHIPPED], check=False).icd.nodes}
+        self.trees = {
+            node.name: _plain(node.source)
+            for node in load([SHIPPED], check=False).icd.nodes
+        }
         for name in self.trees:
             self._write(name, self.trees[name])
         self.known = self._errors()
@@ -92,14 +106,18 @@ class Judge:
     def refuses(self, mutant: Mutant) -> bool:
         """Whether it has an error that the unchanged ICDs have not."""
         tree = self.trees[mutant.owner]
-        self._write(mutant.owner, {**tree, "protocol": mutant.changed(tree["protocol"])})
+        self._write(
+            mutant.owner, {**tree, "protocol": mutant.changed(tree["protocol"])}
+        )
         try:
             return bool(self._errors() - self.known)
         finally:
             self._write(mutant.owner, tree)
 
     def _write(self, name: str, tree: dict[str, Any]) -> None:
-        (self.folder / f"{name}.yaml").write_text(json.dumps(tree), encoding="utf-8")  # which is YAML
+        (self.folder / f"{name}.yaml").write_text(
+            json.dumps(tree), encoding="utf-8"
+        )  # which is YAML
 
     def _errors(self) -> set[tuple[str, str]]:
         found = load([self.folder]).findings
@@ -112,20 +130,36 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
-def grown(icd: Icd, chosen: list[Mutant]) -> tuple[Icd, list[tuple[Mutant, Node, Node]]]:
-    """The ICDs with a node for each mutant and each real node that has the changed section; with the real one beside it."""
+def grown(
+    icd: Icd, chosen: list[Mutant]
+) -> tuple[Icd, list[tuple[Mutant, Node, Node]]]:
+    """The ICDs with a node for each mutant and each real node that has the changed
+    section; with the real one beside it.
+    """
     added = []
     for number, mutant in enumerate(chosen):
         for node in icd.nodes:
-            if mutant.owner not in (node.name, *(one.name for one in icd.included(node))):
+            if mutant.owner not in (
+                node.name,
+                *(one.name for one in icd.included(node)),
+            ):
                 continue
             own = icd.node(mutant.owner).protocol
             merged: dict[str, Any] = {}
             for one in (*icd.included(node), node):
-                merged |= mutant.changed(own) if one.name == mutant.owner else one.protocol
+                merged |= (
+                    mutant.changed(own) if one.name == mutant.owner else one.protocol
+                )
             name = f"mutant{number}{node.name}"
             merged = _renamed(merged, node.name, name)
-            thin = replace(node, name=name, protocol=merged, includes=(node.name,), messages=(), enums=())
+            thin = replace(
+                node,
+                name=name,
+                protocol=merged,
+                includes=(node.name,),
+                messages=(),
+                enums=(),
+            )
             added.append((mutant, node, thin))
     return Icd((*icd.nodes, *(thin for _, _, thin in added))), added
 
@@ -139,32 +173,52 @@ def _renamed(value: Any, old: str, new: str) -> Any:
     return new if value == old else value
 
 
-def measure(icd: Icd, chosen: list[Mutant], languages: list[str], folder: Path) -> dict[Mutant, dict[str, str]]:
+def measure(
+    icd: Icd, chosen: list[Mutant], languages: list[str], folder: Path
+) -> dict[Mutant, dict[str, str]]:
     """What became of each mutant in each language."""
     judge = Judge(folder)
     sound = [mutant for mutant in chosen if not judge.refuses(mutant)]
-    found: dict[Mutant, dict[str, str]] = {m: dict.fromkeys(languages, "refused") for m in chosen}
+    found: dict[Mutant, dict[str, str]] = {
+        m: dict.fromkeys(languages, "refused") for m in chosen
+    }
     whole, added = grown(icd, sound)
-    cases = {node["node"]: node["cases"] for node in json.loads(VECTORS.read_text(encoding="utf-8"))["nodes"]}
+    cases = {
+        node["node"]: node["cases"]
+        for node in json.loads(VECTORS.read_text(encoding="utf-8"))["nodes"]
+    }
     for language in languages:
         testee: Answering
         testee = (
-            InProcess(Reference(whole).answer) if language == REFERENCE else Testee(build(LANGUAGES[language], whole))
+            InProcess(Reference(whole).answer)
+            if language == REFERENCE
+            else Testee(build(LANGUAGES[language], whole))
         )
         for mutant in sound:
             found[mutant][language] = "survived"
         for mutant, node, thin in added:
-            if found[mutant][language] != "killed" and _kills(testee, cases.get(node.name, []), thin.name):
+            if found[mutant][language] != "killed" and _kills(
+                testee, cases.get(node.name, []), thin.name
+            ):
                 found[mutant][language] = "killed"
         testee.close()
     for mutant in sound:
-        if all(_facts(whole, thin) == _facts(whole, node) for one, node, thin in added if one is mutant):
-            found[mutant] = {name: "same" if end == "survived" else end for name, end in found[mutant].items()}
+        if all(
+            _facts(whole, thin) == _facts(whole, node)
+            for one, node, thin in added
+            if one is mutant
+        ):
+            found[mutant] = {
+                name: "same" if end == "survived" else end
+                for name, end in found[mutant].items()
+            }
     return found
 
 
 def _facts(icd: Icd, node: Node) -> object:
-    """The facts that code is made from, but for the node that they are of, and for remarks."""
+    """The facts that code is made from, but for the node that they are of, and for
+    remarks.
+    """
     return _values(replace(facts.of(icd, node), node=icd.nodes[0], assumptions=()))
 
 
@@ -191,21 +245,35 @@ def _kills(testee: Answering, cases: list[dict[str, Any]], name: str) -> bool:
 
 def table(found: dict[Mutant, dict[str, str]], languages: list[str]) -> str:
     """A line a language, then what is the same and what survived."""
-    lines = [f"{'language':12}{'mutants':>10}" + "".join(f"{word:>10}" for word in OUTCOMES)]
+    lines = [
+        f"{'language':12}{'mutants':>10}" + "".join(f"{word:>10}" for word in OUTCOMES)
+    ]
     for language in languages:
         ends = Counter(one[language] for one in found.values())
-        lines.append(f"{language:12}{len(found):10,}" + "".join(f"{ends[word]:10,}" for word in OUTCOMES))
+        lines.append(
+            f"{language:12}{len(found):10,}"
+            + "".join(f"{ends[word]:10,}" for word in OUTCOMES)
+        )
     for word in OUTCOMES[2:]:
         for mutant, ends in found.items():
             where = [name for name in languages if ends[name] == word]
             if where:
-                lines.append(f"{word}: {mutant}" + ("" if len(where) == len(languages) else f" ({', '.join(where)})"))
+                lines.append(
+                    f"{word}: {mutant}"
+                    + ("" if len(where) == len(languages) else f" ({', '.join(where)})")
+                )
     return "\n".join(lines)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.mutation.protocol", description=__doc__)
-    parser.add_argument("--lang", default="reference,c,python,rust", help="comma-separated (default: %(default)s)")
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.mutation.protocol", description=__doc__
+    )
+    parser.add_argument(
+        "--lang",
+        default="reference,c,python,rust",
+        help="comma-separated (default: %(default)s)",
+    )
     parser.add_argument("--sample", type=int, help="so many mutants, chosen at random")
     options = parser.parse_args(arguments)
     icd, languages = icd_of(), options.lang.split(",")
@@ -215,7 +283,9 @@ def main(arguments: list[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as folder:
         found: dict[Mutant, dict[str, str]] = {}
         for start in range(0, len(chosen), TOGETHER):
-            found |= measure(icd, chosen[start : start + TOGETHER], languages, Path(folder))
+            found |= measure(
+                icd, chosen[start : start + TOGETHER], languages, Path(folder)
+            )
     print(table(found, languages))
     return int(any("survived" in ends.values() for ends in found.values()))
 

@@ -1,4 +1,6 @@
-"""The vectors notice changes of the ICD, and the measurement notices vectors that do not."""
+"""The vectors notice changes of the ICD, and the measurement notices vectors that do
+not.
+"""
 
 from __future__ import annotations
 
@@ -25,8 +27,14 @@ def files(icd):
 
 def test_every_number_of_a_message_is_changed(demo):
     kinds = Counter(mutant.kind for mutant in mutants(icd_of([demo])))
-    assert kinds["offset"] == 4 * 3 and kinds["width"] == 2 * 3 and kinds["id"] == kinds["length"] == 2 * 2
-    assert kinds["enum value"] == 2 * 2 and kinds["byte order"] == kinds["bit order"] == 2
+    assert (
+        kinds["offset"] == 4 * 3
+        and kinds["width"] == 2 * 3
+        and kinds["id"] == kinds["length"] == 2 * 2
+    )
+    assert (
+        kinds["enum value"] == 2 * 2 and kinds["byte order"] == kinds["bit order"] == 2
+    )
     assert kinds["formula"] == 2 * 7  # 0.00, 0.02, 0.10, 0.001, -raw, + 1, none
 
 
@@ -35,7 +43,9 @@ def test_no_sampled_mutant_survives_in_any_language(icd, files):
     *_, (_, scores, refused) = measure(icd, files, chosen, list(LANGUAGES.values()))
     for score in scores.values():
         assert score.survived == {} and score.crashed == []
-        assert sum(score.killed.values()) + sum(score.same.values()) + sum(refused.values()) == len(chosen)
+        assert sum(score.killed.values()) + sum(score.same.values()) + sum(
+            refused.values()
+        ) == len(chosen)
         assert sum(score.killed.values()) > 12
 
 
@@ -48,6 +58,10 @@ def test_vectors_without_worth_let_mutants_survive(icd, files):
             for field in message["fields"]:
                 field.pop("unfit", None)
                 field.pop("set", None)
-    chosen = [m for m in mutants(icd) if m.node == "cubemag" and m.kind in ("swap", "offset", "type")]
+    chosen = [
+        m
+        for m in mutants(icd)
+        if m.node == "cubemag" and m.kind in ("swap", "offset", "type")
+    ]
     *_, (_, scores, _) = measure(icd, poor, chosen, [LANGUAGES["python"]])
     assert sum(map(len, scores["python"].survived.values())) > 5

@@ -1,4 +1,6 @@
-"""The wire vectors notice changes of a protocol section, and the measurement notices when nothing changed."""
+"""The wire vectors notice changes of a protocol section, and the measurement notices
+when nothing changed.
+"""
 
 from __future__ import annotations
 
@@ -18,16 +20,24 @@ def icd():
 def test_no_sampled_mutant_survives(icd, tmp_path):
     chosen = random.Random(4).sample(list(mutants(icd)), 6)
     found = measure(icd, chosen, [REFERENCE, "python"], tmp_path)
-    assert [str(mutant) for mutant, ends in found.items() if "survived" in ends.values()] == []
+    assert [
+        str(mutant) for mutant, ends in found.items() if "survived" in ends.values()
+    ] == []
 
 
 def test_another_escape_byte_is_noticed_by_every_language_asked(icd, tmp_path):
     framing = icd.node("common").protocol["uart"]["framing"]
     other = Mutant("common", ("uart", "framing", "escape"), framing["escape"] ^ 0x10)
-    assert measure(icd, [other], [REFERENCE, "python"], tmp_path)[other] == {REFERENCE: "killed", "python": "killed"}
+    assert measure(icd, [other], [REFERENCE, "python"], tmp_path)[other] == {
+        REFERENCE: "killed",
+        "python": "killed",
+    }
 
 
 def test_a_node_that_only_repeats_the_section_answers_all_vectors(icd, tmp_path):
     framing = icd.node("common").protocol["uart"]["framing"]
     same = Mutant("common", ("uart", "framing", "escape"), framing["escape"])
-    assert measure(icd, [same], [REFERENCE, "python"], tmp_path)[same] == {REFERENCE: "same", "python": "same"}
+    assert measure(icd, [same], [REFERENCE, "python"], tmp_path)[same] == {
+        REFERENCE: "same",
+        "python": "same",
+    }

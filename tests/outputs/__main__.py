@@ -1,8 +1,9 @@
-"""Compare everything icdgen generates with what another revision generates: ``python -m tests.outputs REVISION``.
+"""Compare everything icdgen generates with what another revision generates: ``python -m
+tests.outputs REVISION``.
 
-Both revisions get the same ICDs, those of the working tree: shipped, examples, documents, odd and random ones. Compared
-are all languages, the site, `show`, `check`, the reports for wrong ICDs and those of the diff. Ends with status 0 if
-nothing differs.
+Both revisions get the same ICDs, those of the working tree: shipped, examples,
+documents, odd and random ones. Compared are all languages, the site, `show`, `check`,
+the reports for wrong ICDs and those of the diff. Ends with status 0 if nothing differs.
 """
 
 from __future__ import annotations
@@ -20,14 +21,33 @@ from tests.outputs.inputs import ROOT, commands
 DRIVER = Path(__file__).parent / "driver.py"
 
 
-def run(sources: Path, listed: Path, work: Path, jobs: int) -> dict[str, dict[str, str]]:
-    """Run all commands with the icdgen in a checkout. Return digests by command and output."""
-    paths = os.pathsep.join(str(sources / part) for part in ("codegen", "runtime/python"))
-    environment = os.environ | {"PYTHONPATH": paths, "PYTHONHASHSEED": "0", "COLUMNS": "120", "TERM": "dumb"}
+def run(
+    sources: Path, listed: Path, work: Path, jobs: int
+) -> dict[str, dict[str, str]]:
+    """Run all commands with the icdgen in a checkout.
+
+    Return digests by command and output.
+    """
+    paths = os.pathsep.join(
+        str(sources / part) for part in ("codegen", "runtime/python")
+    )
+    environment = os.environ | {
+        "PYTHONPATH": paths,
+        "PYTHONHASHSEED": "0",
+        "COLUMNS": "120",
+        "TERM": "dumb",
+    }
     results = [work / f"{sources.name}-{part}.json" for part in range(jobs)]
     running = [
         subprocess.Popen(
-            [sys.executable, str(DRIVER), str(listed), str(result), str(part), str(jobs)],
+            [
+                sys.executable,
+                str(DRIVER),
+                str(listed),
+                str(result),
+                str(part),
+                str(jobs),
+            ],
             cwd=ROOT,
             env=environment,
         )
@@ -35,45 +55,80 @@ def run(sources: Path, listed: Path, work: Path, jobs: int) -> dict[str, dict[st
     ]
     if any(process.wait() for process in running):
         raise SystemExit("the driver failed: see above")
-    return {name: digests for result in results for name, digests in json.loads(result.read_text("utf-8")).items()}
+    return {
+        name: digests
+        for result in results
+        for name, digests in json.loads(result.read_text("utf-8")).items()
+    }
 
 
-def differences(before: dict[str, dict[str, str]], after: dict[str, dict[str, str]]) -> list[str]:
-    """Describe the commands whose outputs differ, a line each, with the names of some of these outputs."""
+def differences(
+    before: dict[str, dict[str, str]], after: dict[str, dict[str, str]]
+) -> list[str]:
+    """Describe the commands whose outputs differ, a line each, with the names of some
+    of these outputs.
+    """
     lines = []
     for command in sorted(before.keys() | after.keys()):
         old, new = before.get(command, {}), after.get(command, {})
-        changed = [output for output in sorted(old.keys() | new.keys()) if old.get(output) != new.get(output)]
+        changed = [
+            output
+            for output in sorted(old.keys() | new.keys())
+            if old.get(output) != new.get(output)
+        ]
         if changed:
             shown = ", ".join(_described(output, old, new) for output in changed[:5])
-            lines.append(f"{command}: {len(changed)} of {len(old)} outputs differ: {shown}")
+            lines.append(
+                f"{command}: {len(changed)} of {len(old)} outputs differ: {shown}"
+            )
     return lines
 
 
 def _described(output: str, old: dict[str, str], new: dict[str, str]) -> str:
     """Name an output; say if only one of the revisions has it."""
-    return f"{output} (new)" if output not in old else f"{output} (gone)" if output not in new else output
+    return (
+        f"{output} (new)"
+        if output not in old
+        else f"{output} (gone)" if output not in new else output
+    )
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("revision", help="revision to compare with, or a file that --record wrote")
     parser.add_argument(
-        "--record", action="store_true", help="only write the digests of the working tree into the file"
+        "revision", help="revision to compare with, or a file that --record wrote"
     )
-    parser.add_argument("--random", type=int, default=40, help="number of random ICDs (default: 40)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (default: one per core)")
-    parser.add_argument("--only", default="", help="only commands whose name contains this text")
+    parser.add_argument(
+        "--record",
+        action="store_true",
+        help="only write the digests of the working tree into the file",
+    )
+    parser.add_argument(
+        "--random", type=int, default=40, help="number of random ICDs (default: 40)"
+    )
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        default=os.cpu_count(),
+        help="processes (default: one per core)",
+    )
+    parser.add_argument(
+        "--only", default="", help="only commands whose name contains this text"
+    )
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
-        chosen_commands = [one for one in commands(chosen.random) if chosen.only in one.name]
+        chosen_commands = [
+            one for one in commands(chosen.random) if chosen.only in one.name
+        ]
         listed = work / "commands.json"
         listed.write_text(json.dumps(chosen_commands), "utf-8")
         current = run(ROOT, listed, work, chosen.jobs)
         if chosen.record:
             Path(chosen.revision).write_text(json.dumps(current), "utf-8")
-            print(f"{sum(map(len, current.values())):,} outputs of {len(current):,} commands recorded")
+            print(
+                f"{sum(map(len, current.values())):,} outputs of {len(current):,} commands recorded"
+            )
             return
         if Path(chosen.revision).is_file():
             recorded = json.loads(Path(chosen.revision).read_text("utf-8"))
@@ -81,12 +136,26 @@ def main() -> None:
         else:
             checkout = work / "before"
             subprocess.run(
-                ["git", "worktree", "add", "--quiet", "--detach", checkout, chosen.revision], cwd=ROOT, check=True
+                [
+                    "git",
+                    "worktree",
+                    "add",
+                    "--quiet",
+                    "--detach",
+                    checkout,
+                    chosen.revision,
+                ],
+                cwd=ROOT,
+                check=True,
             )
             try:
                 before = run(checkout, listed, work, chosen.jobs)
             finally:
-                subprocess.run(["git", "worktree", "remove", "--force", checkout], cwd=ROOT, check=True)
+                subprocess.run(
+                    ["git", "worktree", "remove", "--force", checkout],
+                    cwd=ROOT,
+                    check=True,
+                )
     lines = differences(before, current)
     print(*lines[:200], sep="\n")
     print(

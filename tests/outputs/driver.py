@@ -1,8 +1,10 @@
-"""Run command lines of the `icdgen` on the import path and write digests of what each gives.
+"""Run command lines of the `icdgen` on the import path and write digests of what each
+gives.
 
 python driver.py COMMANDS.json DIGESTS.json PART PARTS
 
-A file of its own without imports from the repository, because it runs with the sources of other revisions.
+A file of its own without imports from the repository, because it runs with the sources
+of other revisions.
 """
 
 from __future__ import annotations
@@ -18,7 +20,10 @@ from pathlib import Path
 
 
 def digests_of(arguments: list[str]) -> dict[str, str]:
-    """Run one command in a process of its own; return digests by output file, of the text and the exit status."""
+    """Run one command in a process of its own.
+
+    Return digests by output file, of the text and the exit status.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         out, text = folder / "out", folder / "text"
@@ -26,7 +31,10 @@ def digests_of(arguments: list[str]) -> dict[str, str]:
         if not child:
             _run([argument.replace("{out}", str(out)) for argument in arguments], text)
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        digests = {"status": str(status), "text": _digest(text.read_bytes().replace(str(out).encode(), b"OUT"))}
+        digests = {
+            "status": str(status),
+            "text": _digest(text.read_bytes().replace(str(out).encode(), b"OUT")),
+        }
         for path in sorted(out.rglob("*")) if out.exists() else ():
             if path.is_file():
                 digests[str(path.relative_to(out))] = _digest(path.read_bytes())
@@ -35,7 +43,10 @@ def digests_of(arguments: list[str]) -> dict[str, str]:
 
 
 def _run(arguments: list[str], text: Path) -> None:
-    """Run a command in this process with standard output and error in a file; never returns."""
+    """Run a command in this process with standard output and error in a file.
+
+    Never returns.
+    """
     stream = os.open(text, os.O_WRONLY | os.O_CREAT)
     os.dup2(stream, 1)
     os.dup2(stream, 2)
@@ -59,16 +70,22 @@ def _digest(content: bytes) -> str:
     """SHA-256 of an output, with the version of icdgen left out."""
     from icdgen import __version__
 
-    return hashlib.sha256(re.sub(re.escape(__version__.encode()), b"VERSION", content)).hexdigest()
+    return hashlib.sha256(
+        re.sub(re.escape(__version__.encode()), b"VERSION", content)
+    ).hexdigest()
 
 
 def main() -> None:
     commands, digests, part, parts = sys.argv[1:]
     os.environ["ICDGEN_CACHE"] = "off"
-    from icdgen import cli  # noqa: F401  # imported before the forks, so that each need not
+    from icdgen import (
+        cli,  # noqa: F401
+    )  # imported before the forks, so that each need not
 
     results = {}
-    for number, (name, arguments) in enumerate(json.loads(Path(commands).read_text("utf-8"))):
+    for number, (name, arguments) in enumerate(
+        json.loads(Path(commands).read_text("utf-8"))
+    ):
         if number % int(parts) == int(part):
             results[name] = digests_of(arguments)
     Path(digests).write_text(json.dumps(results), "utf-8")

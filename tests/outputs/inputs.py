@@ -1,4 +1,6 @@
-"""The ICDs that outputs are compared for, and the command lines that make these outputs."""
+"""The ICDs that outputs are compared for, and the command lines that make these
+outputs.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,10 @@ from tests.conformance.wholes import with_wholes
 ROOT = Path(__file__).parent.parent.parent
 
 LANGUAGES = ("c", "python", "rust", "vectors", "c-selftest", "xtce", "html")
-"""Backends that are run for every set. `assurance` takes minutes for large arrays and runs for the shipped ICDs only."""
+"""Backends that are run for every set.
+
+`assurance` takes minutes for large arrays and runs for the shipped ICDs only.
+"""
 
 _FOLDERS = (
     "icd",
@@ -26,20 +31,29 @@ _FOLDERS = (
     "tests/python/odd",
     "tests/protocol/keys",
 )
-"""Folders whose ICDs belong together. ICDs of any other folder are compared one by one."""
+"""Folders whose ICDs belong together.
+
+ICDs of any other folder are compared one by one.
+"""
 
 _SINGLE = ("examples", "docs", "tests/conformance/links")
 
 
 class Command(NamedTuple):
-    """A command line of icdgen; `{out}` in an argument is an empty folder of the command's own."""
+    """A command line of icdgen.
+
+    `{out}` in an argument is an empty folder of the command's own.
+    """
 
     name: str
     arguments: list[str]
 
 
 def commands(random_count: int) -> Iterator[Command]:
-    """List the commands for all sets of ICDs; random ICDs are written into `build/`, as paths appear in outputs."""
+    """List the commands for all sets of ICDs.
+
+    Random ICDs are written into `build/`, as paths appear in outputs.
+    """
     yield Command("icd assurance", ["--lang", "assurance", "--out", "{out}", "icd"])
     for name, files in _sets(random_count):
         languages = [word for language in LANGUAGES for word in ("--lang", language)]
@@ -48,20 +62,32 @@ def commands(random_count: int) -> Iterator[Command]:
         yield Command(f"{name} check", ["check", *files])
     for path in sorted((ROOT / "tests" / "wrong").rglob("*.yaml")):
         if "parts" not in path.parts:
-            yield Command(f"check {path.relative_to(ROOT)}", ["check", str(path.relative_to(ROOT))])
+            yield Command(
+                f"check {path.relative_to(ROOT)}",
+                ["check", str(path.relative_to(ROOT))],
+            )
     for folder in sorted((ROOT / "tests" / "diff" / "rules").iterdir()):
-        before, after = (str((folder / side).relative_to(ROOT)) for side in ("previous", "current"))
+        before, after = (
+            str((folder / side).relative_to(ROOT)) for side in ("previous", "current")
+        )
         for form in ("text", "json"):
-            yield Command(f"diff {folder.name} {form}", ["diff", before, after, "--format", form])
+            yield Command(
+                f"diff {folder.name} {form}", ["diff", before, after, "--format", form]
+            )
 
 
 def _sets(random_count: int) -> Iterator[tuple[str, list[str]]]:
-    """List the sets of ICDs by name, with their files relative to the root of the repository."""
+    """List the sets of ICDs by name, with their files relative to the root of the
+    repository.
+    """
     for name in _FOLDERS:
         yield name, [name]
     for top in _SINGLE:
         for path in sorted((ROOT / top).rglob("*.yaml")):
-            if path.read_text("utf-8").lstrip().startswith("#") or "icdgen:" in path.read_text("utf-8")[:400]:
+            if (
+                path.read_text("utf-8").lstrip().startswith("#")
+                or "icdgen:" in path.read_text("utf-8")[:400]
+            ):
                 relative = str(path.relative_to(ROOT))
                 if "errata" not in path.parts and "profiles" not in path.parts:
                     yield relative, [relative]

@@ -1,4 +1,6 @@
-"""Messages and CAN packets: whole again in any order, from several senders, and told when they are not."""
+"""Messages and CAN packets: whole again in any order, from several senders, and told
+when they are not.
+"""
 
 from __future__ import annotations
 
@@ -32,14 +34,23 @@ def messages(events):
 def test_the_identifier_has_its_parts_where_the_icd_says(known):
     (packet,) = can.split(known, can.Message("request", 146, 0x42, 1))
     assert packet == can.Packet(0x04 << 24 | 146 << 16 | 0x42 << 8 | 1, b"")
-    assert can.parts_of(known.can, packet.id) == {"type": 4, "channel": 146, "source": 0x42, "destination": 1}
+    assert can.parts_of(known.can, packet.id) == {
+        "type": 4,
+        "channel": 146,
+        "source": 0x42,
+        "destination": 1,
+    }
 
 
 def test_eight_bytes_fit_one_packet_nine_need_two(known):
     (one,) = sent(known, bytes(8))
     assert one.id >> 24 == 1
     first, second = sent(known, bytes(range(1, 10)))
-    assert (first.id >> 24, first.data.hex(), second.data.hex()) == (7, "0102030405060701", "0809000000000000")
+    assert (first.id >> 24, first.data.hex(), second.data.hex()) == (
+        7,
+        "0102030405060701",
+        "0809000000000000",
+    )
 
 
 def test_the_longest_message_has_256_packets_and_no_more(known):
@@ -62,14 +73,21 @@ def test_the_order_of_packets_does_not_matter(known, data, order):
 @quick
 @given(data=contents, twice=st.sets(st.integers(0, 18)))
 def test_repeated_packets_change_nothing_and_are_told(known, data, twice):
-    packets = [p for number, p in enumerate(sent(known, data)) for _ in range(1 + (number in twice))]
+    packets = [
+        p
+        for number, p in enumerate(sent(known, data))
+        for _ in range(1 + (number in twice))
+    ]
     events, _ = joined(known, packets)
     assert messages(events) == [data]
     assert sum(e.event == can.DUPLICATE for e in events) == len(twice)
 
 
 @quick
-@given(sources=st.permutations([0x10, 0x20, 0x30, 0x40]), shuffle=st.randoms(use_true_random=False))
+@given(
+    sources=st.permutations([0x10, 0x20, 0x30, 0x40]),
+    shuffle=st.randoms(use_true_random=False),
+)
 def test_senders_may_interleave(known, sources, shuffle):
     data = {source: bytes([source]) * 127 for source in sources}
     queues = {source: sent(known, data[source], source) for source in sources}
@@ -89,7 +107,9 @@ def test_a_lost_packet_costs_one_message_at_most(known, lost, first, second):
     events = [e for p in packets for e in joiner.feed(0, p)]
     events += joiner.expire(10_000)
     assert [e.event for e in events] == [can.INCOMPLETE] and events[0].missing == 1
-    assert messages([e for p in sent(known, second) for e in joiner.feed(10_000, p)]) == [second]
+    assert messages(
+        [e for p in sent(known, second) for e in joiner.feed(10_000, p)]
+    ) == [second]
 
 
 @quick
@@ -105,7 +125,9 @@ def test_a_message_that_is_sent_again_arrives(known, lost, data):
     alike=st.integers(0, 18),
     data=contents,
 )
-def test_another_message_in_place_of_an_unfinished_one_is_never_mixed_with_it(known, begun, alike, data):
+def test_another_message_in_place_of_an_unfinished_one_is_never_mixed_with_it(
+    known, begun, alike, data
+):
     old = sent(known, data)
     new = data[: alike * 7] + bytes(byte ^ 0xFF for byte in data[alike * 7 :])
     assert messages(joined(known, old[:begun] + sent(known, new))[0]) == [new]

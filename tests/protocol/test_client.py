@@ -78,12 +78,28 @@ def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(known):
 
 actions = st.one_of(
     st.tuples(
-        st.just("ask"), st.sampled_from([Request("telecommand", 31, b"\1"), Request("telecommand", 31, b"\1", True)])
+        st.just("ask"),
+        st.sampled_from(
+            [Request("telecommand", 31, b"\1"), Request("telecommand", 31, b"\1", True)]
+        ),
     ),
-    st.tuples(st.just("ask"), st.sampled_from([Request("telemetry", 146), Request("telecommand", 115, bytes(22))])),
+    st.tuples(
+        st.just("ask"),
+        st.sampled_from(
+            [Request("telemetry", 146), Request("telecommand", 115, bytes(22))]
+        ),
+    ),
     st.tuples(
         st.just("reply"),
-        st.sampled_from([bytes([31, 0]), bytes([31, 4]), bytes([146, *bytes(6)]), bytes([146]), bytes([119, 0])]),
+        st.sampled_from(
+            [
+                bytes([31, 0]),
+                bytes([31, 4]),
+                bytes([146, *bytes(6)]),
+                bytes([146]),
+                bytes([119, 0]),
+            ]
+        ),
     ),
     st.tuples(st.just("noise"), st.binary(max_size=20)),
     st.tuples(st.just("wait"), st.integers(0, 150)),
@@ -108,23 +124,43 @@ def test_every_request_has_exactly_one_outcome(known, script, checked):
             now += value
             events = client.tick(now)
         else:
-            events = client.received(now, line(known, *value) if action == "reply" else value)
+            events = client.received(
+                now, line(known, *value) if action == "reply" else value
+            )
         outcomes += sum(event["event"] in OUTCOMES for event in events)
         assert asked - outcomes == (client.deadline is not None)
     for _ in range(10):
         if client.deadline is not None:
-            outcomes += sum(event["event"] in OUTCOMES for event in client.tick(client.deadline))
+            outcomes += sum(
+                event["event"] in OUTCOMES for event in client.tick(client.deadline)
+            )
     assert asked == outcomes
 
 
 @quick
-@given(st.lists(st.tuples(st.booleans(), st.one_of(st.none(), st.binary(max_size=9)), st.integers(0, 60)), max_size=30))
+@given(
+    st.lists(
+        st.tuples(
+            st.booleans(),
+            st.one_of(st.none(), st.binary(max_size=9)),
+            st.integers(0, 60),
+        ),
+        max_size=30,
+    )
+)
 def test_on_i2c_nothing_hangs_either(known, script):
     client, now = talking(known, "i2c", crc=True), 0
     for telecommand, data, pause in script:
         client.out.clear()
         if client.deadline is None:
-            client.start(now, Request("telecommand", 31, b"\1") if telecommand else Request("telemetry", 146))
+            client.start(
+                now,
+                (
+                    Request("telecommand", 31, b"\1")
+                    if telecommand
+                    else Request("telemetry", 146)
+                ),
+            )
         now += pause
         client.transferred(now, data)
     for _ in range(100):
@@ -136,6 +172,8 @@ def test_on_i2c_nothing_hangs_either(known, script):
 def test_on_can_a_frame_is_split_and_joined(known):
     client = talking(known, "can", address=0x42)
     client.start(0, Request("telemetry", 206))
-    packets = can.split(known, can.Message("reply", 206, 1, 0x42, bytes(range(252)) * 2))
+    packets = can.split(
+        known, can.Message("reply", 206, 1, 0x42, bytes(range(252)) * 2)
+    )
     events = [event for packet in packets for event in client.packet(5, packet)]
     assert [bytes.fromhex(e["bytes"]) for e in events] == [bytes(range(252)) * 2]

@@ -16,7 +16,10 @@ CATALOGUE = [
     (Crc(8, 0x07, 0, False, False, 0), 0xF4),  # CRC-8/SMBUS
     (Crc(16, 0x1021, 0xFFFF, False, False, 0), 0x29B1),  # CRC-16/IBM-3740
     (Crc(16, 0x8005, 0, True, True, 0), 0xBB3D),  # CRC-16/ARC
-    (Crc(32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF), 0xCBF43926),  # CRC-32/ISO-HDLC
+    (
+        Crc(32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF),
+        0xCBF43926,
+    ),  # CRC-32/ISO-HDLC
 ]
 
 

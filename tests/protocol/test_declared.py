@@ -1,4 +1,6 @@
-"""A fact of the protocol is declared once: everything else is made from that, and is what it is made from."""
+"""A fact of the protocol is declared once: everything else is made from that, and is
+what it is made from.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,12 @@ class Book:
     pages: int = number("pages", "how many pages it has", 1, 9)
     sheets: int = octets("paper.sheets", "sheets of paper", default=twice)
     lent: int = time("lent_s", "how long it is lent", 5)
-    back: bool = flag("order", "whether it is read from the back", False, ("front", "back"))
-    bound: bool = flag("in", "whether it is bound", False, ("paper", "leather"), "leather")
+    back: bool = flag(
+        "order", "whether it is read from the back", False, ("front", "back")
+    )
+    bound: bool = flag(
+        "in", "whether it is bound", False, ("paper", "leather"), "leather"
+    )
 
 
 def test_schema_and_runtimes_are_what_is_declared():
@@ -33,12 +39,22 @@ def test_schema_and_runtimes_are_what_is_declared():
 
 
 def test_what_an_icd_leaves_out_has_the_declared_default():
-    assert read(Book, {"pages": 3}) == Book(pages=3, sheets=6, lent=5, back=False, bound=False)
+    assert read(Book, {"pages": 3}) == Book(
+        pages=3, sheets=6, lent=5, back=False, bound=False
+    )
 
 
 def test_what_an_icd_says_is_read_in_the_unit_of_the_fact():
-    given = {"pages": 3, "paper": {"sheets": 4}, "lent_s": 2, "order": "back", "in": ["paper", "leather"]}
-    assert read(Book, given) == Book(pages=3, sheets=4, lent=2000, back=True, bound=True)
+    given = {
+        "pages": 3,
+        "paper": {"sheets": 4},
+        "lent_s": 2,
+        "order": "back",
+        "in": ["paper", "leather"],
+    }
+    assert read(Book, given) == Book(
+        pages=3, sheets=4, lent=2000, back=True, bound=True
+    )
 
 
 def test_without_a_key_that_has_no_default_the_part_is_not_described():
@@ -49,11 +65,18 @@ def test_a_part_has_its_facts_in_the_order_in_which_they_are_declared():
     assert [fact.name for fact in facts_of(Book)] == [one.name for one in fields(Book)]
 
 
-@pytest.mark.parametrize(("path", "fact"), [(path, fact) for path, fact in FACTS if fact.key and fact.most is not None])
+@pytest.mark.parametrize(
+    ("path", "fact"),
+    [(path, fact) for path, fact in FACTS if fact.key and fact.most is not None],
+)
 def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
     section = schema.protocol()
     for key in f"{path}.{fact.key}".split("."):
-        section = section["additionalProperties"] if key == "*" else section["properties"][key]
+        section = (
+            section["additionalProperties"]
+            if key == "*"
+            else section["properties"][key]
+        )
     if fact.kind is Kind.OCTET:
         section = schema._follow(section)
     assert (section["minimum"], section["maximum"]) == (fact.least, fact.most)

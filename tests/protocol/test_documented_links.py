@@ -1,4 +1,6 @@
-"""The links that docs/guides/example-links.md shows: each is checked, generated and run, and is that of the file beside it."""
+"""The links that docs/guides/example-links.md shows: each is checked, generated and
+run, and is that of the file beside it.
+"""
 
 from __future__ import annotations
 
@@ -33,12 +35,22 @@ def test_all_that_are_asked_for_are_shown():
 @pytest.mark.parametrize("name", FILES)
 def test_an_example_is_that_of_its_file(name):
     shown = yaml.safe_load(EXAMPLES[name])
-    whole = yaml.safe_load((ROOT / "examples" / "links" / f"{FILES[name]}.yaml").read_text(encoding="utf-8"))
+    whole = yaml.safe_load(
+        (ROOT / "examples" / "links" / f"{FILES[name]}.yaml").read_text(
+            encoding="utf-8"
+        )
+    )
     for checksum in shown["protocol"].get("checksums", {}).values():
-        seeds = whole["protocol"]["checksums"]["x25"]["seeds"] if "seeds" in checksum else {}
+        seeds = (
+            whole["protocol"]["checksums"]["x25"]["seeds"]
+            if "seeds" in checksum
+            else {}
+        )
         assert checksum.get("seeds", {}).items() <= seeds.items()
         checksum["seeds"] = seeds
-        whole["protocol"]["checksums"][next(iter(whole["protocol"]["checksums"]))].setdefault("seeds", {})
+        whole["protocol"]["checksums"][
+            next(iter(whole["protocol"]["checksums"]))
+        ].setdefault("seeds", {})
     assert (shown["node"], shown["protocol"]) == (whole["node"], whole["protocol"])
     assert all(message in whole["messages"] for message in shown["messages"])
 
@@ -46,10 +58,14 @@ def test_an_example_is_that_of_its_file(name):
 def test_the_link_of_the_cubeadcs_is_that_of_its_icd():
     shown = yaml.safe_load(EXAMPLES[CUBEADCS])["protocol"]
     common, acp = (
-        yaml.safe_load((ROOT / "icd" / f"{name}.yaml").read_text(encoding="utf-8")) for name in ("common", "cubeacp")
+        yaml.safe_load((ROOT / "icd" / f"{name}.yaml").read_text(encoding="utf-8"))
+        for name in ("common", "cubeacp")
     )
     assert shown["message_id"].items() <= common["protocol"]["message_id"].items()
-    assert shown["uart"]["framing"].items() <= common["protocol"]["uart"]["framing"].items()
+    assert (
+        shown["uart"]["framing"].items()
+        <= common["protocol"]["uart"]["framing"].items()
+    )
     crc = {key: value for key, value in shown["crc8"].items() if key != "telecommand"}
     assert crc.items() <= acp["protocol"]["crc8"].items()
 
@@ -68,7 +84,9 @@ def test_an_example_is_checked_generated_and_run(name, tmp_path):
         for one in (getattr(module, name) for name in module.__all__)
         if hasattr(one, "from_bytes") and hasattr(one, "NAME")
     ]
-    assert {kind.NAME for kind in kinds} == {message.name for message in loaded.icd.nodes[0].messages}
+    assert {kind.NAME for kind in kinds} == {
+        message.name for message in loaded.icd.nodes[0].messages
+    }
     for kind in kinds:
         sent = kind()
         if name == CUBEADCS:
@@ -76,7 +94,9 @@ def test_an_example_is_checked_generated_and_run(name, tmp_path):
             (event,) = wire.UartDecoder(link).feed(b"noise" + line)
             assert kind.from_bytes(event.message[1:]) == sent
             continue
-        direction = "telemetry" if kind in known(link.TELEMETRY, kind) else "telecommand"
+        direction = (
+            "telemetry" if kind in known(link.TELEMETRY, kind) else "telecommand"
+        )
         decoder = wire.StreamDecoder(link, direction)
         line = wire.stream_encode(link, sent, direction=direction)
         found = [one for byte in line for one in decoder.feed(bytes([byte]))]

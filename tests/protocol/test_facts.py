@@ -1,4 +1,6 @@
-"""What the protocol layer is made from: the facts of the ICD, each assumption with its reason."""
+"""What the protocol layer is made from: the facts of the ICD, each assumption with its
+reason.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,12 @@ def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
 
 def test_a_node_without_a_protocol_has_none(icd):
     alone = facts.of(icd, icd.node("cubemag"))
-    assert (alone.framing, alone.can, alone.files, alone.assumptions) == (None, None, None, ())
+    assert (alone.framing, alone.can, alone.files, alone.assumptions) == (
+        None,
+        None,
+        None,
+        (),
+    )
     with pytest.raises(facts.Unsupported, match="uart"):
         facts.need(alone.framing, "uart")
 
@@ -41,7 +48,10 @@ def test_without_telemetry_an_acknowledge_is_no_reply(tmp_path):
     (tmp_path / "demo.yaml").write_text(WITHOUT_TELEMETRY)
     loaded = load([tmp_path])
     assert loaded.findings == []
-    assert uart.kind(facts.of(loaded.icd, loaded.icd.node("demo")), bytes([7, 0])) == uart.ACKNOWLEDGE
+    assert (
+        uart.kind(facts.of(loaded.icd, loaded.icd.node("demo")), bytes([7, 0]))
+        == uart.ACKNOWLEDGE
+    )
 
 
 def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):
@@ -61,29 +71,48 @@ def test_every_assumption_says_what_is_held_and_why(known):
 
 def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
     messages = {m.name: m for m in icd.messages_of(icd.node("bootloader"))}
-    assert (messages["Reset"].acknowledge, messages["Reset"].expects_reset) == (False, True)
+    assert (messages["Reset"].acknowledge, messages["Reset"].expects_reset) == (
+        False,
+        True,
+    )
     assert messages["Run Selected Program"].expects_reset
     packet = messages["File Upload Packet"]
     assert (packet.acknowledge, packet.expects_reset) == (False, False)
-    assert messages["Erase File"].acknowledge and not messages["Erase File"].expects_reset
+    assert (
+        messages["Erase File"].acknowledge and not messages["Erase File"].expects_reset
+    )
 
 
 def test_uploads_belong_to_the_nodes_that_the_icd_names(icd, known):
     boot = facts.of(icd, icd.node("bootloader"))
-    assert known.files.upload is None and not any(path.startswith("upload.") for path in known.files.steps)
+    assert known.files.upload is None and not any(
+        path.startswith("upload.") for path in known.files.steps
+    )
     upload = boot.files.upload
-    assert upload.finalize.fields["offset"] == "Offset" and boot.files.steps["upload.finalize"] is upload.finalize
-    assert (upload.destinations, upload.destination_bytes) == ((3, 4, 5, 6, 7, 8, 9), 524_288)
+    assert (
+        upload.finalize.fields["offset"] == "Offset"
+        and boot.files.steps["upload.finalize"] is upload.finalize
+    )
+    assert (upload.destinations, upload.destination_bytes) == (
+        (3, 4, 5, 6, 7, 8, 9),
+        524_288,
+    )
 
 
 def test_operations_on_programs_are_those_of_the_node(icd, known):
     boot = facts.of(icd, icd.node("bootloader"))
-    assert (boot.program_information.timeout, boot.program_copy.programs) == (2000, (3, 4, 5, 6, 7, 8, 9))
+    assert (boot.program_information.timeout, boot.program_copy.programs) == (
+        2000,
+        (3, 4, 5, 6, 7, 8, 9),
+    )
     assert (known.program_copy, known.program_information) == (None, None)
 
 
 def test_procedures_have_their_numbers_and_times_are_milliseconds(icd, known):
     assert known.files.download.message_length == 20
     section = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"]
-    assert facts.of(icd, icd.node("bootloader")).files.upload.erase_timeout == section["erase_timeout_s"] * 1000
+    assert (
+        facts.of(icd, icd.node("bootloader")).files.upload.erase_timeout
+        == section["erase_timeout_s"] * 1000
+    )
     assert known.boot_ms == 5000

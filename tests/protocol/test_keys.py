@@ -1,4 +1,6 @@
-"""No key of the protocol section is passed over: it makes a difference on the wire, to the port or the pages, or a finding."""
+"""No key of the protocol section is passed over: it makes a difference on the wire, to
+the port or the pages, or a finding.
+"""
 
 from __future__ import annotations
 
@@ -28,26 +30,49 @@ def sources(tmp_path_factory):
 
 def test_the_table_has_the_keys_of_the_format():
     assert list(TABLE) == list(BY_NAME)
-    assert set(TABLE.values()) <= {"wire", "finding", "port", "simulator", "told", "only"}
+    assert set(TABLE.values()) <= {
+        "wire",
+        "finding",
+        "port",
+        "simulator",
+        "told",
+        "only",
+    }
 
 
 def test_each_key_makes_a_difference_or_a_finding(found):
-    """Here of the facts that vectors are made of: each key costs a check of the ICDs. The walk by hand compares all vectors."""
+    """Here of the facts that vectors are made of: each key costs a check of the ICDs.
+
+    The walk by hand compares all vectors.
+    """
     heeded = {key for key, what in found.items() if what & {walk.WIRE, walk.FINDING}}
     assert heeded >= {key for key, what in TABLE.items() if what in ("wire", "finding")}
     assert "only" not in {TABLE[key] for key in heeded}
 
 
-@pytest.mark.parametrize("key", [key for key, what in TABLE.items() if what in ("port", "simulator", "told")])
+@pytest.mark.parametrize(
+    "key", [key for key, what in TABLE.items() if what in ("port", "simulator", "told")]
+)
 def test_what_else_the_section_says_is_told_by_the_site_and_the_diff(key, sources):
-    source, place = next((one, it) for one in sources for it in walk.places(one.section, BY_NAME[key].path))
+    source, place = next(
+        (one, it)
+        for one in sources
+        for it in walk.places(one.section, BY_NAME[key].path)
+    )
     changed = source.load(source.at(place, source.others(BY_NAME[key], place)[0]))
     assert page(changed) != page(source.icd)
-    before, after = (next(node for node in icd.nodes if node.protocol) for icd in (source.icd, changed))
+    before, after = (
+        next(node for node in icd.nodes if node.protocol)
+        for icd in (source.icd, changed)
+    )
     assert list(differences(before, after))
 
 
 def page(icd):
     """The first page on how a node talks."""
     render = Renderer.of(backends.get("html"))
-    return next(text for path, text in site.files(icd, render, Packages()) if path.name == "protocol.html")
+    return next(
+        text
+        for path, text in site.files(icd, render, Packages())
+        if path.name == "protocol.html"
+    )

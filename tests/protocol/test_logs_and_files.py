@@ -21,13 +21,20 @@ def test_frames_follow_the_bits_of_the_mask(known):
     file = logs.encode(known, mask(28, 0), [(5, 7, [b"status", b"angles"])])
     assert file.hex() == "01000010000000000000" + "050000000700" + b"statusangles".hex()
     log = logs.decode(known, file)
-    assert log.entries == [logs.Entry(5, 7, (logs.Frame(0, 144, b"status"), logs.Frame(28, 146, b"angles")))]
+    assert log.entries == [
+        logs.Entry(
+            5, 7, (logs.Frame(0, 144, b"status"), logs.Frame(28, 146, b"angles"))
+        )
+    ]
 
 
 def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(known):
     file = logs.encode(known, mask(2, 21), [(0, 0, [b"free!!", b"four"])])
     assert len(file) == 10 + 6 * 3
-    assert logs.decode(known, file).entries[0].frames == (logs.Frame(2, None, b"free!!"), logs.Frame(21, 171, b"four"))
+    assert logs.decode(known, file).entries[0].frames == (
+        logs.Frame(2, None, b"free!!"),
+        logs.Frame(21, 171, b"four"),
+    )
 
 
 @quick
@@ -37,7 +44,9 @@ def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(known):
     cut=st.integers(0, 100),
     piece=st.integers(1, 50),
 )
-def test_a_truncated_log_gives_its_whole_entries_and_says_what_is_left(known, bits, count, cut, piece):
+def test_a_truncated_log_gives_its_whole_entries_and_says_what_is_left(
+    known, bits, count, cut, piece
+):
     chosen = mask(*bits)
     data = [bytes(slot.length) for slot in known.mask.selected(chosen)]
     file = logs.encode(known, chosen, [(n, n, data) for n in range(count)])
@@ -55,7 +64,10 @@ def test_a_truncated_log_gives_its_whole_entries_and_says_what_is_left(known, bi
 def test_an_unsolicited_log_has_id_mask_and_frames(known):
     message = logs.encode_message(known, mask(0), [b"status"])
     assert message.hex() == "ff" + mask(0).hex() + b"status".hex()
-    assert logs.decode_message(known, message) == (mask(0), (logs.Frame(0, 144, b"status"),))
+    assert logs.decode_message(known, message) == (
+        mask(0),
+        (logs.Frame(0, 144, b"status"),),
+    )
     with pytest.raises(errors.LengthError):
         logs.decode_message(known, message + b"\0")
 
@@ -65,7 +77,9 @@ def test_an_unsolicited_log_has_id_mask_and_frames(known):
 def test_packed_times_come_back_to_two_seconds(known, moment):
     parts = {name: getattr(moment, name) for name in times.PARTS}
     value = times.pack(known, parts)
-    assert value == (moment.year - 1980) << 25 | moment.month << 21 | moment.day << 16 | moment.hour << 11 | (
+    assert value == (
+        moment.year - 1980
+    ) << 25 | moment.month << 21 | moment.day << 16 | moment.hour << 11 | (
         moment.minute << 5 | moment.second >> 1
     )
     assert times.unpack(known, value) == {**parts, "second": moment.second // 2 * 2}
@@ -89,15 +103,23 @@ def test_a_hole_map_names_what_is_missing(known, count, seed):
     received = {number for number in range(count) if seed.random() < 0.9}
     map_ = files.hole_map(known, count, received)
     lost = [i for i in range(1024) if (map_[i >> 3] & (1 << (i & 7))) == 0]
-    assert lost == sorted(set(range(count)) - received) == files.missing(known, count, map_)
-    assert b"".join(files.in_messages(known, map_)) == map_ and len(files.in_messages(known, map_)) == 8
+    assert (
+        lost
+        == sorted(set(range(count)) - received)
+        == files.missing(known, count, map_)
+    )
+    assert (
+        b"".join(files.in_messages(known, map_)) == map_
+        and len(files.in_messages(known, map_)) == 8
+    )
 
 
 @quick
 @given(
     st.lists(
         st.tuples(
-            *(st.integers(0, (1 << bits) - 1) for bits in (8, 8, 16, 32, 32)), st.binary(min_size=25, max_size=25)
+            *(st.integers(0, (1 << bits) - 1) for bits in (8, 8, 16, 32, 32)),
+            st.binary(min_size=25, max_size=25),
         )
     )
 )
@@ -119,7 +141,9 @@ def test_a_telecommand_without_parameters_has_a_checksum_too(known):
 def test_a_reply_with_a_wrong_bit_is_refused(known, frame, bit):
     read = i2c.telecommand(known, 146, frame, True)[1:]
     assert i2c.reply(known, 146, read, True) == frame
-    wrong = bytes(b ^ (1 << bit % 8 if n == bit // 8 else 0) for n, b in enumerate(read))
+    wrong = bytes(
+        b ^ (1 << bit % 8 if n == bit // 8 else 0) for n, b in enumerate(read)
+    )
     with pytest.raises(errors.ChecksumError):
         i2c.reply(known, 146, wrong, True)
 
@@ -134,7 +158,9 @@ def test_a_reply_with_a_wrong_bit_is_refused(known, frame, bit):
     ],
 )
 def test_the_first_bad_part_of_a_time_is_named_from_the_year_on(known, date, named):
-    narrow = replace(known, time=known.time | {"hour": replace(known.time["hour"], bits=4)})
+    narrow = replace(
+        known, time=known.time | {"hour": replace(known.time["hour"], bits=4)}
+    )
     with pytest.raises(errors.RangeError) as caught:
         times.pack(narrow, dict(zip(times.PARTS, date, strict=True)))
     assert caught.value.field == named

@@ -1,4 +1,6 @@
-"""Files arrive byte for byte, whatever is lost on the way, and what cannot succeed ends and says why."""
+"""Files arrive byte for byte, whatever is lost on the way, and what cannot succeed ends
+and says why.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,11 @@ LOSSES = [0.0, 0.01, 0.1, 0.3]
 def test_a_downloaded_file_is_the_file(known, bus, loss):
     node = nodes.FileNode(known, bus, Random(f"{bus} {loss}"), loss)
     node.files[2, 7] = node.source.randbytes(50_001)
-    _, download = record(known, {"do": "download", "bus": bus, "type": 2, "counter": 7, "size": 50_001}, node)
+    _, download = record(
+        known,
+        {"do": "download", "bus": bus, "type": 2, "counter": 7, "size": 50_001},
+        node,
+    )
     assert download.result == "done"
     assert b"".join(data for _, data in download.blocks) == node.files[2, 7]
     assert [offset for offset, _ in download.blocks] == [0, 20480, 40960]
@@ -28,7 +34,9 @@ def test_a_downloaded_file_is_the_file(known, bus, loss):
 def test_a_file_of_unknown_size_ends_where_it_ends(known, size):
     node = nodes.FileNode(known, "uart", Random(size), 0.1)
     node.files[15, 0] = node.source.randbytes(size)
-    _, download = record(known, {"do": "download", "bus": "uart", "type": 15, "counter": 0}, node)
+    _, download = record(
+        known, {"do": "download", "bus": "uart", "type": 15, "counter": 0}, node
+    )
     assert download.result == "done"
     assert b"".join(data for _, data in download.blocks) == node.files[15, 0]
 
@@ -42,7 +50,9 @@ def boot(icd):
 def test_an_uploaded_program_is_the_program(boot, loss):
     node = nodes.FileNode(boot, "uart", Random(str(loss)), loss)
     data = node.source.randbytes(30_007)
-    _, upload = record(boot, {"do": "upload", "destination": 3, "bytes": data.hex()}, node)
+    _, upload = record(
+        boot, {"do": "upload", "destination": 3, "bytes": data.hex()}, node
+    )
     assert (upload.result, upload.sent) == ("done", len(data))
     assert node.program == data
 
@@ -54,13 +64,19 @@ def test_no_file_is_missed_in_the_list_and_none_is_there_twice(known, loss):
         node.files[2, counter] = bytes(counter)
     _, list_ = record(known, {"do": "list"}, node)
     assert list_.result == "done"
-    assert [(e["type"], e["counter"], e["size"]) for e in list_.entries] == [(2, n, n) for n in range(30)]
+    assert [(e["type"], e["counter"], e["size"]) for e in list_.entries] == [
+        (2, n, n) for n in range(30)
+    ]
 
 
 def test_a_node_that_loses_everything_is_given_up(known):
     node = nodes.FileNode(known, "uart", Random(1), 1.0)
     node.files[2, 0] = bytes(100)
-    _, download = record(known, {"do": "download", "bus": "uart", "type": 2, "counter": 0, "size": 100}, node)
+    _, download = record(
+        known,
+        {"do": "download", "bus": "uart", "type": 2, "counter": 0, "size": 100},
+        node,
+    )
     assert download.result == "timeout"
 
 
@@ -84,7 +100,9 @@ def test_an_upload_through_a_node_that_takes_none_does_not_begin(known):
 
 
 @pytest.mark.parametrize("destination", [0, 2, 10, 17, 255])
-def test_an_upload_to_a_destination_that_is_not_supported_does_not_begin(boot, destination):
+def test_an_upload_to_a_destination_that_is_not_supported_does_not_begin(
+    boot, destination
+):
     with pytest.raises(errors.RangeError):
         transfer.Upload(boot, destination, bytes(100))
 
@@ -117,9 +135,18 @@ def test_a_copy_is_done_when_the_node_says_so_and_failed_when_it_says_that(boot)
     assert told(boot, programs.ProgramCopy(boot, 3), "01") is None
 
 
-def test_information_about_another_program_is_not_taken_for_that_of_the_one_asked_for(boot):
+def test_information_about_another_program_is_not_taken_for_that_of_the_one_asked_for(
+    boot,
+):
     information = programs.ProgramInformation(boot, 4)
-    assert told(boot, information, "0300100000000100") is None and information.size is None
+    assert (
+        told(boot, information, "0300100000000100") is None and information.size is None
+    )
     procedure = programs.ProgramInformation(boot, 4)
-    assert told(boot, procedure, "0300100000000100", "0401000000000000", "0400070000003412") == "done"
+    assert (
+        told(
+            boot, procedure, "0300100000000100", "0401000000000000", "0400070000003412"
+        )
+        == "done"
+    )
     assert (procedure.size, procedure.checksum) == (7, 0x1234)

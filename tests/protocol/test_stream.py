@@ -1,4 +1,6 @@
-"""What the reference finds in a stream does not depend on how it was cut, and whole messages after noise are found."""
+"""What the reference finds in a stream does not depend on how it was cut, and whole
+messages after noise are found.
+"""
 
 from __future__ import annotations
 
@@ -27,13 +29,21 @@ NAMES = sorted(forms())
 STREAMS = [name for name in NAMES if forms()[name].delimited_by != PACKET]
 
 
-def encoded(form: Stream, draw: st.DrawFn, count: int = 3) -> tuple[bytes, list[tuple[int, bytes]]]:
+def encoded(
+    form: Stream, draw: st.DrawFn, count: int = 3
+) -> tuple[bytes, list[tuple[int, bytes]]]:
     """Messages in a row, on the line and as they must come out."""
     line, sent = b"", []
     for number in range(count):
         row = draw(st.sampled_from(form.rows("telemetry")))
         data = draw(st.binary(min_size=row.most, max_size=row.most))
-        line += stream.encode(form, "telemetry", row.id, data, {"sequence": number} if form.of("sequence") else None)
+        line += stream.encode(
+            form,
+            "telemetry",
+            row.id,
+            data,
+            {"sequence": number} if form.of("sequence") else None,
+        )
         sent.append((row.id, data))
     return line, sent
 
@@ -58,14 +68,17 @@ def test_messages_come_out_as_they_were_put_in(name, data):
     decoder = stream.Decoder(form, "telemetry")
     found = [event for event in decoder.feed(line) if event.event != stream.GAP]
     assert [
-        (event.id, event.data.ljust(len(data), b"\0")) for event, (_, data) in zip(found, sent, strict=True)
+        (event.id, event.data.ljust(len(data), b"\0"))
+        for event, (_, data) in zip(found, sent, strict=True)
     ] == sent
     assert (decoder.discarded, decoder.pending) == (0, 0)
 
 
 @pytest.mark.parametrize("name", STREAMS)
 @given(noise=st.binary(max_size=60), data=st.data())
-def test_every_byte_is_accounted_for_and_no_more_than_a_message_is_held(name, noise, data):
+def test_every_byte_is_accounted_for_and_no_more_than_a_message_is_held(
+    name, noise, data
+):
     form = forms()[name]
     decoder = stream.Decoder(form, "telemetry")
     line, _ = encoded(form, data.draw, 1)
@@ -77,7 +90,9 @@ def test_every_byte_is_accounted_for_and_no_more_than_a_message_is_held(name, no
 
 @pytest.mark.parametrize("name", ["receiver", "positioner", "autopilot"])
 @given(noise=st.binary(max_size=40), data=st.data())
-def test_a_message_after_noise_is_found_once_a_longest_one_has_passed(name, noise, data):
+def test_a_message_after_noise_is_found_once_a_longest_one_has_passed(
+    name, noise, data
+):
     form = forms()[name]
     line, sent = encoded(form, data.draw, 1)
     decoder = stream.Decoder(form, "telemetry")

@@ -1,4 +1,6 @@
-"""Messages in a stream of bytes: found whole, whatever comes before, between and within them."""
+"""Messages in a stream of bytes: found whole, whatever comes before, between and within
+them.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,10 @@ from tests.protocol import quick
 ESCAPE, START, END = 0x1F, 0x7F, 0xFF
 markers = st.sampled_from([ESCAPE, START, END, 0x00, 0x90])
 streams = st.one_of(st.binary(max_size=200), st.lists(markers, max_size=200).map(bytes))
-messages = st.one_of(st.binary(min_size=1, max_size=100), st.lists(markers, min_size=1, max_size=100).map(bytes))
+messages = st.one_of(
+    st.binary(min_size=1, max_size=100),
+    st.lists(markers, min_size=1, max_size=100).map(bytes),
+)
 
 
 def decode(known, *chunks, limit=None):
@@ -58,7 +63,10 @@ def test_events_do_not_depend_on_how_a_stream_is_cut(known, stream, cuts):
 
 
 @quick
-@given(noise=streams.filter(lambda noise: bytes([ESCAPE, START]) not in noise), message=messages)
+@given(
+    noise=streams.filter(lambda noise: bytes([ESCAPE, START]) not in noise),
+    message=messages,
+)
 def test_noise_costs_nothing_but_the_noise(known, noise, message):
     events, decoder = decode(known, noise + uart.encode(known.framing, message))
     assert [e.message for e in events] == [message]
@@ -80,7 +88,11 @@ def test_no_more_is_kept_than_the_longest_message(known, stream, limit):
     for number, byte in enumerate(stream, 1):
         for event in decoder.feed(bytes([byte])):
             assert len(event.message) <= limit
-            delivered += len(uart.encode(known.framing, event.message)) if event.event == uart.MESSAGE else 0
+            delivered += (
+                len(uart.encode(known.framing, event.message))
+                if event.event == uart.MESSAGE
+                else 0
+            )
         assert len(decoder.buffer) <= limit
         assert decoder.discarded + decoder.pending + delivered == number
 
@@ -91,7 +103,10 @@ def test_what_goes_wrong_is_told(known):
     def kinds(stream, limit=None):
         return [e.event for e in decode(known, stream, limit=limit)[0]]
 
-    assert kinds(start + b"\x90" + start + b"\x91" + end) == [uart.UNEXPECTED_START, uart.MESSAGE]
+    assert kinds(start + b"\x90" + start + b"\x91" + end) == [
+        uart.UNEXPECTED_START,
+        uart.MESSAGE,
+    ]
     assert kinds(start + b"\x90\x1f\x00" + end) == [uart.PROTOCOL_ERROR]
     assert kinds(start + end) == [uart.EMPTY]
     assert kinds(start + b"\x90\x01\x02" + end, limit=2) == [uart.OVERRUN]
@@ -112,10 +127,18 @@ def test_messages_are_told_apart(known):
 
 def test_other_devices_escape_otherwise(known):
     framing = replace(
-        known.framing, escape=0xDB, start=0xC0, end=0xC1, escaped=0xDD, escapes_id=False, ignores_other=True
+        known.framing,
+        escape=0xDB,
+        start=0xC0,
+        end=0xC1,
+        escaped=0xDD,
+        escapes_id=False,
+        ignores_other=True,
     )
     line = uart.encode(framing, bytes([0xDB, 0xDB, 1]))
     assert line.hex() == "dbc0dbdbdd01dbc1"
     decoder = uart.Decoder(framing, 10)
     assert [e.message for e in decoder.feed(line)] == [bytes([0xDB, 0xDB, 1])]
-    assert [e.message for e in decoder.feed(bytes.fromhex("dbc090db0001dbc1"))] == [bytes([0x90, 1])]
+    assert [e.message for e in decoder.feed(bytes.fromhex("dbc090db0001dbc1"))] == [
+        bytes([0x90, 1])
+    ]

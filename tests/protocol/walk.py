@@ -1,7 +1,8 @@
 """Every key of the protocol section, changed: what of it is heeded, and how.
 
-`outcomes` changes a key of an ICD to each of a few other values that the format allows, and tells what that makes of the golden
-vectors or of the findings. `python -m tests.protocol.walk` does so with all keys, and writes `keys/table.yaml`.
+`outcomes` changes a key of an ICD to each of a few other values that the format allows,
+and tells what that makes of the golden vectors or of the findings. `python -m
+tests.protocol.walk` does so with all keys, and writes `keys/table.yaml`.
 """
 
 from __future__ import annotations
@@ -26,7 +27,11 @@ from icdgen.vectors import protocol as vectors
 from tests.conftest import ROOT
 
 WIRE, FINDING, NOTHING = "wire", "finding", "nothing"
-BESIDES = ("source", "assumptions", "summary")  # of every section: where it stands, why it is assumed, prose
+BESIDES = (
+    "source",
+    "assumptions",
+    "summary",
+)  # of every section: where it stands, why it is assumed, prose
 Path_ = tuple[str | int, ...]
 
 KEYS = ROOT / "tests" / "protocol" / "keys"
@@ -41,7 +46,9 @@ _HEAD = """\
 
 
 class Key(NamedTuple):
-    """A key of the format: its path, `[]` for an entry of a list and `*` for any name, and what it can be."""
+    """A key of the format: its path, `[]` for an entry of a list and `*` for any name,
+    and what it can be.
+    """
 
     path: tuple[str, ...]
     form: dict[str, Any]
@@ -56,7 +63,11 @@ def all_keys() -> list[Key]:
 
 
 def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:
-    form = schema._follow(form) | {key: one for key, one in form.items() if key != "$ref"} if "$ref" in form else form
+    form = (
+        schema._follow(form) | {key: one for key, one in form.items() if key != "$ref"}
+        if "$ref" in form
+        else form
+    )
     kinds = form.get("type", ())
     if kinds == "object":
         for key, one in form.get("properties", {}).items():
@@ -92,14 +103,23 @@ def places(section: Any, path: tuple[str, ...], before: Path_ = ()) -> Iterator[
 
 
 class Source:
-    """A folder of ICDs, of which the first node that has a protocol section of its own is changed."""
+    """A folder of ICDs, of which the first node that has a protocol section of its own
+    is changed.
+    """
 
     def __init__(self, files: list[Path], work: Path) -> None:
         self.work = work
-        self.texts = {path.name: yaml.load(path.read_text(encoding="utf-8"), yaml.CSafeLoader) for path in files}
-        self.changed = next(name for name, content in self.texts.items() if "protocol" in content)
+        self.texts = {
+            path.name: yaml.load(path.read_text(encoding="utf-8"), yaml.CSafeLoader)
+            for path in files
+        }
+        self.changed = next(
+            name for name, content in self.texts.items() if "protocol" in content
+        )
         self.section = self.texts[self.changed]["protocol"]
-        self.messages = {one["name"]: one for one in self.texts[self.changed]["messages"]}
+        self.messages = {
+            one["name"]: one for one in self.texts[self.changed]["messages"]
+        }
         self.enums = [one["name"] for one in self.texts[self.changed].get("enums", ())]
         icd = self.load(self.section)
         assert icd is not None, "it has findings as it is"
@@ -116,8 +136,13 @@ class Source:
     def load(self, section: dict[str, Any]) -> Icd | None:
         """The ICDs with another section; None if there are findings."""
         for name, content in self.texts.items():
-            given = {**content, "protocol": section} if name == self.changed else content
-            (self.work / name).write_text(yaml.dump(given, Dumper=yaml.CSafeDumper, sort_keys=False), encoding="utf-8")
+            given = (
+                {**content, "protocol": section} if name == self.changed else content
+            )
+            (self.work / name).write_text(
+                yaml.dump(given, Dumper=yaml.CSafeDumper, sort_keys=False),
+                encoding="utf-8",
+            )
         loaded = load([self.work])
         return None if loaded.findings else loaded.icd
 
@@ -157,15 +182,15 @@ class Source:
     def _other_lists(self, value: list[Any], form: dict[str, Any]) -> list[Any]:
         choices = form.get("items", {}).get("enum", ())
         if choices:
-            return [[one for one in choices if one != first] for first in value] + [list(choices)] * (
-                value != list(choices)
-            )
+            return [[one for one in choices if one != first] for first in value] + [
+                list(choices)
+            ] * (value != list(choices))
         if all(isinstance(one, int) for one in value):
             return [[*value[:-1], value[-1] + 1], value[:-1] or [value[0] + 1]]
         if all(one in self.messages for one in value):
-            return [[*value[:-1], name] for name in self.messages if name not in value][:1] + [value[::-1]] * (
-                len(value) > 1
-            )
+            return [[*value[:-1], name] for name in self.messages if name not in value][
+                :1
+            ] + [value[::-1]] * (len(value) > 1)
         nodes = [content["node"]["name"] for content in self.texts.values()]
         if all(one in nodes for one in value):
             return [[one] for one in nodes if [one] != value]
@@ -173,21 +198,39 @@ class Source:
 
     def _other_texts(self, key: Key, place: Path_, value: str) -> list[Any]:
         if value in self.messages:
-            alike = [name for name, one in self.messages.items() if one["kind"] == self.messages[value]["kind"]]
+            alike = [
+                name
+                for name, one in self.messages.items()
+                if one["kind"] == self.messages[value]["kind"]
+            ]
             return [name for name in (*alike, *self.messages) if name != value][:12]
         if value in self.enums:
             return [name for name in self.enums if name != value]
         nodes = [content["node"]["name"] for content in self.texts.values()]
         if value in nodes and key.path[0] == "program_start":
             return [name for name in nodes if name != value]
-        message = next((self.messages[one] for one in self._named(place) if one in self.messages), None)
+        message = next(
+            (self.messages[one] for one in self._named(place) if one in self.messages),
+            None,
+        )
         if message:
-            others = [one["name"] for one in message.get("fields", ()) if one["name"] != value]
+            others = [
+                one["name"] for one in message.get("fields", ()) if one["name"] != value
+            ]
             return others or [f"{value} other"]
-        types = [one["name"] for one in self.section.get("can", {}).get("message_types", {}).get("values", ())]
+        types = [
+            one["name"]
+            for one in self.section.get("can", {})
+            .get("message_types", {})
+            .get("values", ())
+        ]
         if value in types and key.path[-1] != "name":
             return [name for name in types if name != value]
-        roles = [row["role"] for part in ("header", "trailer") for row in self.section.get("stream", {}).get(part, ())]
+        roles = [
+            row["role"]
+            for part in ("header", "trailer")
+            for row in self.section.get("stream", {}).get(part, ())
+        ]
         if value in (*roles, "data") and "covers" in key.path:
             return [role for role in (*roles, "data") if role != value]
         return [f"{value} other"]
@@ -197,11 +240,18 @@ class Source:
         for depth in (1, 2):
             beside = self.value(place[:-depth])
             if isinstance(beside, dict):
-                yield from (one for one in [beside.get("message"), *beside.get("names", ())] if isinstance(one, str))
+                yield from (
+                    one
+                    for one in [beside.get("message"), *beside.get("names", ())]
+                    if isinstance(one, str)
+                )
 
 
 def told(thing: Any) -> Any:
-    """Facts as plain values; a message, which is not of the protocol section, by its name."""
+    """Facts as plain values.
+
+    A message, which is not of the protocol section, by its name.
+    """
     if isinstance(thing, Message | Node):
         return thing.name
     if is_dataclass(thing):
@@ -212,15 +262,24 @@ def told(thing: Any) -> Any:
 
 
 def outcome(source: Source, section: dict[str, Any], whole: bool) -> str:
-    """What a change makes of the vectors, or of the findings. Vectors are made of facts; not ``whole``: only these are compared."""
+    """What a change makes of the vectors, or of the findings.
+
+    Vectors are made of facts; not ``whole``: only these are compared.
+    """
     icd = source.load(section)
     if icd is None:
         return FINDING
     others = {node.name: facts.of(icd, node) for node in icd.nodes}
-    differ = [name for name, known in others.items() if told(known) != told(source.facts[name])]
+    differ = [
+        name
+        for name, known in others.items()
+        if told(known) != told(source.facts[name])
+    ]
     if not whole:
         return WIRE if differ else NOTHING
-    return WIRE if any(_differs(source, icd, others[name]) for name in differ) else NOTHING
+    return (
+        WIRE if any(_differs(source, icd, others[name]) for name in differ) else NOTHING
+    )
 
 
 def _differs(source: Source, changed: Icd, other: Facts) -> bool:
@@ -237,7 +296,10 @@ def cases(icd: Icd, known: Facts) -> Iterator[str]:
 
 
 def outcomes(source: Source, key: Key, whole: bool) -> Iterator[tuple[Path_, Any, str]]:
-    """Each place and other value, and what became of it; not ``whole``: until something did."""
+    """Each place and other value, and what became of it.
+
+    Not ``whole``: until something did.
+    """
     for place in places(source.section, key.path):
         for other in source.others(key, place):
             found = outcome(source, source.at(place, other), whole)
@@ -261,7 +323,10 @@ def sources(work: Path) -> Iterator[Source]:
 
 
 def walked(work: Path, whole: bool) -> dict[str, set[str]]:
-    """What came of the changes of each key, in any of the ICDs; nothing, where it does not stand or has but one value."""
+    """What came of the changes of each key, in any of the ICDs.
+
+    Nothing, where it does not stand or has but one value.
+    """
     found: dict[str, set[str]] = {str(key): set() for key in all_keys()}
     for source in sources(work):
         for key in all_keys():

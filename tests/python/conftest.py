@@ -11,13 +11,17 @@ from tests.python.packages import Package
 @pytest.fixture(scope="session")
 def shipped(tmp_path_factory) -> Package:
     """Made from the ICDs of the project."""
-    return packages.write(packages.shipped(), tmp_path_factory.mktemp("shipped"), "icdgen_messages")
+    return packages.write(
+        packages.shipped(), tmp_path_factory.mktemp("shipped"), "icdgen_messages"
+    )
 
 
 @pytest.fixture(scope="session")
 def odd(tmp_path_factory) -> Package:
     """Made from an ICD with odd layouts and hostile names."""
-    return packages.write(packages.read(packages.ODD), tmp_path_factory.mktemp("odd"), "odd_messages")
+    return packages.write(
+        packages.read(packages.ODD), tmp_path_factory.mktemp("odd"), "odd_messages"
+    )
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,6 @@
-"""An ICD whose names have every length at which a line of generated code may become too long."""
+"""An ICD whose names have every length at which a line of generated code may become too
+long.
+"""
 
 from __future__ import annotations
 
@@ -25,16 +27,32 @@ _TYPES = (
 
 def write(folder: Path, lengths: range) -> Path:
     """The file."""
-    messages, enums = [], [{"name": "Mode", "members": [_member(length) for length in lengths]}]
+    messages, enums = [], [
+        {"name": "Mode", "members": [_member(length) for length in lengths]}
+    ]
     for number, length in enumerate(lengths):
         messages.append(_message("m" * length, number, _TYPES, length))
-        messages.append(_message("n" * length, number + 100, _TYPES[number % len(_TYPES) :][:1], length))
+        messages.append(
+            _message(
+                "n" * length, number + 100, _TYPES[number % len(_TYPES) :][:1], length
+            )
+        )
         enums.append({"name": "e" * length, "members": [{"value": 1, "name": "One"}]})
-    enum_fields = [{"bits": 8, "type": "enum", "enum": enum["name"]} for enum in enums[1:]]
+    enum_fields = [
+        {"bits": 8, "type": "enum", "enum": enum["name"]} for enum in enums[1:]
+    ]
     messages.append(_message("Enumerations", 250, enum_fields, 10))
-    head = {"name": "lengths", "title": "Lengths", "byte_order": "little", "bit_order": "lsb0"}
+    head = {
+        "name": "lengths",
+        "title": "Lengths",
+        "byte_order": "little",
+        "bit_order": "lsb0",
+    }
     path = folder / "lengths.yaml"
-    path.write_text(json.dumps({"icdgen": 1, "node": head, "enums": enums, "messages": messages}), encoding="utf-8")
+    path.write_text(
+        json.dumps({"icdgen": 1, "node": head, "enums": enums, "messages": messages}),
+        encoding="utf-8",
+    )
     return path
 
 
@@ -50,4 +68,10 @@ def _message(name: str, id: int, types, length: int) -> dict:
         suffix = "x" * (number + 1)
         fields.append({"at": at, "name": "f" * (length - len(suffix)) + suffix, **one})
         at += one["bits"]
-    return {"name": name, "kind": "telemetry", "id": id, "length": -(-at // 8), "fields": fields}
+    return {
+        "name": name,
+        "kind": "telemetry",
+        "id": id,
+        "length": -(-at // 8),
+        "fields": fields,
+    }

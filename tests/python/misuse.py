@@ -39,7 +39,9 @@ Client(LINK, "uart").send(0, bootloader.SetBootIndex())  # expect
 Client(LINK, "uart").request(0, bootloader.State)  # expect
 
 
-async def of_another_node(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def of_another_node(
+    reader: asyncio.StreamReader, writer: asyncio.StreamWriter
+) -> None:
     """What asyncio's session is not given either."""
     session = AsyncSession(LINK, reader, writer)
     await session.send(bootloader.SetBootIndex())  # expect

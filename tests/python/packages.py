@@ -63,7 +63,9 @@ def renderer() -> Renderer:
 
 def files(icd: Icd, name: str = "icdgen_messages") -> dict[str, str]:
     """Path and text of every generated file."""
-    return {str(path): text for path, text in PythonBackend(name).files(icd, renderer())}
+    return {
+        str(path): text for path, text in PythonBackend(name).files(icd, renderer())
+    }
 
 
 def testee(icd: Icd, name: str) -> dict[str, str]:

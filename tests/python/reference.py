@@ -28,13 +28,18 @@ def cases(package: Package) -> Iterator[Case]:
     for node in package.icd.nodes:
         module = package.module(node.name)
         for message in package.icd.messages_of(node):
-            for id, found in ((message.telecommand_id, module.TELECOMMANDS), (message.telemetry_id, module.TELEMETRY)):
+            for id, found in (
+                (message.telecommand_id, module.TELECOMMANDS),
+                (message.telemetry_id, module.TELEMETRY),
+            ):
                 if id is not None:
                     yield Case(package.icd.node(message.node), message, found[id])
 
 
 def frames(length: int, count: int = 10) -> Iterator[bytes]:
-    """Zeros, ones, frames in which each bit has a code of its own, single bits, random ones."""
+    """Zeros, ones, frames in which each bit has a code of its own, single bits, random
+    ones.
+    """
     yield bytes(length)
     yield b"\xff" * length
     places = range(length * 8)

@@ -1,6 +1,8 @@
-"""The generated package as the client of `tests.sim.harness`: python -m tests.python.sim_client HOST PORT SIZE
+"""The generated package as the client of `tests.sim.harness`: python -m
+tests.python.sim_client HOST PORT SIZE
 
-``generated/python`` has to be on the path; the ICD itself is asked only which telecommands restart the node.
+``generated/python`` has to be on the path; the ICD itself is asked only which
+telecommands restart the node.
 """
 
 from __future__ import annotations
@@ -35,8 +37,13 @@ if TYPE_CHECKING:
 
 def hasty(link):
     """The link with short waits, for a device that is never slow."""
-    procedures = {name: getattr(link.files, name) for name in ("list", "download", "upload", "erase", "format")}
-    short = {name: one._replace(poll_interval=5) for name, one in procedures.items() if one}
+    procedures = {
+        name: getattr(link.files, name)
+        for name in ("list", "download", "upload", "erase", "format")
+    }
+    short = {
+        name: one._replace(poll_interval=5) for name, one in procedures.items() if one
+    }
     short["download"] = short["download"]._replace(silence=60)
     return link._replace(files=link.files._replace(**short))
 
@@ -67,7 +74,9 @@ def main(host: str, number: str, size: str) -> int:
                 device.get(message)
             every_setting(device)
             insist(device, LOGS())  # none during the transfers
-            data = transfer(device, lambda: Download(LINK, "uart", 2, 1, int(size))).data
+            data = transfer(
+                device, lambda: Download(LINK, "uart", 2, 1, int(size))
+            ).data
             every_telecommand(device)
             started(device, Session(BOOT, port.sendall, read, settings=FAST), data)
         except (Failed, FailedError, RefusedError, ReplyTimeoutError) as failure:
@@ -77,13 +86,18 @@ def main(host: str, number: str, size: str) -> int:
 
 
 def started(device: Session, boot: Session, data: bytes) -> None:
-    """Uploads a program, copies it to where it can run, and starts it. The boot program runs."""
+    """Uploads a program, copies it to where it can run, and starts it.
+
+    The boot program runs.
+    """
     data = data[: BOOT.files.upload.destination_bytes]
     transfer(boot, lambda: Upload(BOOT, DESTINATION, data))
     transfer(boot, lambda: ProgramCopy(BOOT, DESTINATION))
     told = transfer(boot, lambda: ProgramInformation(BOOT, RUNNING))
     if (told.size, told.checksum) != (len(data), crc16(BOOT, data)):
-        raise Failed(f"the program that can run has {told.size} bytes and the checksum {told.checksum:#x}")
+        raise Failed(
+            f"the program that can run has {told.size} bytes and the checksum {told.checksum:#x}"
+        )
     boot.send(bootloader.RunSelectedProgram())
     if not identity(device).matches:
         raise Failed("the program does not run")
@@ -103,7 +117,9 @@ def every_setting(device: Session) -> None:
 
 
 def numbered(message: type[Message]) -> Message:
-    """A message in which hardly two numbers have the same value, so that none can be taken for another."""
+    """A message in which hardly two numbers have the same value, so that none can be
+    taken for another.
+    """
     made = message.from_bytes(message().to_bytes())
     for number, info in enumerate(message.FIELDS, 1):
         if info.type in ("uint", "int") and info.const is None:
@@ -112,8 +128,16 @@ def numbered(message: type[Message]) -> Message:
 
 
 def every_telecommand(device: Session) -> None:
-    others = [message for _, message in LINK.TELECOMMANDS.items() if message.KIND != "configuration"]
-    resets = {m.name for m in facts.of(ICD, ICD.node("cubeacp")).telecommands.values() if m.expects_reset}
+    others = [
+        message
+        for _, message in LINK.TELECOMMANDS.items()
+        if message.KIND != "configuration"
+    ]
+    resets = {
+        m.name
+        for m in facts.of(ICD, ICD.node("cubeacp")).telecommands.values()
+        if m.expects_reset
+    }
     for message in sorted(others, key=lambda message: message.NAME in resets):
         if message.NAME in resets:
             device.send(message())
@@ -130,7 +154,10 @@ def every_telecommand(device: Session) -> None:
 
 
 def silent(device: Session, message: type[Message]) -> None:
-    """The node does not acknowledge it, but remembers that it was the last one. If it is lost nobody notices."""
+    """The node does not acknowledge it, but remembers that it was the last one.
+
+    If it is lost nobody notices.
+    """
     last = LINK.TELEMETRY[LINK.polled.telemetry]
     for _ in range(TRIES):
         device.send(message())
@@ -140,7 +167,9 @@ def silent(device: Session, message: type[Message]) -> None:
 
 
 def insist(device: Session, message: Message) -> None:
-    """Sends it until it is acknowledged, or refused twice: an acknowledge may be spoilt."""
+    """Sends it until it is acknowledged, or refused twice: an acknowledge may be
+    spoilt.
+    """
     refused = 0
     for _ in range(TRIES):
         try:
@@ -153,7 +182,9 @@ def insist(device: Session, message: Message) -> None:
 
 
 def transfer(device: Session, procedure):
-    """A spoilt acknowledge may look like a refusal, which ends a transfer: only what happens each time is believed."""
+    """A spoilt acknowledge may look like a refusal, which ends a transfer: only what
+    happens each time is believed.
+    """
     for _ in range(TRIES):
         try:
             return device.run(procedure())

@@ -25,7 +25,10 @@ class i2c_msg:
 
 
 class SMBus:
-    """A bus with one node. ``errors`` are raised first, one a transaction; ``parts`` is how many each had."""
+    """A bus with one node.
+
+    ``errors`` are raised first, one a transaction; ``parts`` is how many each had.
+    """
 
     def __init__(self, acp: Any, errors: list[int]) -> None:
         self.acp, self.errors, self.last, self.telecommands = acp, errors, 0, []
@@ -52,4 +55,8 @@ class SMBus:
         kind = self.acp.LINK.TELEMETRY[id]
         if kind is self.acp.TelecommandAcknowledge:
             return kind(last_tc_id=self.last, processed_flag=True).to_bytes()
-        return kind(node_type=self.acp.NODE_TYPE).to_bytes() if kind is self.acp.Identification else kind().to_bytes()
+        return (
+            kind(node_type=self.acp.NODE_TYPE).to_bytes()
+            if kind is self.acp.Identification
+            else kind().to_bytes()
+        )

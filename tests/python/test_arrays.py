@@ -36,7 +36,9 @@ messages:
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("arrays")
     (folder / "arrays.yaml").write_text(ICD, encoding="utf-8")
-    return packages.write(packages.read(folder / "arrays.yaml"), folder, "array_messages")
+    return packages.write(
+        packages.read(folder / "arrays.yaml"), folder, "array_messages"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +63,11 @@ def test_physical_values_of_an_array_are_read_and_set_together(everything):
     message.temperatures_c = [1, 2.5, -3]
     message.levels_physical = (1023.75, 0.25)
     assert (message.temperatures, message.levels) == ((100, 250, -300), (4095, 1))
-    assert everything.from_physical(temperatures_c=(1, 2, 3)).temperatures == (100, 200, 300)
+    assert everything.from_physical(temperatures_c=(1, 2, 3)).temperatures == (
+        100,
+        200,
+        300,
+    )
     assert everything().as_dict(physical=True)["temperatures_c"] == (0.0, 0.0, 0.0)
 
 
@@ -70,16 +76,30 @@ def test_physical_values_of_an_array_are_read_and_set_together(everything):
     [
         ("temperatures", (1, 2), "temperatures takes 3 values, not (1, 2)"),
         ("temperatures", 7, "temperatures takes 3 values, not 7"),
-        ("temperatures", (1, 2, 40000), "temperatures[2] takes integers from -32768 to 32767, not 40000"),
+        (
+            "temperatures",
+            (1, 2, 40000),
+            "temperatures[2] takes integers from -32768 to 32767, not 40000",
+        ),
         ("levels", (1, 4096), "levels[1] takes integers from 0 to 4095, not 4096"),
         ("levels", (1, 2, 3), "levels takes 2 values, not (1, 2, 3)"),
         ("flags", (True,) * 7, "flags takes 8 values"),
-        ("modes", (0, 1, 2, 4), "modes[3] takes members of Mode or integers from 0 to 3, not 4"),
+        (
+            "modes",
+            (0, 1, 2, 4),
+            "modes[3] takes members of Mode or integers from 0 to 3, not 4",
+        ),
         ("floats", (1e39, 0.0), "floats[0] takes 32-bit floats, not 1e+39"),
-        ("octets", [1, 2, 3, 4, 5, 6, 7, -1], "octets[7] takes integers from 0 to 255, not -1"),
+        (
+            "octets",
+            [1, 2, 3, 4, 5, 6, 7, -1],
+            "octets[7] takes integers from 0 to 255, not -1",
+        ),
     ],
 )
-def test_what_an_array_cannot_hold_is_refused_and_the_element_is_named(package, everything, attribute, value, said):
+def test_what_an_array_cannot_hold_is_refused_and_the_element_is_named(
+    package, everything, attribute, value, said
+):
     message = everything()
     setattr(message, attribute, value)
     with pytest.raises(package.module().RangeError) as caught:
@@ -88,9 +108,16 @@ def test_what_an_array_cannot_hold_is_refused_and_the_element_is_named(package, 
 
 
 @pytest.mark.parametrize(
-    ("value", "field"), [((1, 2), "temperatures_c"), (5, "temperatures_c"), ((0, 1e6, 0), "temperatures_c[1]")]
+    ("value", "field"),
+    [
+        ((1, 2), "temperatures_c"),
+        (5, "temperatures_c"),
+        ((0, 1e6, 0), "temperatures_c[1]"),
+    ],
 )
-def test_a_physical_value_that_does_not_fit_leaves_the_array_as_it_was(package, everything, value, field):
+def test_a_physical_value_that_does_not_fit_leaves_the_array_as_it_was(
+    package, everything, value, field
+):
     message = everything(temperatures=(1, 2, 3))
     with pytest.raises(package.module().RangeError) as caught:
         message.temperatures_c = value
@@ -113,20 +140,42 @@ def test_json_brings_an_array_back(everything):
 
 
 def test_columns_of_arrays_have_two_dimensions_and_tables_lists(everything):
-    frames = [bytes((7 * number + index) % 128 for index in range(43)) for number in range(5)]
+    frames = [
+        bytes((7 * number + index) % 128 for index in range(43)) for number in range(5)
+    ]
     messages = [everything.from_bytes(frame) for frame in frames]
     columns = everything.decode_many(b"".join(frames))
-    for name in ("temperatures", "levels", "flags", "modes", "floats", "doubles", "octets"):
+    for name in (
+        "temperatures",
+        "levels",
+        "flags",
+        "modes",
+        "floats",
+        "doubles",
+        "octets",
+    ):
         assert columns[name].shape == (5, len(getattr(messages[0], name)))
-        assert [tuple(row) for row in columns[name].tolist()] == [getattr(one, name) for one in messages]
+        assert [tuple(row) for row in columns[name].tolist()] == [
+            getattr(one, name) for one in messages
+        ]
     table = everything.decode_table(b"".join(frames))
-    assert str(table.schema.field("temperatures_c").type) == "fixed_size_list<item: double>[3]"
-    assert [tuple(row) for row in table["temperatures_c"].to_pylist()] == [one.temperatures_c for one in messages]
+    assert (
+        str(table.schema.field("temperatures_c").type)
+        == "fixed_size_list<item: double>[3]"
+    )
+    assert [tuple(row) for row in table["temperatures_c"].to_pylist()] == [
+        one.temperatures_c for one in messages
+    ]
 
 
 def test_what_is_told_of_an_array_is_told_of_its_elements(everything):
     info = everything.FIELDS[0]
-    assert (info.attribute, info.at, info.bits, info.elements) == ("temperatures", 0, 16, 3)
+    assert (info.attribute, info.at, info.bits, info.elements) == (
+        "temperatures",
+        0,
+        16,
+        3,
+    )
     assert [(one.attribute, one.at) for one in info.parts] == [
         ("temperatures[0]", 0),
         ("temperatures[1]", 16),

@@ -25,20 +25,32 @@ def test_columns_hold_what_single_frames_hold(package, physical):
         columns = case.cls.decode_many(b"".join(many), physical=physical)
         rows = [case.cls.from_bytes(frame).as_dict(physical) for frame in many]
         assert list(columns) == list(rows[0]) if rows[0] else not columns
-        for info, (name, column) in zip((*case.cls.FIELDS, *case.cls.VIEWS), columns.items(), strict=True):
+        for info, (name, column) in zip(
+            (*case.cls.FIELDS, *case.cls.VIEWS), columns.items(), strict=True
+        ):
             is_raw = info.type == "bytes" or (info.type == "text" and not physical)
             found = [bytes(row) for row in column] if is_raw else column.tolist()
             if info.curve and physical:
-                assert _bits(column.tolist()) == _bits([row[name] for row in rows]), (case.message.name, name)
+                assert _bits(column.tolist()) == _bits([row[name] for row in rows]), (
+                    case.message.name,
+                    name,
+                )
             elif info.type == "float":
                 bits = column.copy().view(f"u{info.bits // 8}").tolist()
-                assert bits == [raw(package, info, row[name]) for row in rows], (case.message.name, name)
+                assert bits == [raw(package, info, row[name]) for row in rows], (
+                    case.message.name,
+                    name,
+                )
             else:
                 assert found == [row[name] for row in rows], (case.message.name, name)
 
 
 def _bits(values: list) -> list[bytes]:
-    return [struct.pack("<d", value) for one in values for value in (one if hasattr(one, "__len__") else (one,))]
+    return [
+        struct.pack("<d", value)
+        for one in values
+        for value in (one if hasattr(one, "__len__") else (one,))
+    ]
 
 
 def test_columns_have_the_smallest_native_type(package):
@@ -52,9 +64,15 @@ def test_columns_have_the_smallest_native_type(package):
             if info.type in ("bytes", "text"):
                 assert columns[info.attribute].shape == (3, info.bits // 8)
                 continue
-            size = 1 if info.type == "bool" else next(size for size in (8, 16, 32, 64) if size >= info.bits) // 8
+            size = (
+                1
+                if info.type == "bool"
+                else next(size for size in (8, 16, 32, 64) if size >= info.bits) // 8
+            )
             letter = "i" if info.signed else WIDTHS[info.type]
-            assert kind == numpy.dtype(f"{letter}{'' if info.type == 'bool' else size}"), info
+            assert kind == numpy.dtype(
+                f"{letter}{'' if info.type == 'bool' else size}"
+            ), info
 
 
 @pytest.fixture(scope="module")
@@ -100,14 +118,25 @@ def test_any_buffer_will_do(angles):
 
 def test_tables_carry_units_and_names(shipped):
     acp = shipped.module("cubeacp")
-    table = acp.EstimatedAttitudeAngles.decode_table(struct.pack("<6h", 1, 2, 3, -4, -5, -6))
-    assert table.column_names == ["estimated_roll_angle_deg", "estimated_pitch_angle_deg", "estimated_yaw_angle_deg"]
+    table = acp.EstimatedAttitudeAngles.decode_table(
+        struct.pack("<6h", 1, 2, 3, -4, -5, -6)
+    )
+    assert table.column_names == [
+        "estimated_roll_angle_deg",
+        "estimated_pitch_angle_deg",
+        "estimated_yaw_angle_deg",
+    ]
     assert table["estimated_roll_angle_deg"].to_pylist() == [0.01, -0.04]
-    assert table.schema.field(0).metadata == {b"name": b"Estimated Roll Angle", b"unit": b"deg"}
+    assert table.schema.field(0).metadata == {
+        b"name": b"Estimated Roll Angle",
+        b"unit": b"deg",
+    }
     assert table.schema.metadata[b"node"] == b"cubeacp"
     assert table.schema.metadata[b"message"] == b"Estimated Attitude Angles"
     assert json.loads(table.schema.metadata[b"ids"]) == [146]
-    raw_table = acp.EstimatedAttitudeAngles.decode_table(struct.pack("<3h", 1, 2, 3), physical=False)
+    raw_table = acp.EstimatedAttitudeAngles.decode_table(
+        struct.pack("<3h", 1, 2, 3), physical=False
+    )
     assert raw_table["estimated_roll_angle"].to_pylist() == [1]
     state = acp.CurrentAdcsState.decode_table(bytes(12))
     values = json.loads(state.schema.field("control_mode").metadata[b"values"])
@@ -122,8 +151,14 @@ def test_tables_hold_every_type(package):
         table = case.cls.decode_table(b"".join(many), physical=False)
         for info in case.cls.FIELDS:
             if info.type != "float":
-                expected = [getattr(case.cls.from_bytes(frame), info.attribute) for frame in many]
-                assert table[info.attribute].to_pylist() == expected, (case.message.name, info.name)
+                expected = [
+                    getattr(case.cls.from_bytes(frame), info.attribute)
+                    for frame in many
+                ]
+                assert table[info.attribute].to_pylist() == expected, (
+                    case.message.name,
+                    info.name,
+                )
 
 
 def test_without_numpy_the_error_says_so(shipped):
@@ -131,5 +166,10 @@ def test_without_numpy_the_error_says_so(shipped):
         "import sys; sys.modules['numpy'] = None; from icdgen_messages.cubeacp import EstimatedAttitudeAngles as angles\n"
         "try: angles.decode_many(bytes(6))\nexcept ImportError as error: print(error.name)"
     )
-    done = subprocess.run([sys.executable, "-B", "-c", code], cwd=shipped.folder, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-B", "-c", code],
+        cwd=shipped.folder,
+        capture_output=True,
+        text=True,
+    )
     assert done.stdout.strip() == "numpy", done.stderr

@@ -1,4 +1,6 @@
-"""Messages are dataclasses for whoever looks at them as such: the standard library, pydantic, msgspec, JSON."""
+"""Messages are dataclasses for whoever looks at them as such: the standard library,
+pydantic, msgspec, JSON.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,10 @@ def test_the_signature_tells_raw_and_physical_names(acp):
     parameters = inspect.signature(acp.EstimatedAttitudeAngles).parameters
     assert [*parameters][:2] == ["estimated_roll_angle", "estimated_roll_angle_deg"]
     assert {one.kind for one in parameters.values()} == {inspect.Parameter.KEYWORD_ONLY}
-    assert (parameters["estimated_roll_angle_deg"].default, parameters["estimated_roll_angle"].default) == (0.0, 0)
+    assert (
+        parameters["estimated_roll_angle_deg"].default,
+        parameters["estimated_roll_angle"].default,
+    ) == (0.0, 0)
 
 
 def test_a_subclass_has_the_signature_of_its_own_init(acp):
@@ -61,9 +66,19 @@ def test_a_subclass_has_the_signature_of_its_own_init(acp):
 
 
 def test_a_message_is_made_of_raw_or_of_physical_values(acp):
-    assert acp.EstimatedAttitudeAngles(estimated_roll_angle_deg=1.5).estimated_roll_angle == 150
-    assert acp.EstimatedAttitudeAngles.from_physical(estimated_roll_angle_deg=1.5).estimated_roll_angle == 150
-    with pytest.raises(TypeError, match="takes estimated_roll_angle_deg, not estimated_roll_angle"):
+    assert (
+        acp.EstimatedAttitudeAngles(estimated_roll_angle_deg=1.5).estimated_roll_angle
+        == 150
+    )
+    assert (
+        acp.EstimatedAttitudeAngles.from_physical(
+            estimated_roll_angle_deg=1.5
+        ).estimated_roll_angle
+        == 150
+    )
+    with pytest.raises(
+        TypeError, match="takes estimated_roll_angle_deg, not estimated_roll_angle"
+    ):
         acp.EstimatedAttitudeAngles.from_physical(estimated_roll_angle=1)
 
 
@@ -80,7 +95,9 @@ def test_dictionaries_and_json_bring_messages_back(package):
         for frame in frames(case.message.length, 2):
             message = case.cls.from_bytes(frame)
             assert dataclasses.asdict(message) == raw(message)
-            assert case.cls.from_dict(message.as_dict()).to_bytes() == message.to_bytes()
+            assert (
+                case.cls.from_dict(message.as_dict()).to_bytes() == message.to_bytes()
+            )
             if all(info.type != "float" for info in case.cls.FIELDS):  # NaN
                 assert case.cls.from_json(message.to_json()) == message
         assert case.cls.from_dict({}) == case.cls.from_physical() == case.cls()
@@ -91,7 +108,9 @@ def test_dictionaries_and_json_bring_messages_back(package):
 def test_json_has_digits_for_bytes_and_numbers_for_enumerations(acp):
     state = acp.CurrentAdcsState(control_mode=acp.ConModeSelect(3))
     assert json.loads(state.to_json())["control_mode"] == 3
-    assert acp.CurrentAdcsState.from_json('{"control_mode": 3}').control_mode is acp.ConModeSelect(3)
+    assert acp.CurrentAdcsState.from_json(
+        '{"control_mode": 3}'
+    ).control_mode is acp.ConModeSelect(3)
     packet = acp.FileUploadPacket(file_bytes=bytes(range(20)))
     assert json.loads(packet.to_json())["file_bytes"] == bytes(range(20)).hex()
     assert acp.FileUploadPacket.from_json(packet.to_json()) == packet
@@ -125,13 +144,19 @@ def test_pydantic_reads_and_checks_messages(package):
 
 def test_pydantic_refuses_other_types(acp):
     adapter = pydantic.TypeAdapter(acp.EstimatedAttitudeAngles)
-    assert adapter.validate_json('{"estimated_roll_angle": 5}').estimated_roll_angle == 5
+    assert (
+        adapter.validate_json('{"estimated_roll_angle": 5}').estimated_roll_angle == 5
+    )
     with pytest.raises(pydantic.ValidationError):
         adapter.validate_json('{"estimated_roll_angle": "a"}')
 
 
-@pytest.mark.parametrize("name", ["shipped", "ordered"])  # msgspec has no enumerations of values above 2**63
+@pytest.mark.parametrize(
+    "name", ["shipped", "ordered"]
+)  # msgspec has no enumerations of values above 2**63
 def test_msgspec_reads_and_writes_messages(name, request):
     for case in cases(request.getfixturevalue(name)):
         message = case.cls.from_bytes(bytes(case.message.length))
-        assert msgspec.json.decode(msgspec.json.encode(message), type=case.cls) == message
+        assert (
+            msgspec.json.decode(msgspec.json.encode(message), type=case.cls) == message
+        )

@@ -40,9 +40,19 @@ def test_it_is_not_set(derived):
 
 def test_it_stands_behind_the_fields_of_a_message(derived):
     message = derived(lon=5)
-    assert [info.attribute for info in derived.VIEWS] == ["low", "longitude_deg", "power_v", "class_name", "mixed"]
+    assert [info.attribute for info in derived.VIEWS] == [
+        "low",
+        "longitude_deg",
+        "power_v",
+        "class_name",
+        "mixed",
+    ]
     assert list(message.as_dict())[-4:] == list(message.as_dict(physical=True))[-4:]
-    assert derived.from_dict(message.as_dict()) == derived.from_json(message.to_json(physical=True)) == message
+    assert (
+        derived.from_dict(message.as_dict())
+        == derived.from_json(message.to_json(physical=True))
+        == message
+    )
 
 
 @pytest.mark.parametrize("physical", [False, True])
@@ -51,7 +61,13 @@ def test_columns_have_the_same_bits(derived, physical):
     frames = [chance.randbytes(24) for _ in range(300)] + [bytes(24)]
     columns = derived.decode_many(b"".join(frames), physical=physical)
     for name in ("longitude_deg", "power_v", "class_name", "mixed"):
-        expected = [struct.pack("<d", getattr(derived.from_bytes(frame), name)) for frame in frames]
+        expected = [
+            struct.pack("<d", getattr(derived.from_bytes(frame), name))
+            for frame in frames
+        ]
         assert [struct.pack("<d", value) for value in columns[name]] == expected, name
     table = derived.decode_table(b"".join(frames), physical=physical)
-    assert table.schema.field("longitude_deg").metadata == {b"name": b"longitude", b"unit": b"deg"}
+    assert table.schema.field("longitude_deg").metadata == {
+        b"name": b"longitude",
+        b"unit": b"deg",
+    }

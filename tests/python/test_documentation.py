@@ -1,4 +1,6 @@
-"""The words of an ICD are words in docstrings too, for Sphinx and for tools that read Markdown."""
+"""The words of an ICD are words in docstrings too, for Sphinx and for tools that read
+Markdown.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +15,19 @@ from icdgen.render import Renderer
 from tests.conformance.icds import read
 from tests.icd import hostile_words
 
-# Inline markup where either language begins it, a hyperlink of reStructuredText, and what begins a block.
-MARKUP = re.compile(r"(?<!\\)(?:\\\\)*(?:`|<[A-Za-z/!]|(?:\A|(?<=\s))[*|](?=\S)|(?<=\w)_(?!\w))")
+# Inline markup where either language begins it, a hyperlink of reStructuredText, and
+# what begins a block.
+MARKUP = re.compile(
+    r"(?<!\\)(?:\\\\)*(?:`|<[A-Za-z/!]|(?:\A|(?<=\s))[*|](?=\S)|(?<=\w)_(?!\w))"
+)
 BLOCK = re.compile(r"[-+*] |\.\. |>>>|:\w|\d+[.)] ")
 
 
 @pytest.mark.parametrize("word", hostile_words.WORDS)
 def test_a_docstring_has_no_markup_and_says_what_the_icd_says(word):
-    text = ast.literal_eval(docstring(0, [prose(f"{word} {word}"), "Further words."])).splitlines()[0]
+    text = ast.literal_eval(
+        docstring(0, [prose(f"{word} {word}"), "Further words."])
+    ).splitlines()[0]
     assert not MARKUP.search(text) and not BLOCK.match(text)
     assert re.sub(r"\\(.)", r"\1", text) == f"{word} {word}"
 

@@ -31,7 +31,11 @@ def test_unknown_values_are_kept(mode, value):
     unknown = mode(value)
     assert unknown == value
     assert isinstance(unknown, mode)
-    assert (unknown.name, unknown.label, unknown.is_known) == (f"UNKNOWN_{value}", "", False)
+    assert (unknown.name, unknown.label, unknown.is_known) == (
+        f"UNKNOWN_{value}",
+        "",
+        False,
+    )
     assert unknown not in list(mode)
     assert pickle.loads(pickle.dumps(unknown)) == unknown
     assert copy.deepcopy(unknown) == unknown
@@ -39,11 +43,20 @@ def test_unknown_values_are_kept(mode, value):
 
 
 @pytest.mark.parametrize(
-    ("value", "name"), [(-1, "UNKNOWN_MINUS_1"), (-(1 << 63), f"UNKNOWN_MINUS_{1 << 63}"), (2, "UNKNOWN_2")]
+    ("value", "name"),
+    [
+        (-1, "UNKNOWN_MINUS_1"),
+        (-(1 << 63), f"UNKNOWN_MINUS_{1 << 63}"),
+        (2, "UNKNOWN_2"),
+    ],
 )
 def test_unknown_values_of_a_signed_enumeration_are_kept(odd, value, name):
     signed = odd.module("odd").Signed
-    assert (signed(value), signed(value).name, signed(value).is_known) == (value, name, False)
+    assert (signed(value), signed(value).name, signed(value).is_known) == (
+        value,
+        name,
+        False,
+    )
     assert pickle.loads(pickle.dumps(signed(value))) == value
     for beyond in (1 << 63, -(1 << 63) - 1):
         with pytest.raises(ValueError):
@@ -53,9 +66,15 @@ def test_unknown_values_of_a_signed_enumeration_are_kept(odd, value, name):
 def test_values_of_a_range_have_its_name_and_are_kept(odd):
     wide = odd.module("odd").WideEnum
     assert (wide.A_RANGE_FIRST, wide.A_RANGE_LAST) == (100, 200)
-    assert [wide(value).label for value in (99, 100, 101, 199, 200, 201)] == ["", *['A " range'] * 4, ""]
+    assert [wide(value).label for value in (99, 100, 101, 199, 200, 201)] == [
+        "",
+        *['A " range'] * 4,
+        "",
+    ]
     assert (wide(150).name, wide(150).is_known, wide(150)) == ("A_RANGE_150", True, 150)
-    assert pickle.loads(pickle.dumps(wide(150))).label == 'A " range' and wide(150) is wide(150)
+    assert pickle.loads(pickle.dumps(wide(150))).label == 'A " range' and wide(
+        150
+    ) is wide(150)
 
 
 def test_unknown_bytes_are_made_once(mode):

@@ -1,4 +1,6 @@
-"""Several requests under way in sessions over envelopes, over a port that answers as the test says."""
+"""Several requests under way in sessions over envelopes, over a port that answers as
+the test says.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ def package(tmp_path_factory):
     icd["protocol"]["stream"]["replies"]["Poll Status"] = "Navigation Status"
     folder = tmp_path_factory.mktemp("several")
     (folder / "receiver.yaml").write_text(yaml.safe_dump(icd))
-    return packages.write(packages.read(folder / "receiver.yaml"), folder, "several_messages")
+    return packages.write(
+        packages.read(folder / "receiver.yaml"), folder, "several_messages"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +45,9 @@ def wire(package):
 
 
 class Device:
-    """Notes which telecommands came, and sends what it is told to when so many have come."""
+    """Notes which telecommands came, and sends what it is told to when so many have
+    come.
+    """
 
     def __init__(self, wire, node, *answers):
         self.wire, self.node, self.answers, self.now = wire, node, list(answers), 0.0
@@ -55,7 +61,11 @@ class Device:
 
     def due(self):
         """What is to be sent by now."""
-        due = [self.line(message) for count, message in self.answers if count <= len(self.asked)]
+        due = [
+            self.line(message)
+            for count, message in self.answers
+            if count <= len(self.asked)
+        ]
         self.answers = [one for one in self.answers if one[0] > len(self.asked)]
         return b"".join(due)
 
@@ -64,11 +74,17 @@ class Device:
         return self.due()
 
     def session(self, **options):
-        return self.wire.Session(self.node.LINK, self.write, self.read, clock=lambda: self.now, **options)
+        return self.wire.Session(
+            self.node.LINK, self.write, self.read, clock=lambda: self.now, **options
+        )
 
 
 def test_several_are_asked_for_before_the_first_is_answered(wire, node):
-    answers = (2, node.NavigationStatus(fix=3)), (2, node.EndOfEpoch()), (2, node.NavigationClock(clock_bias=7))
+    answers = (
+        (2, node.NavigationStatus(fix=3)),
+        (2, node.EndOfEpoch()),
+        (2, node.NavigationClock(clock_bias=7)),
+    )
     device, heard = Device(wire, node, *answers), []
     session = device.session(on_event=heard.append)
     clock, status = session.get_several(node.NavigationClock, node.NavigationStatus)
@@ -79,9 +95,17 @@ def test_several_are_asked_for_before_the_first_is_answered(wire, node):
 
 
 def test_the_same_is_asked_for_again_when_it_has_come(wire, node):
-    device = Device(wire, node, (1, node.NavigationClock(clock_bias=1)), (2, node.NavigationClock(clock_bias=2)))
+    device = Device(
+        wire,
+        node,
+        (1, node.NavigationClock(clock_bias=1)),
+        (2, node.NavigationClock(clock_bias=2)),
+    )
     found = device.session().get_several(node.NavigationClock, node.NavigationClock)
-    assert [one.clock_bias for one in found] == [1, 2] and device.asked == [node.PollClock, node.PollClock]
+    assert [one.clock_bias for one in found] == [1, 2] and device.asked == [
+        node.PollClock,
+        node.PollClock,
+    ]
 
 
 def test_a_reply_that_does_not_come_is_told_of_and_nothing_goes_on(wire, node):
@@ -124,7 +148,9 @@ def talk(wire, node, talking, *answers, **settings):
         reader = asyncio.StreamReader()
         device = Device(wire, node, *answers)
         chosen = node.LINK.settings._replace(**settings)
-        session = wire.AsyncSession(node.LINK, reader, Writer(device, reader), settings=chosen)
+        session = wire.AsyncSession(
+            node.LINK, reader, Writer(device, reader), settings=chosen
+        )
         await asyncio.wait_for(talking(session, device, reader), 5)
         assert not session.client.busy and not session._boxes
 
@@ -146,7 +172,9 @@ def test_tasks_ask_together_and_one_listens(wire, node):
         reader.feed_data(device.line(node.EndOfEpoch(time_of_week=1)))
         get = session.get
         clock, status, again = await asyncio.gather(
-            get(node.NavigationClock), get(node.NavigationStatus), get(node.NavigationClock)
+            get(node.NavigationClock),
+            get(node.NavigationStatus),
+            get(node.NavigationClock),
         )
         assert (clock.clock_bias, status.fix, again.clock_bias) == (1, 3, 2)
         assert device.asked == [node.PollClock, node.PollStatus, node.PollClock]
@@ -170,7 +198,10 @@ def test_a_task_that_is_given_up_leaves_the_others_going_on(wire, node, given_up
             await asyncio.sleep(0)
         tasks[given_up].cancel()
         await asyncio.wait(tasks, timeout=0.01)
-        reader.feed_data(device.line(node.NavigationStatus(fix=1)) + device.line(node.NavigationClock()))
+        reader.feed_data(
+            device.line(node.NavigationStatus(fix=1))
+            + device.line(node.NavigationClock())
+        )
         other = await tasks[1 - given_up]
         assert isinstance(other, kinds[1 - given_up]) and tasks[given_up].cancelled()
 
@@ -180,9 +211,13 @@ def test_a_task_that_is_given_up_leaves_the_others_going_on(wire, node, given_up
 def test_each_task_is_told_of_its_own_time_out(wire, node):
     async def talking(session, device, reader):
         found = await asyncio.gather(
-            session.get(node.NavigationClock), session.get(node.NavigationStatus), return_exceptions=True
+            session.get(node.NavigationClock),
+            session.get(node.NavigationStatus),
+            return_exceptions=True,
         )
-        assert found[0] == node.NavigationClock() and isinstance(found[1], wire.ReplyTimeoutError)
+        assert found[0] == node.NavigationClock() and isinstance(
+            found[1], wire.ReplyTimeoutError
+        )
 
     talk(wire, node, talking, (2, node.NavigationClock()), reply_timeout=30, retries=1)
 
@@ -199,7 +234,9 @@ def test_all_are_told_that_the_connection_is_closed(wire, node):
 
 def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
     text = documents.text("reference/wire-framing")
-    (shown,) = re.findall(r"```python\n(clock, status = session.get_several.*?)```", text, re.S)
+    (shown,) = re.findall(
+        r"```python\n(clock, status = session.get_several.*?)```", text, re.S
+    )
     first, rest = shown.split("\n", 1)
     program = f"""\
     import asyncio
@@ -220,10 +257,18 @@ def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
     {first}
     assert (clock.clock_bias, status.fix, len(sent)) == (5, 3, 2)
     """
-    (tmp_path / "several.py").write_text("from __future__ import annotations\n\n" + textwrap.dedent(program) + rest)
+    (tmp_path / "several.py").write_text(
+        "from __future__ import annotations\n\n" + textwrap.dedent(program) + rest
+    )
     environment = {"PYTHONPATH": str(package.folder), "MYPYPATH": str(package.folder)}
     for command in ("several.py",), ("-m", "mypy", "--strict", "several.py"):
-        done = subprocess.run([sys.executable, *command], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        done = subprocess.run(
+            [sys.executable, *command],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
         assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -237,8 +282,12 @@ def test_over_other_links_several_are_asked_for_in_turn(shipped):
             assert not replies  # to the request before
             asked.append(event.message[0])
             (kind,) = (one for one in kinds if event.message[0] == one.ID)
-            replies.append(wire.uart_encode(acp.LINK, bytes([kind.ID]) + kind().to_bytes()))
+            replies.append(
+                wire.uart_encode(acp.LINK, bytes([kind.ID]) + kind().to_bytes())
+            )
 
-    session = wire.Session(acp.LINK, write, lambda seconds: replies.pop() if replies else b"")
+    session = wire.Session(
+        acp.LINK, write, lambda seconds: replies.pop() if replies else b""
+    )
     assert session.get_several(*kinds) == tuple(kind() for kind in kinds)
     assert asked == [kind.ID for kind in kinds]

@@ -15,7 +15,9 @@ from tests.python import packages
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("packets")
-    return packages.write(packages.read(LINKS / "packets.yaml"), folder, "packets_messages")
+    return packages.write(
+        packages.read(LINKS / "packets.yaml"), folder, "packets_messages"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -41,50 +43,82 @@ def test_the_data_tell_which_message_of_a_shared_id_it_is(node, stream):
     ):
         (event,) = events(stream, node, message)
         assert (event.id, event.kind) == (3, type(message))
-        assert event.of(type(message)) == message == node.decode_telemetry(event.id, event.data)
+        assert (
+            event.of(type(message))
+            == message
+            == node.decode_telemetry(event.id, event.data)
+        )
         assert event.of(node.Least) is None
 
 
 def test_data_that_are_of_no_message_of_their_id_have_no_class(package, node, stream):
     line = stream.stream_encode(node.LINK, 3, bytes(2), direction="telemetry")
     (event,) = stream.StreamDecoder(node.LINK).feed(line)
-    assert (event.event, event.kind, event.of(node.ShortLevel)) == ("message", None, None)
+    assert (event.event, event.kind, event.of(node.ShortLevel)) == (
+        "message",
+        None,
+        None,
+    )
     with pytest.raises(package.module("_errors").UnknownIdError):
         node.decode_telemetry(event.id, event.data)
 
 
-def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_in_envelopes(node, stream):
+def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_in_envelopes(
+    node, stream
+):
     choice = node.Choice(mode=1, level=5)
     (event,) = events(stream, node, choice)
     assert event.of(node.Choice) == choice and event.of(node.Choice).rate is None
-    points = node.Points(points_count=2, points=(node.Point(east=1, north=-1), node.Point(east=2)))
+    points = node.Points(
+        points_count=2, points=(node.Point(east=1, north=-1), node.Point(east=2))
+    )
     line = stream.stream_encode(node.LINK, points)
     (event,) = stream.StreamDecoder(node.LINK, "telecommand").feed(line)
     assert event.of(node.Points) == points
 
 
-def test_requests_that_different_telemetry_answers_are_under_way_together(package, node, stream):
-    client, events = package.module("wire.envelope_client").EnvelopeClient(node.LINK), package.module("wire.events")
+def test_requests_that_different_telemetry_answers_are_under_way_together(
+    package, node, stream
+):
+    client, events = package.module("wire.envelope_client").EnvelopeClient(
+        node.LINK
+    ), package.module("wire.events")
     asked = node.Order()
-    assert client.send(0, asked, reply=node.ShortLevel) == client.send(1, asked, reply=node.Least) == []
+    assert (
+        client.send(0, asked, reply=node.ShortLevel)
+        == client.send(1, asked, reply=node.Least)
+        == []
+    )
     with pytest.raises(package.module("wire.errors").BusyError, match="telemetry 3"):
-        client.send(2, asked, reply=node.LevelOfTheFirst)  # another message of the same id
+        client.send(
+            2, asked, reply=node.LevelOfTheFirst
+        )  # another message of the same id
     assert client.output() and client.output() and not client.output()
 
     def comes(now, message):
-        return client.received(now, stream.stream_encode(node.LINK, message, direction="telemetry"))
+        return client.received(
+            now, stream.stream_encode(node.LINK, message, direction="telemetry")
+        )
 
     (done,) = comes(3, node.Least())
-    assert isinstance(done, events.Done) and done.message == node.Least() and client.busy
+    assert (
+        isinstance(done, events.Done) and done.message == node.Least() and client.busy
+    )
     (other,) = comes(4, node.LevelOfTheFirst(level=1000))
     assert isinstance(other, events.Arrived)
     (done,) = comes(5, node.ShortLevel(level=7))
-    assert isinstance(done, events.Done) and done.of(node.ShortLevel).level == 7 and done.reply == 3
+    assert (
+        isinstance(done, events.Done)
+        and done.of(node.ShortLevel).level == 7
+        and done.reply == 3
+    )
     assert not client.busy and client.deadline is None
 
 
 def test_a_request_is_given_up_alone_and_what_was_not_taken_is_not_sent(package, node):
-    client = package.module("wire.envelope_client").EnvelopeClient(node.LINK, requests=2)
+    client = package.module("wire.envelope_client").EnvelopeClient(
+        node.LINK, requests=2
+    )
     asked = node.Order()
     client.send(0, asked, reply=node.ShortLevel)
     client.send(1, node.Points(), reply=node.Least)
@@ -125,8 +159,15 @@ assert all(isinstance(event, Arrived) and event.of(NavigationClock) for event in
 
 
 def test_a_session_asks_is_answered_and_listens_and_its_types_are_known(tmp_path):
-    packages.write(packages.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path, "icdgen_messages")
+    packages.write(
+        packages.read(ROOT / "examples" / "links" / "ubx.yaml"),
+        tmp_path,
+        "icdgen_messages",
+    )
     (tmp_path / "asking.py").write_text(ASKING)
-    for command in ([sys.executable, "asking.py"], [sys.executable, "-m", "mypy", "--strict", "asking.py"]):
+    for command in (
+        [sys.executable, "asking.py"],
+        [sys.executable, "-m", "mypy", "--strict", "asking.py"],
+    ):
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr

@@ -36,17 +36,29 @@ def test_files_end_like_files_and_hold_no_tabs_or_trailing_blanks(files):
     for path, text in files.items():
         if text:
             assert text.endswith("\n") and not text.endswith("\n\n"), path
-            assert not any(line != line.rstrip() or "\t" in line for line in text.splitlines()), path
+            assert not any(
+                line != line.rstrip() or "\t" in line for line in text.splitlines()
+            ), path
 
 
 def test_without_a_field_only_the_files_that_mention_it_change(files):
     icd = packages.shipped()
     node = icd.node("cubeacp")
     message = next(m for m in node.messages if m.name == "Estimated Attitude Angles")
-    fewer = replace(message, layout=replace(message.layout, fixed=message.layout.fixed[:-1]))
-    node_fewer = replace(node, messages=tuple(fewer if m is message else m for m in node.messages))
-    changed = packages.files(Icd(tuple(node_fewer if n is node else n for n in icd.nodes)))
-    differing = {path for path in files.keys() | changed.keys() if files.get(path) != changed.get(path)}
+    fewer = replace(
+        message, layout=replace(message.layout, fixed=message.layout.fixed[:-1])
+    )
+    node_fewer = replace(
+        node, messages=tuple(fewer if m is message else m for m in node.messages)
+    )
+    changed = packages.files(
+        Icd(tuple(node_fewer if n is node else n for n in icd.nodes))
+    )
+    differing = {
+        path
+        for path in files.keys() | changed.keys()
+        if files.get(path) != changed.get(path)
+    }
     assert differing == {"icdgen_messages/cubeacp/_types/estimated_attitude_angles.py"}
 
 
@@ -59,8 +71,13 @@ def test_the_project_needs_nothing_at_run_time(files):
 
 def test_the_package_can_have_another_name(files):
     other = packages.files(packages.shipped(), "adcs")
-    assert {path.replace("icdgen_messages/", "adcs/", 1) for path in files} == set(other)
-    assert not any("icdgen_messages" in text or "icdgen-messages" in text for text in other.values())
+    assert {path.replace("icdgen_messages/", "adcs/", 1) for path in files} == set(
+        other
+    )
+    assert not any(
+        "icdgen_messages" in text or "icdgen-messages" in text
+        for text in other.values()
+    )
 
 
 def test_no_icd_gives_a_package_without_nodes(tmp_path):

@@ -8,7 +8,14 @@ from icdgen import codec
 from icdgen.icd.places import raw_fields_in
 from tests.python.reference import cases, frames, raw
 
-TYPES = {"bool": bool, "uint": int, "int": int, "float": float, "bytes": bytes, "text": bytes}
+TYPES = {
+    "bool": bool,
+    "uint": int,
+    "int": int,
+    "float": float,
+    "bytes": bytes,
+    "text": bytes,
+}
 
 
 def test_every_frame_decodes_to_the_reference_values_and_back(package):
@@ -17,16 +24,24 @@ def test_every_frame_decodes_to_the_reference_values_and_back(package):
         for frame in frames(message.length):
             expected = codec.decode(node, message, frame)
             decoded = cls.from_bytes(frame)
-            found = {name: raw(package, info, getattr(decoded, info.attribute)) for name, info in infos.items()}
+            found = {
+                name: raw(package, info, getattr(decoded, info.attribute))
+                for name, info in infos.items()
+            }
             assert found == expected, (message.name, frame.hex())
-            assert decoded.to_bytes() == codec.encode(node, message, expected), (message.name, frame.hex())
+            assert decoded.to_bytes() == codec.encode(node, message, expected), (
+                message.name,
+                frame.hex(),
+            )
 
 
 def test_values_have_the_annotated_type(package):
     for case in cases(package):
         decoded = case.cls.from_bytes(b"\xa5" * case.message.length)
         for info in case.cls.FIELDS:
-            assert type(getattr(decoded, info.attribute)) is (info.enum or TYPES[info.type]), (
+            assert type(getattr(decoded, info.attribute)) is (
+                info.enum or TYPES[info.type]
+            ), (
                 case.message.name,
                 info.name,
             )
@@ -36,8 +51,15 @@ def test_any_buffer_decodes(package):
     for case in cases(package):
         frame = bytes(range(256)) * 3
         frame = frame[: case.message.length]
-        for buffer in (bytearray(frame), memoryview(frame), memoryview(bytearray(b"x" + frame))[1:]):
-            assert case.cls.from_bytes(buffer).to_bytes() == case.cls.from_bytes(frame).to_bytes()
+        for buffer in (
+            bytearray(frame),
+            memoryview(frame),
+            memoryview(bytearray(b"x" + frame))[1:],
+        ):
+            assert (
+                case.cls.from_bytes(buffer).to_bytes()
+                == case.cls.from_bytes(frame).to_bytes()
+            )
 
 
 def test_physical_values_agree_at_the_ends_and_in_between(package):
@@ -49,7 +71,15 @@ def test_physical_values_agree_at_the_ends_and_in_between(package):
             message = case.cls()
             low, high = field.raw_min, field.raw_max
             middle = (low + high) // 2
-            for value in {low, min(low + 1, high), middle, 0, min(1, high), max(high - 1, low), high}:
+            for value in {
+                low,
+                min(low + 1, high),
+                middle,
+                0,
+                min(1, high),
+                max(high - 1, low),
+                high,
+            }:
                 setattr(message, info.attribute, value)
                 physical = getattr(message, info.physical)
                 assert physical == codec.physical_double(field, value)
@@ -85,31 +115,76 @@ def test_a_raw_value_that_does_not_fit_is_refused_by_name(package):
 def unfit(field) -> list[object]:
     """Raw values that the field cannot hold."""
     if field.type == "float":
-        return [None, "1", b"1", 10**400, *([3.5e38, -1e39] if field.bits == 32 else [])]
+        return [
+            None,
+            "1",
+            b"1",
+            10**400,
+            *([3.5e38, -1e39] if field.bits == 32 else []),
+        ]
     if field.is_bytes:
-        return [b"", bytes(field.bits // 8 - 1), bytes(field.bits // 8 + 1), "x" * (field.bits // 8), None, 5]
-    return [field.raw_min - 1, field.raw_max + 1, 1 << 64, -(1 << 63) - 1, 10**30, -1.5, 0.5, "1", None, b"\x01", []]
+        return [
+            b"",
+            bytes(field.bits // 8 - 1),
+            bytes(field.bits // 8 + 1),
+            "x" * (field.bits // 8),
+            None,
+            5,
+        ]
+    return [
+        field.raw_min - 1,
+        field.raw_max + 1,
+        1 << 64,
+        -(1 << 63) - 1,
+        10**30,
+        -1.5,
+        0.5,
+        "1",
+        None,
+        b"\x01",
+        [],
+    ]
 
 
 def test_fresh_messages_hold_zeros_and_constants(package):
     for case in cases(package):
         message = case.cls()
         for field in raw_fields_in(case.message.layout):
-            value = raw(package, case.infos[field.name], getattr(message, case.infos[field.name].attribute))
-            assert value == (bytes(field.bits // 8) if field.is_bytes else field.const or 0)
+            value = raw(
+                package,
+                case.infos[field.name],
+                getattr(message, case.infos[field.name].attribute),
+            )
+            assert value == (
+                bytes(field.bits // 8) if field.is_bytes else field.const or 0
+            )
         assert len(message.to_bytes()) == case.message.length
 
 
 def test_classes_say_what_the_icd_says(package):
     for node, message, cls in cases(package):
-        assert (node.name, message.name, message.kind, message.length) == (cls.NODE, cls.NAME, cls.KIND, cls.LENGTH)
-        assert (message.table, message.acknowledge, message.ids) == (cls.TABLE, cls.ACKNOWLEDGED, cls.IDS)
+        assert (node.name, message.name, message.kind, message.length) == (
+            cls.NODE,
+            cls.NAME,
+            cls.KIND,
+            cls.LENGTH,
+        )
+        assert (message.table, message.acknowledge, message.ids) == (
+            cls.TABLE,
+            cls.ACKNOWLEDGED,
+            cls.IDS,
+        )
         if message.kind == "configuration":
             assert (message.set_id, message.get_id) == (cls.SET_ID, cls.GET_ID)
         else:
             assert message.id == cls.ID
         for field, info in zip(raw_fields_in(message.layout), cls.FIELDS, strict=True):
-            assert (info.name, info.at, info.bits, info.type) == (field.name, field.at, field.bits, field.type)
+            assert (info.name, info.at, info.bits, info.type) == (
+                field.name,
+                field.at,
+                field.bits,
+                field.type,
+            )
             assert info.unit == (field.unit.symbol if field.unit else "")
             assert info.const == field.const
             assert info.special == tuple((s.value, s.meaning) for s in field.special)

@@ -1,4 +1,6 @@
-"""What the README promises of annotations: all of what is public can be evaluated, with the oldest Python too."""
+"""What the README promises of annotations: all of what is public can be evaluated, with
+the oldest Python too.
+"""
 
 from __future__ import annotations
 
@@ -67,20 +69,29 @@ print(seen)
 
 def works(interpreter: str) -> bool:
     try:
-        return subprocess.run([interpreter, "-c", ""], capture_output=True).returncode == 0
+        return (
+            subprocess.run([interpreter, "-c", ""], capture_output=True).returncode == 0
+        )
     except OSError:
         return False
 
 
 def oldest() -> list[str]:
     """Python 3.9, where there is one."""
-    installed = sorted(map(str, (Path.home() / ".pyenv/versions").glob("3.9*/bin/python")))
+    installed = sorted(
+        map(str, (Path.home() / ".pyenv/versions").glob("3.9*/bin/python"))
+    )
     return [*filter(works, ["python3.9", *installed])][:1]
 
 
 @pytest.mark.parametrize("interpreter", [sys.executable, *oldest()])
 def test_annotations_of_all_that_is_public_can_be_evaluated(interpreter):
-    done = subprocess.run([interpreter, "-c", PROGRAM], cwd=ROOT / "generated/python", capture_output=True, text=True)
+    done = subprocess.run(
+        [interpreter, "-c", PROGRAM],
+        cwd=ROOT / "generated/python",
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     assert int(done.stdout) > 450
 
@@ -89,5 +100,7 @@ def test_importing_a_node_loads_nothing_that_only_annotations_name():
     program = "import sys, icdgen_messages.cubeacp as node; before = {*sys.modules}; assert node.decode_telemetry; "
     program += "assert not [name for name in ('icdgen_messages._base', 'typing') if name in before], before"
     command = [sys.executable, "-S", "-c", program]
-    done = subprocess.run(command, cwd=ROOT / "generated/python", capture_output=True, text=True)
+    done = subprocess.run(
+        command, cwd=ROOT / "generated/python", capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr

@@ -14,7 +14,9 @@ import pytest
 def run(package, code: str) -> str:
     """What a fresh interpreter prints."""
     code = f"import sys; sys.dont_write_bytecode = True\n{code}"
-    done = subprocess.run([sys.executable, "-c", code], cwd=package.folder, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=package.folder, capture_output=True, text=True
+    )
     assert not done.returncode, done.stderr
     return done.stdout.strip()
 
@@ -27,12 +29,20 @@ def test_importing_the_package_loads_no_node(shipped):
 
 
 def test_importing_a_node_loads_no_message(shipped):
-    assert run(shipped, f"import icdgen_messages.cubeacp\n{LOADED}") == "['_errors', '_lazy', 'cubeacp']"
+    assert (
+        run(shipped, f"import icdgen_messages.cubeacp\n{LOADED}")
+        == "['_errors', '_lazy', 'cubeacp']"
+    )
 
 
 def test_a_star_brings_all_that_a_node_has(shipped):
-    code = "from icdgen_messages.cubeacp import *\nfrom icdgen_messages import cubeacp\n"
-    told = run(shipped, f"{code}print(EstimatedAttitudeAngles.ID, TELEMETRY[146] is EstimatedAttitudeAngles, NAME)")
+    code = (
+        "from icdgen_messages.cubeacp import *\nfrom icdgen_messages import cubeacp\n"
+    )
+    told = run(
+        shipped,
+        f"{code}print(EstimatedAttitudeAngles.ID, TELEMETRY[146] is EstimatedAttitudeAngles, NAME)",
+    )
     assert told == "146 True cubeacp"
     missing = "print([n for n in dir(cubeacp) if n[0] != '_' and n not in globals()])"
     assert run(shipped, f"{code}{missing}") == "['TYPE_CHECKING', 'annotations']"
@@ -40,25 +50,46 @@ def test_a_star_brings_all_that_a_node_has(shipped):
 
 def test_every_public_module_lists_its_names_as_a_literal(package):
     """Type checkers and editors read it there; and all of it can be imported."""
-    files = [file for file in (package.folder / package.name).rglob("*.py") if _is_public(file)]
+    files = [
+        file
+        for file in (package.folder / package.name).rglob("*.py")
+        if _is_public(file)
+    ]
     for file in files:
         tree = ast.parse(file.read_text(encoding="utf-8"))
-        (names,) = (ast.literal_eval(one.value) for one in tree.body if _assigns(one, "__all__"))
-        defined = {one.name for one in tree.body if isinstance(one, (ast.ClassDef, ast.FunctionDef))}
-        assert {name for name in defined if name[0] != "_"} <= {*names} and len({*names}) == len(names), file
-        path = ".".join(file.relative_to(package.folder).with_suffix("").parts).removesuffix(".__init__")
+        (names,) = (
+            ast.literal_eval(one.value) for one in tree.body if _assigns(one, "__all__")
+        )
+        defined = {
+            one.name
+            for one in tree.body
+            if isinstance(one, (ast.ClassDef, ast.FunctionDef))
+        }
+        assert {name for name in defined if name[0] != "_"} <= {*names} and len(
+            {*names}
+        ) == len(names), file
+        path = ".".join(
+            file.relative_to(package.folder).with_suffix("").parts
+        ).removesuffix(".__init__")
         module = import_module(path)
         assert all(hasattr(module, name) for name in names), file
     assert len(files) > len(package.icd.nodes) + 10
 
 
 def _is_public(file: Path) -> bool:
-    """Whether users import from it: the package, its nodes, the wire layer; or it holds the types and links of a node."""
-    return file.name == "_link.py" or (file.parent.name == "_types") != (file.name == "__init__.py")
+    """Whether users import from it: the package, its nodes, the wire layer.
+
+    Or it holds the types and links of a node.
+    """
+    return file.name == "_link.py" or (file.parent.name == "_types") != (
+        file.name == "__init__.py"
+    )
 
 
 def _assigns(statement: ast.stmt, name: str) -> bool:
-    return isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == name
+    return (
+        isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == name
+    )
 
 
 def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
@@ -67,7 +98,9 @@ def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
     assert "wire.link" in run(shipped, f"{code}cubeacp.LINK\n{LOADED}")
     loaded = run(shipped, f"{code}wire.UartDecoder(cubeacp.LINK)\n{LOADED}")
     assert (
-        "wire.uart" in loaded and "wire.client" not in loaded and "_types" not in loaded.replace("'cubeacp._types'", "")
+        "wire.uart" in loaded
+        and "wire.client" not in loaded
+        and "_types" not in loaded.replace("'cubeacp._types'", "")
     )
 
 

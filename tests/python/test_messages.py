@@ -18,7 +18,9 @@ def acp(shipped):
 
 def test_messages_are_dataclasses_with_slots(package):
     for case in cases(package):
-        assert [field.name for field in dataclasses.fields(case.cls)] == [info.attribute for info in case.cls.FIELDS]
+        assert [field.name for field in dataclasses.fields(case.cls)] == [
+            info.attribute for info in case.cls.FIELDS
+        ]
         assert not hasattr(case.cls(), "__dict__")
 
 
@@ -59,7 +61,11 @@ def test_fields_are_given_by_name_only(acp):
 
 def test_dictionaries_hold_raw_or_physical_values(acp):
     angles = acp.EstimatedAttitudeAngles(estimated_roll_angle=-1234)
-    assert angles.as_dict() == {"estimated_roll_angle": -1234, "estimated_pitch_angle": 0, "estimated_yaw_angle": 0}
+    assert angles.as_dict() == {
+        "estimated_roll_angle": -1234,
+        "estimated_pitch_angle": 0,
+        "estimated_yaw_angle": 0,
+    }
     assert angles.as_dict(physical=True) == {
         "estimated_roll_angle_deg": -12.34,
         "estimated_pitch_angle_deg": 0.0,
@@ -79,10 +85,14 @@ def test_dispatch_finds_the_message_of_an_id(shipped):
         module = shipped.module(node.name)
         for message in shipped.icd.messages_of(node):
             if message.telecommand_id is not None:
-                found = module.decode_telecommand(message.telecommand_id, bytes(message.length))
+                found = module.decode_telecommand(
+                    message.telecommand_id, bytes(message.length)
+                )
                 assert (message.name, message.node) == (found.NAME, found.NODE)
             if message.telemetry_id is not None:
-                found = module.decode_telemetry(message.telemetry_id, bytes(message.length))
+                found = module.decode_telemetry(
+                    message.telemetry_id, bytes(message.length)
+                )
                 assert (message.name, message.node) == (found.NAME, found.NODE)
 
 
@@ -90,7 +100,11 @@ def test_dispatch_finds_the_message_of_an_id(shipped):
 def test_dispatch_refuses_unknown_ids(shipped, acp, id):
     with pytest.raises(shipped.module().UnknownIdError) as caught:
         acp.decode_telemetry(id, bytes(6))
-    assert (caught.value.node, caught.value.kind, caught.value.id) == ("cubeacp", "telemetry", id)
+    assert (caught.value.node, caught.value.kind, caught.value.id) == (
+        "cubeacp",
+        "telemetry",
+        id,
+    )
 
 
 def test_there_is_one_family_of_errors(shipped):

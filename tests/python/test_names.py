@@ -11,15 +11,32 @@ from icdgen.loading import load
 
 
 def node(**keys) -> dict:
-    head = {"name": "demo", "title": "Demo", "byte_order": "little", "bit_order": "lsb0", **keys.pop("node", {})}
+    head = {
+        "name": "demo",
+        "title": "Demo",
+        "byte_order": "little",
+        "bit_order": "lsb0",
+        **keys.pop("node", {}),
+    }
     return {"icdgen": 1, "node": head, **keys}
 
 
-def message(*names: str, name: str = "Some", id: int = 1, unit: str = "", formula: str = "") -> dict:
-    fields = [{"at": 8 * at, "bits": 8, "name": one, "type": "uint"} for at, one in enumerate(names)]
+def message(
+    *names: str, name: str = "Some", id: int = 1, unit: str = "", formula: str = ""
+) -> dict:
+    fields = [
+        {"at": 8 * at, "bits": 8, "name": one, "type": "uint"}
+        for at, one in enumerate(names)
+    ]
     if formula:
         fields[0] |= {"formula": formula, "unit": unit}
-    return {"name": name, "kind": "telemetry", "id": id, "length": len(fields), "fields": fields}
+    return {
+        "name": name,
+        "kind": "telemetry",
+        "id": id,
+        "length": len(fields),
+        "fields": fields,
+    }
 
 
 def clashes(tmp_path, tree) -> list[tuple[str, str]]:
@@ -65,18 +82,26 @@ def test_fields_that_would_break_the_class_are_found(tmp_path, name):
 
 
 def test_a_physical_value_may_not_be_named_like_another_field(tmp_path):
-    found = clashes(tmp_path, node(messages=[message("Roll", "Roll deg", formula="raw*2", unit="deg")]))
+    found = clashes(
+        tmp_path,
+        node(messages=[message("Roll", "Roll deg", formula="raw*2", unit="deg")]),
+    )
     assert found == [("field `Roll` of `Some`", "field `Roll deg` of `Some`")]
 
 
 def test_messages_and_enumerations_share_the_names_of_a_node(tmp_path):
     enums = [{"name": "SOME", "members": [{"value": 0, "name": "Zero"}]}]
     found = clashes(tmp_path, node(messages=[message("A")], enums=enums))
-    assert {owner for pair in found for owner in pair} == {"message `Some`", "enumeration `SOME`"}
+    assert {owner for pair in found for owner in pair} == {
+        "message `Some`",
+        "enumeration `SOME`",
+    }
 
 
 def test_a_node_may_not_be_named_like_what_the_package_uses(tmp_path):
-    assert clashes(tmp_path, node(node={"name": "sorted"})) == [("node `sorted`", "the function `sorted`")]
+    assert clashes(tmp_path, node(node={"name": "sorted"})) == [
+        ("node `sorted`", "the function `sorted`")
+    ]
 
 
 def test_members_that_become_the_same_are_found(tmp_path):

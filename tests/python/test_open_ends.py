@@ -11,7 +11,9 @@ from tests.python import packages
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("open")
-    return packages.write(packages.read(odd.FOLDER / "open.yaml"), folder, "open_messages")
+    return packages.write(
+        packages.read(odd.FOLDER / "open.yaml"), folder, "open_messages"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -32,13 +34,18 @@ def test_bytes_and_texts_are_as_long_as_they_are(messages):
     text.match_text = "hello"
     assert text.match == b"hello" and text.to_bytes() == b"\0\1hello"
     assert messages.Text.from_bytes(b"\0\1hello") == text
-    assert messages.Payload.from_bytes(b"").data == b"" and messages.Payload(data=b"\1").to_bytes() == b"\1"
+    assert (
+        messages.Payload.from_bytes(b"").data == b""
+        and messages.Payload(data=b"\1").to_bytes() == b"\1"
+    )
 
 
 def test_a_field_that_counts_must_agree(package, messages):
     errors = package.module("_errors")
     gauges = messages.Gauges(gauges=(300, 1))
-    with pytest.raises(errors.RangeError, match="gauges_count takes 2, as many as gauges has, not 0"):
+    with pytest.raises(
+        errors.RangeError, match="gauges_count takes 2, as many as gauges has, not 0"
+    ):
         gauges.to_bytes()
     gauges.gauges_count = 2
     assert gauges.to_bytes() == bytes([2, 0, 1, 44, 0, 1])
@@ -50,9 +57,13 @@ def test_a_field_may_count_what_stands_before_the_bytes_too(package, messages):
     errors, sized = package.module("_errors"), messages.SizedWithItsHead
     assert sized().octets_count == 4 and sized().to_bytes() == bytes([0, 0, 4, 0])
     message = sized(number=-1, data=b"abc", octets_count=7)
-    assert message.to_bytes() == b"\xff\xff\7\0abc" and sized.from_bytes(message.to_bytes()) == message
+    assert (
+        message.to_bytes() == b"\xff\xff\7\0abc"
+        and sized.from_bytes(message.to_bytes()) == message
+    )
     with pytest.raises(
-        errors.RangeError, match="octets_count takes 7, as many as data has, of which there are 3, not 3"
+        errors.RangeError,
+        match="octets_count takes 7, as many as data has, of which there are 3, not 3",
     ):
         sized(data=b"abc", octets_count=3).to_bytes()
     for counted, expected in ((3, 3), (0, 0), (6, 6)):
@@ -62,7 +73,10 @@ def test_a_field_may_count_what_stands_before_the_bytes_too(package, messages):
 
 def test_what_is_always_there_is_there_in_a_new_message(package, messages):
     errors, two = package.module("_errors"), messages.AtLeastTwo
-    assert (two().last, two().values) == (0, (-3, -3)) and two().values_physical == (-0.75, -0.75)
+    assert (two().last, two().values) == (0, (-3, -3)) and two().values_physical == (
+        -0.75,
+        -0.75,
+    )
     assert len(two().to_bytes()) == 7 and two.from_bytes(two().to_bytes()) == two()
     with pytest.raises(errors.LengthError, match="has 7 bytes, 4 given"):
         two.from_bytes(bytes(4))
@@ -81,7 +95,12 @@ def test_what_is_always_there_is_there_in_a_new_message(package, messages):
 def test_texts_may_be_an_array(package, messages):
     rows = messages.Rows()
     rows.words_text = ("a", "", "four", "12345678")
-    assert rows.words == (b"a".ljust(8, b"\0"), bytes(8), b"four".ljust(8, b"\0"), b"12345678")
+    assert rows.words == (
+        b"a".ljust(8, b"\0"),
+        bytes(8),
+        b"four".ljust(8, b"\0"),
+        b"12345678",
+    )
     rows.pairs = (b"ab", b"cd", b"ef")
     again = messages.Rows.from_bytes(rows.to_bytes())
     assert again == rows and again.words_text == ("a", "", "four", "12345678")
@@ -93,7 +112,9 @@ def test_texts_may_be_an_array(package, messages):
         rows.words_text = ("", "")
     with pytest.raises(error, match=r"pairs\[2\] takes 2 bytes"):
         messages.Rows(pairs=(b"ab", b"cd", b"e")).to_bytes()
-    opened = messages.WideRows.from_bytes(b"\1" + b"one".ljust(40, b"\0") + b"two".ljust(40, b"\0"))
+    opened = messages.WideRows.from_bytes(
+        b"\1" + b"one".ljust(40, b"\0") + b"two".ljust(40, b"\0")
+    )
     assert opened.extensions_text == ("one", "two") and len(opened.extensions) == 2
     with pytest.raises(error, match=r"extensions\[0\] takes 40 bytes"):
         messages.WideRows(extensions=(b"one",)).to_bytes()
@@ -109,10 +130,18 @@ def test_columns_hold_arrays_of_texts(messages):
     table = messages.Rows.decode_table(frames)
     assert table["words_text"].to_pylist() == [["a", "", "four", "12345678"], [""] * 4]
     assert table["pairs"].to_pylist() == [[b"ab", b"cd", b"ef"], [b"\0\0"] * 3]
-    assert messages.Rows.decode_table(frames, physical=False)["words"].to_pylist()[0][2] == b"four\0\0\0\0"
+    assert (
+        messages.Rows.decode_table(frames, physical=False)["words"].to_pylist()[0][2]
+        == b"four\0\0\0\0"
+    )
     opened = [b"\1" + b"one".ljust(40, b"\0"), b"\2"]
-    assert messages.WideRows.decode_table(opened)["extensions_text"].to_pylist() == [["one"], []]
-    raw = messages.WideRows.decode_table(opened, physical=False)["extensions"].to_pylist()
+    assert messages.WideRows.decode_table(opened)["extensions_text"].to_pylist() == [
+        ["one"],
+        [],
+    ]
+    raw = messages.WideRows.decode_table(opened, physical=False)[
+        "extensions"
+    ].to_pylist()
     assert raw == [[b"one".ljust(40, b"\0")], []]
 
 
@@ -136,9 +165,14 @@ def test_zeros_that_a_frame_ends_with_may_be_left_out(package, messages):
     whole = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80" + bytes(19))
     cut = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80")
     assert cut == whole and (cut.input, cut.value, cut.words_text) == (-2, 1.0, "")
-    assert len(cut.to_bytes()) == 23 and messages.Two.from_bytes(b"\0") == messages.Two()
+    assert (
+        len(cut.to_bytes()) == 23 and messages.Two.from_bytes(b"\0") == messages.Two()
+    )
     for size, known in ((0, 1), (24, 23)):
-        with pytest.raises(package.module("_errors").LengthError, match=f"has {known} byte.*, {size} given"):
+        with pytest.raises(
+            package.module("_errors").LengthError,
+            match=f"has {known} byte.*, {size} given",
+        ):
             messages.CutOff.from_bytes(bytes(size))
     frames = [b"\0\5\x3f\x80", bytes(23)]
     assert messages.CutOff.decode_many(frames)["value"].tolist() == [1.0, 0.0]
@@ -146,13 +180,20 @@ def test_zeros_that_a_frame_ends_with_may_be_left_out(package, messages):
 
 
 def test_columns_hold_what_is_there(package, messages):
-    frames = [messages.Narrow(samples=values).to_bytes() for values in ((), (1, -1), (7,))]
+    frames = [
+        messages.Narrow(samples=values).to_bytes() for values in ((), (1, -1), (7,))
+    ]
     column = messages.Narrow.decode_many(frames)["samples"]
     assert [one.tolist() for one in column] == [[], [1, -1], [7]]
-    assert messages.Narrow.decode_table(frames, physical=False)["samples"].to_pylist() == [[], [1, -1], [7]]
+    assert messages.Narrow.decode_table(frames, physical=False)[
+        "samples"
+    ].to_pylist() == [[], [1, -1], [7]]
     texts = messages.Text.decode_table([b"\0\1hi", b"\0\2"])
     assert texts["match_text"].to_pylist() == ["hi", ""]
-    assert messages.Payload.decode_table([b"ab", b""])["data"].to_pylist() == [b"ab", b""]
+    assert messages.Payload.decode_table([b"ab", b""])["data"].to_pylist() == [
+        b"ab",
+        b"",
+    ]
     assert messages.Narrow.decode_table([], physical=False)["samples"].to_pylist() == []
     with pytest.raises(package.module("_errors").IcdError, match="give them as a list"):
         messages.Narrow.decode_many(b"\0")
@@ -163,7 +204,11 @@ def test_an_open_end_of_structs_is_as_long_as_the_frame(package, messages):
     message = messages.TurnedStructs(inners=(inner, messages.Inner()))
     frame = message.to_bytes()
     assert len(frame) == 10 and messages.TurnedStructs.from_bytes(frame) == message
-    assert messages.TurnedStructs.from_bytes(b"").inners == () == messages.TurnedStructs().inners
+    assert (
+        messages.TurnedStructs.from_bytes(b"").inners
+        == ()
+        == messages.TurnedStructs().inners
+    )
     assert messages.TurnedStructs.from_json(message.to_json(physical=True)) == message
     errors = package.module("_errors")
     inner.type = 1 << 11
@@ -177,16 +222,28 @@ def test_an_open_end_of_structs_is_as_long_as_the_frame(package, messages):
 
 def test_columns_of_an_open_end_of_structs_are_lists(messages):
     frames = [
-        messages.TurnedStructs(inners=tuple(messages.Inner(type=n) for n in range(count))).to_bytes()
+        messages.TurnedStructs(
+            inners=tuple(messages.Inner(type=n) for n in range(count))
+        ).to_bytes()
         for count in (2, 0, 3)
     ]
     columns = messages.TurnedStructs.decode_many(frames, physical=True)
-    assert [row.tolist() for row in columns["inners.type_v"]] == [[-3.0, -2.75], [], [-3.0, -2.75, -2.5]]
-    assert [row.tolist() for row in columns["inners.flags[1]"]] == [[False] * 2, [], [False] * 3]
+    assert [row.tolist() for row in columns["inners.type_v"]] == [
+        [-3.0, -2.75],
+        [],
+        [-3.0, -2.75, -2.5],
+    ]
+    assert [row.tolist() for row in columns["inners.flags[1]"]] == [
+        [False] * 2,
+        [],
+        [False] * 3,
+    ]
     table = messages.TurnedStructs.decode_table(frames, physical=False)
     assert table["inners.type"].to_pylist() == [[0, 1], [], [0, 1, 2]]
     assert table["inners.text"].to_pylist() == [[b"\0"] * 2, [], [b"\0"] * 3]
-    assert messages.TurnedStructs.decode_table(frames, physical=True)["inners.text_text"].to_pylist() == [
+    assert messages.TurnedStructs.decode_table(frames, physical=True)[
+        "inners.text_text"
+    ].to_pylist() == [
         ["", ""],
         [],
         ["", "", ""],
@@ -195,16 +252,24 @@ def test_columns_of_an_open_end_of_structs_are_lists(messages):
 
 def test_several_parts_may_be_open(package, messages):
     errors, two = package.module("_errors"), messages.TwoOpenParts
-    message = two(number=2, values=(1, -2, 0, 0, 0), last=0, elements=(messages.Element(),))
+    message = two(
+        number=2, values=(1, -2, 0, 0, 0), last=0, elements=(messages.Element(),)
+    )
     frame = message.to_bytes()
     assert len(frame) == 4 + 2 * 3 + 24 and frame[4:10] == b"\0\0\1\xff\xff\xfe"
     again = two.from_bytes(frame)
-    assert (again.number, again.values, again.elements) == (2, (1, -2, 0, 0, 0), message.elements)
+    assert (again.number, again.values, again.elements) == (
+        2,
+        (1, -2, 0, 0, 0),
+        message.elements,
+    )
     assert again.values_physical[:2] == (0.25, -0.5) and again.to_bytes() == frame
     with pytest.raises(errors.RangeError, match="number takes 0 to 5, not 6"):
         two(number=6, elements=(messages.Element(),)).to_bytes()
     for size, expected in ((27, 28), (29, 34), (33, 34), (57, 34), (500, 82)):
-        with pytest.raises(errors.LengthError, match=f"has {expected} bytes, {size} given"):
+        with pytest.raises(
+            errors.LengthError, match=f"has {expected} bytes, {size} given"
+        ):
             two.from_bytes((frame * 20)[:size])
     with pytest.raises(errors.LengthError):
         two.from_bytes(b"\xff" * 400)

@@ -14,7 +14,11 @@ from tests.python import packages
 @pytest.fixture(scope="module", params=["odd", "shipped"])
 def package(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("parts")
-    icd = packages.shipped() if request.param == "shipped" else packages.read(composites.write(folder / "icd"))
+    icd = (
+        packages.shipped()
+        if request.param == "shipped"
+        else packages.read(composites.write(folder / "icd"))
+    )
     return packages.write(icd, folder, f"{request.param}_parts")
 
 
@@ -43,7 +47,9 @@ def test_all_parts_come_in_the_order_of_the_frame(package):
         expected = [(class_of(package, one.part), one.frame) for one in case.parts]
         assert sorted(found, key=str) == sorted(expected, key=str)
         if len(begins) == len(found):
-            assert [kind.NAME for kind, _ in found] == sorted(begins, key=begins.__getitem__)
+            assert [kind.NAME for kind, _ in found] == sorted(
+                begins, key=begins.__getitem__
+            )
 
 
 def test_what_it_does_not_repeat_is_refused(package):

@@ -26,7 +26,10 @@ def test_every_value_of_every_narrow_scale_is_exact_and_comes_back(shipped):
     checked = 0
     for case, field in distinct(shipped, 16):
         info = case.infos[field.name]
-        read, write = getattr(case.cls, info.physical).fget, getattr(case.cls, info.physical).fset
+        read, write = (
+            getattr(case.cls, info.physical).fget,
+            getattr(case.cls, info.physical).fset,
+        )
         p, c, q = info.scale
         assert Fraction(p, q) == field.scale.factor
         assert Fraction(c, q) == field.scale.offset
@@ -57,17 +60,39 @@ def test_any_double_finds_the_raw_value_that_the_reference_finds(name, request):
                 assert caught.value.field == info.physical
             else:
                 setattr(message, info.physical, value)
-                assert getattr(message, info.attribute) == expected, (case.message.name, field.name, value)
+                assert getattr(message, info.attribute) == expected, (
+                    case.message.name,
+                    field.name,
+                    value,
+                )
 
 
 def doubles(field):
     """Doubles on, between and beyond the physical values of the field."""
     step = abs(field.scale.factor)
-    for raw in (field.raw_min, field.raw_max, 0, 1, 7, (field.raw_min + field.raw_max) // 3):
+    for raw in (
+        field.raw_min,
+        field.raw_max,
+        0,
+        1,
+        7,
+        (field.raw_min + field.raw_max) // 3,
+    ):
         exact = field.scale.physical(raw)
-        for part in (0, Fraction(1, 2), Fraction(-1, 2), Fraction(49, 100), Fraction(3, 2), -1):
+        for part in (
+            0,
+            Fraction(1, 2),
+            Fraction(-1, 2),
+            Fraction(49, 100),
+            Fraction(3, 2),
+            -1,
+        ):
             near = float(exact + part * step)
-            yield from (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+            yield from (
+                near,
+                math.nextafter(near, math.inf),
+                math.nextafter(near, -math.inf),
+            )
     yield from (0.0, -0.0, 5e-324, 1e308, -1e308, math.nan, math.inf, -math.inf)
 
 
@@ -94,7 +119,9 @@ def test_what_is_no_number_is_refused(shipped):
 
 
 def test_a_physical_value_in_a_raw_attribute_is_told_where_it_belongs(shipped):
-    angles = shipped.module("cubeacp").EstimatedAttitudeAngles(estimated_roll_angle=12.5)
+    angles = shipped.module("cubeacp").EstimatedAttitudeAngles(
+        estimated_roll_angle=12.5
+    )
     said = r"^estimated_roll_angle takes integers .* \(estimated_roll_angle_deg takes physical values\), not 12\.5$"
     with pytest.raises(shipped.module().RangeError, match=said):
         angles.to_bytes()
@@ -110,7 +137,9 @@ def test_messages_are_made_from_physical_values(package):
             continue
         message = case.cls.from_bytes(bytes(case.message.length))
         values = message.as_dict(physical=True)
-        again = case.cls.from_physical(**{name: values[name] for name in map(physical_name, case.cls.FIELDS)})
+        again = case.cls.from_physical(
+            **{name: values[name] for name in map(physical_name, case.cls.FIELDS)}
+        )
         assert again == message
         assert case.cls.from_physical() == case.cls()
 
@@ -122,7 +151,12 @@ def test_whole_numbers_of_parts_of_a_unit_are_exact_and_come_back(package):
         if not info.whole:
             continue
         message = case.cls()
-        for raw in {field.raw_min, field.raw_max, field.raw_min // 2, (field.raw_min + field.raw_max) // 3}:
+        for raw in {
+            field.raw_min,
+            field.raw_max,
+            field.raw_min // 2,
+            (field.raw_min + field.raw_max) // 3,
+        }:
             setattr(message, info.attribute, raw)
             parts, exact = getattr(message, info.whole), field.scale.physical(raw)
             assert isinstance(parts, int) and parts in (exact * 1000, exact * 1_000_000)
@@ -140,6 +174,7 @@ def test_whole_numbers_are_set_to_the_nearest_raw_value(shipped):
         assert angles.estimated_roll_angle == raw
     for value in (-327686, 327675, "1", None):
         with pytest.raises(
-            shipped.module().RangeError, match=r"_mdeg takes -327680 to 327670 \(-327\.68 to 327\.67 deg\), not"
+            shipped.module().RangeError,
+            match=r"_mdeg takes -327680 to 327670 \(-327\.68 to 327\.67 deg\), not",
         ):
             angles.estimated_roll_angle_mdeg = value

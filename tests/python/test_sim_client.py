@@ -1,6 +1,8 @@
-"""A program over the generated package, against the simulator, over TCP: every message, files both ways, losses and faults.
+"""A program over the generated package, against the simulator, over TCP: every message,
+files both ways, losses and faults.
 
-``PYTHONPATH=generated/python python -m tests.sim.harness -- python -m tests.python.sim_client`` runs it with a megabyte.
+``PYTHONPATH=generated/python python -m tests.sim.harness -- python -m
+tests.python.sim_client`` runs it with a megabyte.
 """
 
 from __future__ import annotations
@@ -21,7 +23,10 @@ SIZE = 65_537  # the last block is of another length, its last packet of one byt
 def path(monkeypatch):
     before = os.environ.get("PYTHONPATH")
     monkeypatch.setenv(
-        "PYTHONPATH", os.pathsep.join(filter(None, [str(ROOT / "generated" / "python"), str(ROOT), before]))
+        "PYTHONPATH",
+        os.pathsep.join(
+            filter(None, [str(ROOT / "generated" / "python"), str(ROOT), before])
+        ),
     )
 
 
@@ -32,8 +37,14 @@ def test_every_message_and_files_in_both_directions(loss):
 
 @pytest.mark.parametrize("fault", ["corrupt", "late"])
 def test_acknowledges_that_are_damaged_or_late_cost_nothing_but_time(fault):
-    assert harness.run(CLIENT, 20_481, "10", [f"{fault}=10%@acknowledge"], limit=60) is None
+    assert (
+        harness.run(CLIENT, 20_481, "10", [f"{fault}=10%@acknowledge"], limit=60)
+        is None
+    )
 
 
 def test_another_node_is_noticed():
-    assert harness.run(CLIENT, 100, "0", [], node="bootloader", limit=60) == "ended with 3: "
+    assert (
+        harness.run(CLIENT, 100, "0", [], node="bootloader", limit=60)
+        == "ended with 3: "
+    )

@@ -1,4 +1,6 @@
-"""Sphinx makes pages of a generated package without a warning, and finds what stands beside each attribute."""
+"""Sphinx makes pages of a generated package without a warning, and finds what stands
+beside each attribute.
+"""
 
 from __future__ import annotations
 
@@ -33,14 +35,31 @@ def pages(package, modules, folder) -> str:
     source, out = folder / "source", folder / "out"
     source.mkdir()
     names = [package.name, *(f"{package.name}.{module}" for module in modules)]
-    sections = [f"{name}\n{'=' * len(name)}\n\n.. automodule:: {name}\n" for name in names]
-    (source / "index.rst").write_text("Messages\n########\n\n" + "\n".join(sections), encoding="utf-8")
+    sections = [
+        f"{name}\n{'=' * len(name)}\n\n.. automodule:: {name}\n" for name in names
+    ]
+    (source / "index.rst").write_text(
+        "Messages\n########\n\n" + "\n".join(sections), encoding="utf-8"
+    )
     told = CONFIGURATION.format(folder=str(package.folder), package=package.name)
     (source / "conf.py").write_text(told, encoding="utf-8")
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(source), str(out)]
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "-q",
+        "-W",
+        "--keep-going",
+        "-b",
+        "html",
+        str(source),
+        str(out),
+    ]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
-    return html.unescape(re.sub(r"<[^>]+>", "", (out / "index.html").read_text(encoding="utf-8")))
+    return html.unescape(
+        re.sub(r"<[^>]+>", "", (out / "index.html").read_text(encoding="utf-8"))
+    )
 
 
 def test_sphinx_makes_pages_of_the_shipped_package(shipped, tmp_path):
@@ -52,7 +71,9 @@ def test_sphinx_makes_pages_of_the_shipped_package(shipped, tmp_path):
 
 def test_examples_in_docstrings_are_true(shipped):
     found = [doctest.testmod(shipped.module(name)) for name in ("_errors", "_codec")]
-    assert [one.failed for one in found] == [0, 0] and all(one.attempted for one in found)
+    assert [one.failed for one in found] == [0, 0] and all(
+        one.attempted for one in found
+    )
 
 
 @pytest.mark.parametrize("name", ["odd", "ordered"])
@@ -61,6 +82,8 @@ def test_sphinx_takes_the_words_of_any_icd_as_words(name, request, tmp_path):
     modules = [
         f"{node.name}._types.{path.stem}"
         for node in package.icd.nodes
-        for path in sorted((package.folder / package.name / node.name / "_types").glob("[!_]*.py"))
+        for path in sorted(
+            (package.folder / package.name / node.name / "_types").glob("[!_]*.py")
+        )
     ]
     assert pages(package, modules[:15], tmp_path)

@@ -11,14 +11,18 @@ import pytest
 from tests.c.test_structs import ICD
 from tests.python import packages
 
-FRAME = bytes((0x32, 0x64, 0x00, 1, 2, 0x12, 0xFE, 0xFF, 3, 4, 0xF0, 0x00, 0x80, 5, 6, 7))
+FRAME = bytes(
+    (0x32, 0x64, 0x00, 1, 2, 0x12, 0xFE, 0xFF, 3, 4, 0xF0, 0x00, 0x80, 5, 6, 7)
+)
 
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("structs")
     (folder / "demo.yaml").write_text(ICD, encoding="utf-8")
-    return packages.write(packages.read(folder / "demo.yaml"), folder, "struct_messages")
+    return packages.write(
+        packages.read(folder / "demo.yaml"), folder, "struct_messages"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +32,11 @@ def demo(package):
 
 def test_a_struct_is_read_and_written_where_it_stands(demo):
     view = demo.View.from_bytes(FRAME)
-    assert (view.best.system, view.best.quality, view.best.signals) == (demo.System.GALILEO, 3, (1, 2))
+    assert (view.best.system, view.best.quality, view.best.signals) == (
+        demo.System.GALILEO,
+        3,
+        (1, 2),
+    )
     assert view.best.azimuth_deg == 50.0
     assert view.pairs[0].both[0].azimuth_deg == -1.0
     assert [one.signals for one in view.pairs[0].both] == [(3, 4), (5, 6)]
@@ -42,7 +50,11 @@ def test_each_new_message_has_structs_of_its_own(demo):
     assert one == other and one.pairs[0].version == 7
     one.best.azimuth = 3
     one.pairs[0].both[0].quality = 1
-    assert (other.best.azimuth, other.pairs[0].both[0].quality, one.pairs[0].both[1].quality) == (0, 0, 0)
+    assert (
+        other.best.azimuth,
+        other.pairs[0].both[0].quality,
+        one.pairs[0].both[1].quality,
+    ) == (0, 0, 0)
     assert one != other
     assert demo.View(best=demo.Satellite(azimuth_deg=-2.0)).best.azimuth == -4
 
@@ -50,11 +62,19 @@ def test_each_new_message_has_structs_of_its_own(demo):
 def test_dictionaries_and_json_nest(demo):
     view = demo.View.from_bytes(FRAME)
     values = view.as_dict()
-    assert values["best"]["azimuth"] == 100 and values["pairs"][0]["both"][1]["signals"] == (5, 6)
+    assert values["best"]["azimuth"] == 100 and values["pairs"][0]["both"][1][
+        "signals"
+    ] == (5, 6)
     assert view.as_dict(physical=True)["best"]["azimuth_deg"] == 50.0
-    assert demo.View.from_dict(values) == demo.View.from_dict(view.as_dict(physical=True)) == view
+    assert (
+        demo.View.from_dict(values)
+        == demo.View.from_dict(view.as_dict(physical=True))
+        == view
+    )
     assert demo.View.from_json(view.to_json()) == view
-    assert demo.View.from_dict({"best": {"quality": 5}}) == demo.View(best=demo.Satellite(quality=5))
+    assert demo.View.from_dict({"best": {"quality": 5}}) == demo.View(
+        best=demo.Satellite(quality=5)
+    )
     assert demo.Satellite.from_json(view.best.to_json()) == view.best
 
 
@@ -63,17 +83,31 @@ def test_what_takes_dataclasses_takes_structs(demo):
     assert dataclasses.asdict(view)["pairs"][0]["both"][0]["signals"] == (3, 4)
     assert dataclasses.replace(view.best, quality=1).quality == 1
     assert copy.deepcopy(view) == view and copy.deepcopy(view).best is not view.best
-    assert repr(view.best).startswith("Satellite(system=<System.GALILEO: 2>, quality=3,")
+    assert repr(view.best).startswith(
+        "Satellite(system=<System.GALILEO: 2>, quality=3,"
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda v: setattr(v.best, "quality", 16), "best.quality takes integers from 0 to 15, not 16"),
-        (lambda v: setattr(v.pairs[0].both[1], "signals", (1, 256)), "pairs[0].both[1].signals[1] takes integers"),
-        (lambda v: setattr(v.pairs[0].both[1], "signals", (1,)), "pairs[0].both[1].signals takes 2 values"),
+        (
+            lambda v: setattr(v.best, "quality", 16),
+            "best.quality takes integers from 0 to 15, not 16",
+        ),
+        (
+            lambda v: setattr(v.pairs[0].both[1], "signals", (1, 256)),
+            "pairs[0].both[1].signals[1] takes integers",
+        ),
+        (
+            lambda v: setattr(v.pairs[0].both[1], "signals", (1,)),
+            "pairs[0].both[1].signals takes 2 values",
+        ),
         (lambda v: setattr(v, "pairs", ()), "pairs takes 1 values, not ()"),
-        (lambda v: setattr(v, "best", None), "best.system takes members of System or integers from 0 to 15, not None"),
+        (
+            lambda v: setattr(v, "best", None),
+            "best.system takes members of System or integers from 0 to 15, not None",
+        ),
         (lambda v: setattr(v, "pairs", 3), "pairs takes 1 values, not 3"),
     ],
 )
@@ -87,7 +121,13 @@ def test_what_a_struct_cannot_hold_is_refused_and_named(package, demo, change, s
 
 @pytest.mark.parametrize(
     "values",
-    [{"best": {"nothing": 1}}, {"pairs": {"both": ()}}, {"pairs": [{"both": [{}]}]}, {"best": 3}, {"pairs": "x"}],
+    [
+        {"best": {"nothing": 1}},
+        {"pairs": {"both": ()}},
+        {"pairs": [{"both": [{}]}]},
+        {"best": 3},
+        {"pairs": "x"},
+    ],
 )
 def test_values_that_are_no_structs_are_refused(package, demo, values):
     with pytest.raises(package.module().IcdError):
@@ -103,7 +143,12 @@ def test_each_field_of_a_struct_is_a_column(demo):
 
 def test_what_is_told_of_a_struct_leads_to_its_fields(demo):
     pairs = demo.View.FIELDS[1]
-    assert (pairs.type, pairs.struct, pairs.elements, pairs.at) == ("struct", demo.Pair, 1, 40)
+    assert (pairs.type, pairs.struct, pairs.elements, pairs.at) == (
+        "struct",
+        demo.Pair,
+        1,
+        40,
+    )
     assert [one.attribute for one in pairs.leaves[-4:]] == [
         "pairs[0].both[1].azimuth", "pairs[0].both[1].signals[0]", "pairs[0].both[1].signals[1]", "pairs[0].version",
     ]  # fmt: skip
@@ -133,7 +178,11 @@ messages:
 def test_nans_in_structs_keep_their_bits(tmp_path):
     (tmp_path / "floats.yaml").write_text(FLOATS, encoding="utf-8")
     floats = (
-        packages.write(packages.read(tmp_path / "floats.yaml"), tmp_path, "floats_messages").module("floats").Floats
+        packages.write(
+            packages.read(tmp_path / "floats.yaml"), tmp_path, "floats_messages"
+        )
+        .module("floats")
+        .Floats
     )
     frame = bytes.fromhex("7f800001" "00000000" "00" "ffa5a5a5" "00000000" "00")
     message = floats.from_bytes(frame)

@@ -1,4 +1,6 @@
-"""Generated packages pass the formatter, the linter and both type checkers, whatever the names."""
+"""Generated packages pass the formatter, the linter and both type checkers, whatever
+the names.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +32,13 @@ def tool(package: Package, *command: str | Path) -> subprocess.CompletedProcess[
 
 @pytest.fixture(scope="module")
 def long(tmp_path_factory) -> Package:
-    """Made from an ICD with names of all lengths. It is not imported: files of such names are beyond most file systems."""
-    icd = packages.read(lengths.write(tmp_path_factory.mktemp("lengths"), range(48, 98)))
+    """Made from an ICD with names of all lengths.
+
+    It is not imported: files of such names are beyond most file systems.
+    """
+    icd = packages.read(
+        lengths.write(tmp_path_factory.mktemp("lengths"), range(48, 98))
+    )
     return packages.write(icd, tmp_path_factory.mktemp("long"), "long_messages")
 
 
@@ -59,14 +66,20 @@ def test_programs_that_use_the_package_are_checked(shipped, tmp_path):
     check(shipped, "pyright", write(shipped, "user.py"))
 
 
-@pytest.mark.parametrize("command", [("mypy", "--strict", "--show-error-codes"), ("pyright",)])
+@pytest.mark.parametrize(
+    "command", [("mypy", "--strict", "--show-error-codes"), ("pyright",)]
+)
 def test_mistakes_in_programs_are_found(shipped, tmp_path, command):
     program = write(shipped, "misuse.py")
     lines = program.read_text(encoding="utf-8").splitlines()
-    wrong = {number for number, line in enumerate(lines, 1) if line.endswith("# expect")}
+    wrong = {
+        number for number, line in enumerate(lines, 1) if line.endswith("# expect")
+    }
     cache = ("--cache-dir", tmp_path) if command[0] == "mypy" else ()
     done = tool(shipped, *command, *cache, program)
-    found = {int(number) for number in re.findall(r"misuse\.py:(\d+):.* error", done.stdout)}
+    found = {
+        int(number) for number in re.findall(r"misuse\.py:(\d+):.* error", done.stdout)
+    }
     assert found == wrong, done.stdout
 
 

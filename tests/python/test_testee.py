@@ -21,7 +21,11 @@ ANGLES = {"node": "cubeacp", "kind": "telemetry", "id": 146}
 def test_frames_are_decoded(ask):
     answer = ask(op="decode", bytes="2efb0a000000", **ANGLES)
     assert answer["ok"]
-    assert answer["raw"] == {"Estimated Roll Angle": -1234, "Estimated Pitch Angle": 10, "Estimated Yaw Angle": 0}
+    assert answer["raw"] == {
+        "Estimated Roll Angle": -1234,
+        "Estimated Pitch Angle": 10,
+        "Estimated Yaw Angle": 0,
+    }
     assert answer["physical"]["Estimated Roll Angle"] == "c028ae147ae147ae"
     assert answer["bytes"] == "2efb0a000000"
 
@@ -29,12 +33,17 @@ def test_frames_are_decoded(ask):
 def test_common_messages_are_found_by_every_node_that_speaks_them(ask):
     for node in ("common", "cubeacp", "bootloader"):
         assert ask(op="decode", node=node, kind="telecommand", id=1, bytes="5a")["ok"]
-    assert ask(op="decode", node="cubemag", kind="telecommand", id=1, bytes="5a")["error"] == "unknown-id"
+    assert (
+        ask(op="decode", node="cubemag", kind="telecommand", id=1, bytes="5a")["error"]
+        == "unknown-id"
+    )
 
 
 def test_configuration_takes_either_id(ask):
     for id in (120, 247):
-        assert ask(op="decode", node="common", kind="configuration", id=id, bytes="00" * 16)["ok"]
+        assert ask(
+            op="decode", node="common", kind="configuration", id=id, bytes="00" * 16
+        )["ok"]
 
 
 @pytest.mark.parametrize(
@@ -67,4 +76,7 @@ def test_it_answers_a_line_a_line_until_the_end(shipped):
         capture_output=True,
     )
     assert done.returncode == 0 and not done.stderr
-    assert done.stdout.splitlines()[1:] == [b"ok node_type=10 interface_version=7", b"refused unknown-id"]
+    assert done.stdout.splitlines()[1:] == [
+        b"ok node_type=10 interface_version=7",
+        b"refused unknown-id",
+    ]

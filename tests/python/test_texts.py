@@ -46,13 +46,23 @@ def test_what_is_no_such_text_is_refused_and_nothing_set(odd, texts, text):
 
 def test_physical_values_of_a_message_hold_its_texts(texts):
     message = texts.from_physical(software_text="1.2", raw_physical=6)
-    physical = {"software_text": "1.2", "one_text": "", "hard_ware_text": "", "raw_physical": 6.0}
+    physical = {
+        "software_text": "1.2",
+        "one_text": "",
+        "hard_ware_text": "",
+        "raw_physical": 6.0,
+    }
     assert message.as_dict(physical=True) == physical
 
 
 def test_tables_have_texts_as_strings(texts):
-    frames = b"".join(texts.from_physical(software_text=text).to_bytes() for text in ("", "abc", "x" * 30))
+    frames = b"".join(
+        texts.from_physical(software_text=text).to_bytes()
+        for text in ("", "abc", "x" * 30)
+    )
     table = texts.decode_table(frames)
     assert table["software_text"].to_pylist() == ["", "abc", "x" * 30]
     assert str(table.schema.field("software_text").type) == "string"
-    assert texts.decode_table(frames, physical=False)["software"].to_pylist()[1] == b"abc".ljust(30, b"\0")
+    assert texts.decode_table(frames, physical=False)["software"].to_pylist()[
+        1
+    ] == b"abc".ljust(30, b"\0")

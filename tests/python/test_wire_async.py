@@ -26,7 +26,13 @@ def place(tmp_path_factory):
     """Where a simulator listens that holds a file."""
     file = tmp_path_factory.mktemp("files") / "file.bin"
     file.write_bytes(bytes(range(256)) * 3)
-    options = "--set", "Estimated Attitude Angles", "roll=-12.34", "--file", f"2:5={file}"
+    options = (
+        "--set",
+        "Estimated Attitude Angles",
+        "roll=-12.34",
+        "--file",
+        f"2:5={file}",
+    )
     with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, _):
         yield urlsplit(place)
 
@@ -69,13 +75,18 @@ def test_a_command_is_acknowledged_and_a_frame_comes(wire, acp, place):
     angles, outcome = asyncio.run(talk())
     assert angles.estimated_roll_angle_deg == -12.34
     assert isinstance(outcome, wire.Done) and outcome.message == angles
-    assert outcome.of(acp.EstimatedAttitudeAngles) == angles and outcome.of(acp.Identification) is None
+    assert (
+        outcome.of(acp.EstimatedAttitudeAngles) == angles
+        and outcome.of(acp.Identification) is None
+    )
 
 
 def test_requests_of_several_tasks_wait_for_each_other(wire, acp, place):
     async def talk():
         async with session(wire, acp, place) as device:
-            return await asyncio.gather(*(device.get(acp.Identification) for _ in range(5)))
+            return await asyncio.gather(
+                *(device.get(acp.Identification) for _ in range(5))
+            )
 
     assert [one.node_type for one in asyncio.run(talk())] == [acp.NODE_TYPE] * 5
 
@@ -110,7 +121,9 @@ class Quiet:
 
 @pytest.mark.parametrize("turns", range(6))
 def test_a_cancellation_at_the_moment_that_bytes_come_loses_neither(wire, acp, turns):
-    """Bytes come, and some turns of the loop later the task is cancelled, unless it is done by then."""
+    """Bytes come, and some turns of the loop later the task is cancelled, unless it is
+    done by then.
+    """
 
     async def talk():
         reader = asyncio.StreamReader()
@@ -137,7 +150,9 @@ def test_a_cancelled_session_leaves_the_streams_to_whoever_reads_next(wire, acp)
         device = wire.AsyncSession(acp.LINK, reader, Quiet())
         with pytest.raises(asyncio.TimeoutError):
             await asyncio.wait_for(device.wait(), 0.01)
-        assert not [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
+        assert not [
+            task for task in asyncio.all_tasks() if task is not asyncio.current_task()
+        ]
         reader.feed_data(b"free")
         return await reader.read(4)
 
@@ -171,7 +186,9 @@ def test_silence_is_a_time_out_and_a_connection_that_closes_is_told(wire, acp):
         async with served(wire, acp, silent) as device:
             with pytest.raises(wire.ReplyTimeoutError, match="after 2 attempts"):
                 await device.get(acp.Identification)
-            assert isinstance(await device.start(wire.Request("telemetry", 128)), wire.Timeout)
+            assert isinstance(
+                await device.start(wire.Request("telemetry", 128)), wire.Timeout
+            )
         async with served(wire, acp, deaf) as device:
             with pytest.raises(ConnectionResetError, match="closed"):
                 await device.get(acp.Identification)
@@ -182,12 +199,21 @@ def test_silence_is_a_time_out_and_a_connection_that_closes_is_told(wire, acp):
 
 def test_a_message_of_another_node_is_refused_at_once(shipped, wire, acp, place):
     boot = shipped.module("bootloader")
-    assert boot.State.ID in acp.TELEMETRY and acp.TELEMETRY[boot.State.ID] is not boot.State
+    assert (
+        boot.State.ID in acp.TELEMETRY
+        and acp.TELEMETRY[boot.State.ID] is not boot.State
+    )
 
     async def talk():
         async with session(wire, acp, place) as device:
-            for asked in (device.get(boot.State), device.ask(boot.State), device.send(boot.SetBootIndex())):
-                with pytest.raises(shipped.module().UnknownIdError, match="cubeacp has no"):
+            for asked in (
+                device.get(boot.State),
+                device.ask(boot.State),
+                device.send(boot.SetBootIndex()),
+            ):
+                with pytest.raises(
+                    shipped.module().UnknownIdError, match="cubeacp has no"
+                ):
                     await asked
 
     asyncio.run(talk())

@@ -1,4 +1,6 @@
-"""`Session(LINK, port)` with the ports that users have: pyserial, sockets, python-can, smbus2."""
+"""`Session(LINK, port)` with the ports that users have: pyserial, sockets, python-can,
+smbus2.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,11 @@ class Node(threading.Thread):
 
     def __init__(self, read, write) -> None:
         super().__init__(daemon=True)
-        self.read, self.write, self.port = read, write, Port(packages.shipped(), "cubeacp")
+        self.read, self.write, self.port = (
+            read,
+            write,
+            Port(packages.shipped(), "cubeacp"),
+        )
         self.start()
 
     def run(self) -> None:
@@ -67,7 +73,10 @@ def test_a_serial_port_of_pyserial(acp, wire):
 
 
 def test_a_socket_of_tcp(acp, wire):
-    with socket.create_server(("127.0.0.1", 0)) as server, socket.create_connection(server.getsockname()) as port:
+    with (
+        socket.create_server(("127.0.0.1", 0)) as server,
+        socket.create_connection(server.getsockname()) as port,
+    ):
         far, _ = server.accept()
         with far:
             Node(lambda: far.recv(4096), far.sendall)
@@ -99,7 +108,9 @@ def test_streams_of_asyncio(acp, wire):
             with far:
                 Node(lambda: far.recv(4096), far.sendall)
                 session = wire.AsyncSession(acp.LINK, reader, writer)
-                assert (await session.get(acp.Identification)).node_type == acp.NODE_TYPE
+                assert (
+                    await session.get(acp.Identification)
+                ).node_type == acp.NODE_TYPE
                 await session.send(acp.ClearErrors())
                 writer.close()
                 await writer.wait_closed()
@@ -108,11 +119,20 @@ def test_streams_of_asyncio(acp, wire):
 
 
 class CanNode(threading.Thread):
-    """A node on a CAN bus: acknowledges telecommands, and answers requests. ``noise`` is sent before each answer."""
+    """A node on a CAN bus: acknowledges telecommands, and answers requests.
+
+    ``noise`` is sent before each answer.
+    """
 
     def __init__(self, acp, wire, bus: can.BusABC, noise: list[can.Message]) -> None:
         super().__init__(daemon=True)
-        self.acp, self.wire, self.bus, self.noise, self.telecommands = acp, wire, bus, noise, []
+        self.acp, self.wire, self.bus, self.noise, self.telecommands = (
+            acp,
+            wire,
+            bus,
+            noise,
+            [],
+        )
         self.joiner = wire.CanJoiner(acp.LINK, acp.LINK.can.node_address, 1)
         self.over = threading.Event()
         self.start()
@@ -121,7 +141,11 @@ class CanNode(threading.Thread):
         while not self.over.is_set():
             found = self.bus.recv(0.05)
             for event in (
-                self.joiner.feed(0, self.wire.CanPacket(found.arbitration_id, bytes(found.data))) if found else ()
+                self.joiner.feed(
+                    0, self.wire.CanPacket(found.arbitration_id, bytes(found.data))
+                )
+                if found
+                else ()
             ):
                 if event.message:
                     self.answer(event.message)
@@ -130,25 +154,44 @@ class CanNode(threading.Thread):
         kind, data = "acknowledge", b""
         if asked.kind == "request":
             frame = self.acp.LINK.TELEMETRY[asked.id]
-            one = frame(node_type=self.acp.NODE_TYPE) if frame is self.acp.Identification else frame()
+            one = (
+                frame(node_type=self.acp.NODE_TYPE)
+                if frame is self.acp.Identification
+                else frame()
+            )
             kind, data = "reply", one.to_bytes()
         else:
             self.telecommands.append((asked.id, asked.data))
         for message in self.noise:
             self.bus.send(message)
-        reply = self.wire.CanMessage(kind, asked.id, self.acp.LINK.can.node_address, asked.source, data)
+        reply = self.wire.CanMessage(
+            kind, asked.id, self.acp.LINK.can.node_address, asked.source, data
+        )
         for packet in self.wire.can_split(self.acp.LINK, reply):
-            self.bus.send(can.Message(arbitration_id=packet.id, data=packet.data, is_extended_id=True))
+            self.bus.send(
+                can.Message(
+                    arbitration_id=packet.id, data=packet.data, is_extended_id=True
+                )
+            )
 
 
 @pytest.mark.parametrize(
     "noise",
-    [[], [can.Message(arbitration_id=5, data=b"12", is_extended_id=False), can.Message(is_remote_frame=True)]],
+    [
+        [],
+        [
+            can.Message(arbitration_id=5, data=b"12", is_extended_id=False),
+            can.Message(is_remote_frame=True),
+        ],
+    ],
     ids=["alone", "beside others"],
 )
 def test_a_can_bus_of_python_can(acp, wire, noise, request):
     channel = request.node.name
-    with can.Bus(channel, interface="virtual") as port, can.Bus(channel, interface="virtual") as far:
+    with (
+        can.Bus(channel, interface="virtual") as port,
+        can.Bus(channel, interface="virtual") as far,
+    ):
         node = CanNode(acp, wire, far, noise)
         talks(acp, wire.Session(acp.LINK, port, address=7))
         node.over.set()
@@ -159,7 +202,9 @@ def test_a_can_bus_of_python_can(acp, wire, noise, request):
 def test_an_i2c_bus_of_smbus2(acp, wire):
     bus = smbus_fake.SMBus(acp, [])
     talks(acp, wire.Session(acp.LINK, bus))
-    assert bus.telecommands == [bytes([acp.ClearErrors.ID]) + acp.ClearErrors().to_bytes()]
+    assert bus.telecommands == [
+        bytes([acp.ClearErrors.ID]) + acp.ClearErrors().to_bytes()
+    ]
 
 
 def test_a_transaction_that_the_node_does_not_take_is_made_again(acp, wire):
@@ -172,9 +217,14 @@ def test_a_transaction_that_the_node_does_not_take_is_made_again(acp, wire):
 
 
 def test_a_read_that_wants_a_stop_before_it_is_a_transaction_of_its_own(acp, wire):
-    for link, parts in (acp.LINK, [2]), (acp.LINK._replace(i2c_repeated_start=False), [1, 1]):
+    for link, parts in (acp.LINK, [2]), (
+        acp.LINK._replace(i2c_repeated_start=False),
+        [1, 1],
+    ):
         bus = smbus_fake.SMBus(acp, [])
-        assert wire.Session(link, bus).get(acp.Identification).node_type == acp.NODE_TYPE
+        assert (
+            wire.Session(link, bus).get(acp.Identification).node_type == acp.NODE_TYPE
+        )
         assert bus.parts == parts
 
 
@@ -186,7 +236,9 @@ def test_other_errors_of_an_i2c_bus_are_raised(acp, wire):
 
 
 def test_what_is_no_port_is_refused(acp, wire):
-    with pytest.raises(TypeError, match="str is no port: a session takes a serial port, a socket"):
+    with pytest.raises(
+        TypeError, match="str is no port: a session takes a serial port, a socket"
+    ):
         wire.Session(acp.LINK, "/dev/ttyUSB0")
 
 

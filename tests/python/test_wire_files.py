@@ -18,10 +18,23 @@ from tests.python.wire import NODE, known, link
 
 KINDS = [
     {"do": "list"},
-    {"do": "download", "bus": "uart", "type": 2, "counter": 1, "size": 130, "block": 80},
+    {
+        "do": "download",
+        "bus": "uart",
+        "type": 2,
+        "counter": 1,
+        "size": 130,
+        "block": 80,
+    },
     {"do": "download", "bus": "i2c", "type": 2, "counter": 1, "block": 60},
     {"do": "download", "bus": "can", "type": 2, "counter": 2, "size": 0},
-    {"do": "upload", "node": "bootloader", "destination": 3, "bytes": bytes(range(150)).hex(), "block": 80},
+    {
+        "do": "upload",
+        "node": "bootloader",
+        "destination": 3,
+        "bytes": bytes(range(150)).hex(),
+        "block": 80,
+    },
     {"do": "erase", "type": 2, "counter": 1, "all": True},
     {"do": "format"},
 ]
@@ -38,7 +51,9 @@ def facts_of(request: dict) -> Facts:
 
 
 def node_of(request: dict, seed: int, loss: float) -> nodes.FileNode:
-    node = nodes.FileNode(facts_of(request), request.get("bus", "uart"), Random(seed), loss)
+    node = nodes.FileNode(
+        facts_of(request), request.get("bus", "uart"), Random(seed), loss
+    )
     node.files.update({(2, 0): b"", (2, 1): bytes(range(130)), (2, 2): b"\x1f" * 41})
     return node
 
@@ -50,7 +65,11 @@ def compare(shipped, request: dict) -> dict:
     return made
 
 
-@given(st.integers(0, 1 << 32), st.sampled_from(KINDS), st.sampled_from([0.0, 0.1, 0.3, 0.6]))
+@given(
+    st.integers(0, 1 << 32),
+    st.sampled_from(KINDS),
+    st.sampled_from([0.0, 0.1, 0.3, 0.6]),
+)
 @settings(max_examples=60)
 def test_against_a_node_that_loses_things(shipped, seed, request, loss):
     script, _ = record(facts_of(request), request, node_of(request, seed, loss))
@@ -74,13 +93,25 @@ def test_against_any_outcome_at_any_time(shipped, data, request):
         now += data.draw(st.sampled_from([0, 1, 50, 600, 20_000]))
         row: dict = {"at": now}
         if asked is None and data.draw(st.booleans()):
-            number, piece = data.draw(st.integers(0, 9)), data.draw(st.binary(min_size=20, max_size=20))
+            number, piece = data.draw(st.integers(0, 9)), data.draw(
+                st.binary(min_size=20, max_size=20)
+            )
             row["event"] = {"event": "packet", "number": number, "bytes": piece.hex()}
         elif asked is not None:
             row["event"] = {"event": data.draw(OUTCOMES)}
             if row["event"]["event"] == "done":
-                length = facts_of(request).telemetry[asked.id].length if asked.kind == "telemetry" else 0
-                frame = data.draw(st.lists(st.sampled_from([0, 0, 1, 2, 130, 255]), min_size=length, max_size=length))
+                length = (
+                    facts_of(request).telemetry[asked.id].length
+                    if asked.kind == "telemetry"
+                    else 0
+                )
+                frame = data.draw(
+                    st.lists(
+                        st.sampled_from([0, 0, 1, 2, 130, 255]),
+                        min_size=length,
+                        max_size=length,
+                    )
+                )
                 row["event"]["bytes"] = bytes(frame).hex()
         if "event" in row:
             procedure.event(now, row["event"])

@@ -1,4 +1,7 @@
-"""Sessions over ports that fail, and over serial ports; requests that are given up or come too late."""
+"""Sessions over ports that fail, and over serial ports.
+
+Requests that are given up or come too late.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +69,9 @@ def test_a_session_goes_on_after_whoever_is_told_of_events_fails(shipped, wire):
     def on_event(event):
         raise KeyError("no such handler")
 
-    talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock, on_event=on_event)
+    talking = wire.Session(
+        acp.LINK, port.write, port.read, clock=port.clock, on_event=on_event
+    )
     port.line._send(0, "log", wire.LogMessage.encode(acp.LINK, bytes(10), []))
     with pytest.raises(KeyError):
         talking.get(acp.Identification)
@@ -78,7 +83,11 @@ def test_the_reply_to_a_cancelled_request_is_not_that_to_the_next(shipped, wire)
     client = wire.Client(acp.LINK, "uart")
     client.request(0, acp.EstimatedAttitudeAngles)
     client.cancel()
-    assert (client.busy, client.deadline, client.output()) == (False, None, b"")  # what was not taken is not sent
+    assert (client.busy, client.deadline, client.output()) == (
+        False,
+        None,
+        b"",
+    )  # what was not taken is not sent
     client.request(1, acp.EstimatedAttitudeAngles)
     assert client.output() == b""  # the same id waits: it may have been sent
     client.cancel()
@@ -97,7 +106,9 @@ def test_a_transfer_that_was_not_taken_cannot_end(shipped, wire):
     client.transfers()
     client.cancel()
     client.send(1, acp.Reset())
-    assert client.transferred(2, bytes(6)) == [wire.Stray(bytes(6))]  # of the frame: the reset is not written
+    assert client.transferred(2, bytes(6)) == [
+        wire.Stray(bytes(6))
+    ]  # of the frame: the reset is not written
     assert client.busy
     client.transfers()
     (done,) = client.transferred(3, b"")
@@ -145,9 +156,13 @@ def test_a_serial_port_of_pyserial_will_do(shipped, wire, line):
 
 
 @pytest.mark.pty
-def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(shipped, wire, line):
+def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(
+    shipped, wire, line
+):
     acp = shipped.module("cubeacp")
-    settings = wire.Settings(reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1)
+    settings = wire.Settings(
+        reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1
+    )
     talking = wire.Session(acp.LINK, *wire.serial_port(line[0]), settings=settings)
     with pytest.raises(wire.ReplyTimeoutError, match="2 attempts"):
         talking.get(acp.Identification)
@@ -181,14 +196,21 @@ def test_a_socket_will_do(shipped, wire):
         near.shutdown(socket.SHUT_RDWR)
 
 
-def test_a_socket_on_which_nothing_comes_is_not_waited_for_any_longer_and_keeps_its_own_time_out(shipped, wire):
+def test_a_socket_on_which_nothing_comes_is_not_waited_for_any_longer_and_keeps_its_own_time_out(
+    shipped, wire
+):
     acp = shipped.module("cubeacp")
-    settings = wire.Settings(reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1)
+    settings = wire.Settings(
+        reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1
+    )
     near, far = socket.socketpair()
     with near, far:
         near.settimeout(7)
         talking = wire.Session(acp.LINK, *wire.socket_port(near), settings=settings)
-        with pytest.raises(wire.ReplyTimeoutError, match=r"^Identification \(id 128\) had no reply after 2 attempts$"):
+        with pytest.raises(
+            wire.ReplyTimeoutError,
+            match=r"^Identification \(id 128\) had no reply after 2 attempts$",
+        ):
             talking.get(acp.Identification)
         assert near.gettimeout() == 7
 
@@ -207,7 +229,11 @@ def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
     ("fault", "error", "said"),
     [
         ("nack=100%", "RefusedError", "Clear Errors (id 12) was refused: parameter"),
-        ("drop=100%", "ReplyTimeoutError", "Clear Errors (id 12) had no reply after 1 attempt"),
+        (
+            "drop=100%",
+            "ReplyTimeoutError",
+            "Clear Errors (id 12) had no reply after 1 attempt",
+        ),
     ],
 )
 def test_an_error_names_the_message(shipped, wire, fault, error, said):

@@ -28,7 +28,12 @@ def wire(shipped):
 def session(shipped, node: str = "cubeacp", **options):
     port = Port(packages.shipped(), node, **options)
     wire = shipped.module("wire")
-    return wire.Session(shipped.module(node).LINK, port.write, port.read, clock=port.clock), port
+    return (
+        wire.Session(
+            shipped.module(node).LINK, port.write, port.read, clock=port.clock
+        ),
+        port,
+    )
 
 
 def test_the_node_is_the_one_that_the_package_was_made_for(shipped, wire):
@@ -47,7 +52,11 @@ def test_all_telemetry_can_be_requested(shipped):
 def test_every_setting_reads_back_what_was_set(shipped):
     acp = shipped.module("cubeacp")
     talking, _ = session(shipped)
-    settings = [message for _, message in acp.TELECOMMANDS.items() if message.KIND == "configuration"]
+    settings = [
+        message
+        for _, message in acp.TELECOMMANDS.items()
+        if message.KIND == "configuration"
+    ]
     clock = {"Current Unix Time"}  # goes on
     assert len(settings) > 20
     for message in settings:
@@ -62,15 +71,23 @@ def test_every_setting_reads_back_what_was_set(shipped):
 
 def test_every_telecommand_has_an_outcome(shipped, wire):
     acp, icd = shipped.module("cubeacp"), packages.shipped()
-    steps = icd.protocol_of(icd.node("cubeacp"))["file_transfer"]["upload"]  # which the ICD gives to another program
-    uploads = {step["message"] for step in steps.values() if isinstance(step, dict) and "message" in step}
+    steps = icd.protocol_of(icd.node("cubeacp"))["file_transfer"][
+        "upload"
+    ]  # which the ICD gives to another program
+    uploads = {
+        step["message"]
+        for step in steps.values()
+        if isinstance(step, dict) and "message" in step
+    }
     talking, _ = session(shipped)
     for _, message in acp.TELECOMMANDS.items():
         if message.NAME not in RESETS:
             try:
                 talking.send(message())
             except wire.RefusedError as error:
-                assert error.event.reason == ("unknown_id" if message.NAME in uploads else "parameter")
+                assert error.event.reason == (
+                    "unknown_id" if message.NAME in uploads else "parameter"
+                )
     assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
 
 
@@ -85,15 +102,22 @@ def test_a_refusal_and_a_silent_node_are_errors(shipped, wire):
     assert 3.9 < port.clock() < 4.1
 
 
-@pytest.mark.parametrize("faults", ["corrupt=10%", "late=10%", "cut=10%", "noise=20%", "duplicate=30%", "repeat=10%"])
-def test_nothing_hangs_and_telemetry_gets_through_whatever_happens_to_the_bytes(shipped, wire, faults):
+@pytest.mark.parametrize(
+    "faults",
+    ["corrupt=10%", "late=10%", "cut=10%", "noise=20%", "duplicate=30%", "repeat=10%"],
+)
+def test_nothing_hangs_and_telemetry_gets_through_whatever_happens_to_the_bytes(
+    shipped, wire, faults
+):
     acp = shipped.module("cubeacp")
     talking, port = session(shipped, faults=[faults], seed=3, late=700)
     got = 0
     for _ in range(100):
         try:
             talking.send(acp.ClearErrors(), repeat=True)
-            got += isinstance(talking.get(acp.EstimatedAttitudeAngles), acp.EstimatedAttitudeAngles)
+            got += isinstance(
+                talking.get(acp.EstimatedAttitudeAngles), acp.EstimatedAttitudeAngles
+            )
         except (wire.RefusedError, wire.ReplyTimeoutError):
             continue
     assert got >= 95
@@ -109,7 +133,12 @@ def file(tmp_path):
 
 @pytest.mark.parametrize("loss", [0, 1, 10, 30])
 def test_a_file_arrives_byte_for_byte(shipped, wire, file, loss):
-    talking, _ = session(shipped, files=[f"2:5={file}"], faults=[f"drop={loss}%@packet"] * bool(loss), seed=loss)
+    talking, _ = session(
+        shipped,
+        files=[f"2:5={file}"],
+        faults=[f"drop={loss}%@packet"] * bool(loss),
+        seed=loss,
+    )
     (entry,) = talking.run(wire.FileList(shipped.module("cubeacp").LINK)).entries
     assert (entry.type, entry.counter, entry.size) == (2, 5, 61_441)
     shown = []
@@ -121,8 +150,19 @@ def test_a_file_arrives_byte_for_byte(shipped, wire, file, loss):
 
 @pytest.mark.parametrize("loss", [0, 1, 10, 30])
 def test_a_program_arrives_byte_for_byte(shipped, wire, file, tmp_path, loss):
-    faults = [f"drop={loss}%@upload", f"corrupt={loss / 10}%@acknowledge", f"late={loss / 10}%@acknowledge"]
-    talking, _ = session(shipped, "bootloader", uploads=tmp_path, faults=faults * bool(loss), seed=loss, boot=10**9)
+    faults = [
+        f"drop={loss}%@upload",
+        f"corrupt={loss / 10}%@acknowledge",
+        f"late={loss / 10}%@acknowledge",
+    ]
+    talking, _ = session(
+        shipped,
+        "bootloader",
+        uploads=tmp_path,
+        faults=faults * bool(loss),
+        seed=loss,
+        boot=10**9,
+    )
     upload = wire.Upload(shipped.module("bootloader").LINK, 3, file.read_bytes())
     talking.run(upload)
     assert upload.progress == (61_441, 61_441)
@@ -137,34 +177,61 @@ def test_a_node_that_loses_every_packet_is_given_up(shipped, wire, file):
 
 
 def refusing(shipped, name: str, times: int, code: int = 0x55):
-    """A session with a bootloader that refuses a telecommand; what it tells; and the port."""
+    """A session with a bootloader that refuses a telecommand.
+
+    What it tells; and the port.
+    """
     heard, boot = [], shipped.module("bootloader")
-    port = Refusing(packages.shipped(), "bootloader", getattr(boot, name).ID, code, times, boot=10**9)
-    talking = shipped.module("wire").Session(boot.LINK, port.write, port.read, clock=port.clock, on_event=heard.append)
+    port = Refusing(
+        packages.shipped(),
+        "bootloader",
+        getattr(boot, name).ID,
+        code,
+        times,
+        boot=10**9,
+    )
+    talking = shipped.module("wire").Session(
+        boot.LINK, port.write, port.read, clock=port.clock, on_event=heard.append
+    )
     return talking, heard, port
 
 
 @pytest.mark.parametrize("times", [1, 3])
-def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(shipped, wire, times):
+def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(
+    shipped, wire, times
+):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", times)
     talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
     assert [(event.code, event.reason) for event in heard] == [(0x55, None)] * times
     assert port.acknowledged == times + 1
 
 
-def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_with_its_code(shipped, wire):
+def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_with_its_code(
+    shipped, wire
+):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", 100)
     with pytest.raises(wire.FailedError, match="timeout") as caught:
         talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
-    assert caught.value.result == "timeout" and {event.code for event in heard} == {0x55}
-    assert len(heard) == port.acknowledged == 1 + shipped.module("bootloader").LINK.settings.retries
+    assert caught.value.result == "timeout" and {event.code for event in heard} == {
+        0x55
+    }
+    assert (
+        len(heard)
+        == port.acknowledged
+        == 1 + shipped.module("bootloader").LINK.settings.retries
+    )
 
 
 def test_a_refusal_that_the_icd_knows_is_not_asked_again(shipped, wire):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", 1, code=2)
     with pytest.raises(wire.FailedError) as caught:
         talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
-    assert (caught.value.event.code, caught.value.event.reason, heard, port.acknowledged) == (2, "length", [], 1)
+    assert (
+        caught.value.event.code,
+        caught.value.event.reason,
+        heard,
+        port.acknowledged,
+    ) == (2, "length", [], 1)
 
 
 def test_logs_that_come_unasked_are_told(shipped, wire):
@@ -173,7 +240,9 @@ def test_logs_that_come_unasked_are_told(shipped, wire):
     talking._on_event = heard.append
     acp = shipped.module("cubeacp")
     mask = bytes([1]) + bytes(9)
-    message = wire.LogMessage.encode(acp.LINK, mask, [bytes(b.length) for b in acp.LINK.mask.selected(mask)])
+    message = wire.LogMessage.encode(
+        acp.LINK, mask, [bytes(b.length) for b in acp.LINK.mask.selected(mask)]
+    )
     port.line._send(0, "log", message)
     talking.get(acp.Identification)
     assert [type(event) for event in heard] == [wire.Log]
@@ -187,12 +256,29 @@ def test_the_guide_shows_the_example():
 def test_the_example_talks_to_the_simulator_of_the_command_line(shipped, tmp_path):
     code = EXAMPLE.read_text()
     assert code.count("4000))") == 1
-    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "Estimated Attitude Angles", "roll=-12.34") as (
+    with simulator(
+        "--node",
+        "cubeacp",
+        "--tcp",
+        "0",
+        "--set",
+        "Estimated Attitude Angles",
+        "roll=-12.34",
+    ) as (
         place,
         _,
     ):
         program = tmp_path / "talk.py"
         program.write_text(code.replace("4000))", f"{urlsplit(place).port}))"))
-        path = {"PATH": os.environ["PATH"], "PYTHONPATH": str(shipped.folder)}  # without icdgen
-        done = subprocess.run([sys.executable, "-B", program], capture_output=True, text=True, timeout=60, env=path)
+        path = {
+            "PATH": os.environ["PATH"],
+            "PYTHONPATH": str(shipped.folder),
+        }  # without icdgen
+        done = subprocess.run(
+            [sys.executable, "-B", program],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            env=path,
+        )
     assert (done.returncode, done.stdout, done.stderr) == (0, "roll -12.34 deg\n", "")

@@ -1,4 +1,6 @@
-"""Streams: what is found in them depends neither on how they are cut nor on the noise around it."""
+"""Streams: what is found in them depends neither on how they are cut nor on the noise
+around it.
+"""
 
 from __future__ import annotations
 
@@ -27,23 +29,36 @@ def wire(shipped):
 
 
 def events(decoder, chunks) -> list[tuple[str, bytes]]:
-    return [(event.event, event.message) for chunk in chunks for event in decoder.feed(chunk)]
+    return [
+        (event.event, event.message)
+        for chunk in chunks
+        for event in decoder.feed(chunk)
+    ]
 
 
 @given(stream=STREAMS, places=CUTS, limit=st.integers(1, 40), form=FORMS)
 @example(stream=b"\x1f\x7f\x1f\x1f\x1f\xff", places=[1, 2, 3, 4, 5], limit=1, form={})
-def test_every_split_of_a_stream_gives_what_the_reference_finds(shipped, wire, stream, places, limit, form):
+def test_every_split_of_a_stream_gives_what_the_reference_finds(
+    shipped, wire, stream, places, limit, form
+):
     framing = replace(known().framing, **form)
     like = link(shipped)
-    decoder = wire.UartDecoder(like._replace(framing=like.framing._replace(**form)), limit)
+    decoder = wire.UartDecoder(
+        like._replace(framing=like.framing._replace(**form)), limit
+    )
     reference = uart.Decoder(framing, limit)
     expected = [(event.event, event.message) for event in reference.feed(stream)]
     assert events(decoder, cut(stream, places)) == expected
-    assert (decoder.discarded, decoder.pending) == (reference.discarded, reference.pending)
+    assert (decoder.discarded, decoder.pending) == (
+        reference.discarded,
+        reference.pending,
+    )
 
 
 @given(message=st.binary(min_size=1, max_size=200) | MESSAGES, escapes_id=st.booleans())
-def test_what_is_encoded_is_decoded_and_no_markers_are_left_in_the_data(shipped, wire, message, escapes_id):
+def test_what_is_encoded_is_decoded_and_no_markers_are_left_in_the_data(
+    shipped, wire, message, escapes_id
+):
     like = link(shipped)
     like = like._replace(framing=like.framing._replace(escapes_id=escapes_id))
     line = wire.uart_encode(like, message)
@@ -51,8 +66,13 @@ def test_what_is_encoded_is_decoded_and_no_markers_are_left_in_the_data(shipped,
     assert events(wire.UartDecoder(like), [line]) == [("message", message)]
 
 
-@pytest.mark.parametrize("data", [b"\x01", b"\x1f\x1f\xff", b"\x1f\x7f", b"\x1f\xff", b"\x1f" * 7, b"\x7f\xff\x1f"])
-def test_telecommand_31_and_markers_in_data_survive_in_both_directions(shipped, wire, data):
+@pytest.mark.parametrize(
+    "data",
+    [b"\x01", b"\x1f\x1f\xff", b"\x1f\x7f", b"\x1f\xff", b"\x1f" * 7, b"\x7f\xff\x1f"],
+)
+def test_telecommand_31_and_markers_in_data_survive_in_both_directions(
+    shipped, wire, data
+):
     message = b"\x1f" + data
     line = wire.uart_encode(link(shipped), message)
     assert line.startswith(b"\x1f\x7f\x1f\x1f") and line.endswith(b"\x1f\xff")
@@ -61,11 +81,15 @@ def test_telecommand_31_and_markers_in_data_survive_in_both_directions(shipped, 
         assert events(wire.UartDecoder(link(shipped)), chunks) == [("message", message)]
 
 
-@pytest.mark.parametrize("noise", ["random", "zeros", "starts", "escapes", "escaped data"])
+@pytest.mark.parametrize(
+    "noise", ["random", "zeros", "starts", "escapes", "escaped data"]
+)
 def test_a_megabyte_of_noise_costs_nothing_but_that_noise(shipped, wire, noise):
     size, like = 1_000_000, link(shipped)
     made = {
-        "random": bytes(index * index * 2654435761 >> 13 & 0xFF for index in range(size)),
+        "random": bytes(
+            index * index * 2654435761 >> 13 & 0xFF for index in range(size)
+        ),
         "zeros": bytes(size),
         "starts": b"\x1f\x7f" * (size // 2),
         "escapes": b"\x1f" * size,
@@ -77,12 +101,15 @@ def test_a_megabyte_of_noise_costs_nothing_but_that_noise(shipped, wire, noise):
     start = time.process_time()
     found = [event for event in decoder.feed(made + line) if event.event == "message"]
     took = time.process_time() - start
-    # Noise may end within what looks like a message: then the start is unexpected, and the message is there all the same.
+    # Noise may end within what looks like a message: then the start is unexpected, and
+    # the message is there all the same.
     assert found[-1].message == b"\x92" + bytes(6)
     assert decoder.pending == 0
     on_line = sum(len(wire.uart_encode(like, event.message)) for event in found)
     assert decoder.discarded + on_line == len(made) + len(line)
-    assert took < 5  # it takes milliseconds to a second: what grew with the square would take hours
+    assert (
+        took < 5
+    )  # it takes milliseconds to a second: what grew with the square would take hours
 
 
 def test_no_more_is_kept_than_the_longest_message(shipped, wire):
@@ -93,12 +120,16 @@ def test_no_more_is_kept_than_the_longest_message(shipped, wire):
     assert decoder.discarded + decoder.pending == 100 * 10_002
 
 
-def test_a_message_as_long_as_the_longest_fits_and_a_longer_one_is_an_overrun(shipped, wire):
+def test_a_message_as_long_as_the_longest_fits_and_a_longer_one_is_an_overrun(
+    shipped, wire
+):
     like = link(shipped)
     for size, expected in ((like.longest, "message"), (like.longest + 1, "overrun")):
         for fill in (b"\0", b"\x1f"):
             line = wire.uart_encode(like, fill * size)
-            assert [event.event for event in wire.UartDecoder(like).feed(line)] == [expected]
+            assert [event.event for event in wire.UartDecoder(like).feed(line)] == [
+                expected
+            ]
 
 
 @given(message=st.binary(min_size=1, max_size=140))
@@ -109,7 +140,12 @@ def test_messages_are_told_apart_like_the_reference_does(shipped, wire, message)
 def test_kinds_of_messages(shipped, wire):
     like = link(shipped)
     packet = bytes((like.files.packet_ids["uart"],)) + bytes(22)
-    samples = {"reply": b"\x92" + bytes(6), "acknowledge": b"\x1f\x00", "packet": packet, "log": b"\xff" + bytes(10)}
+    samples = {
+        "reply": b"\x92" + bytes(6),
+        "acknowledge": b"\x1f\x00",
+        "packet": packet,
+        "log": b"\xff" + bytes(10),
+    }
     for kind, message in samples.items():
         assert wire.uart_kind(like, message) == kind
     assert wire.uart_kind(like, b"\x01\x02\x03") == "other"

@@ -1,4 +1,6 @@
-"""The golden vectors of the protocol, and those of a device that does everything the other way round."""
+"""The golden vectors of the protocol, and those of a device that does everything the
+other way round.
+"""
 
 from __future__ import annotations
 
@@ -49,13 +51,19 @@ def test_every_vector_is_answered_as_it_must_be(name, request):
     for node in protocol.nodes(package.icd):
         for case in protocol.cases(package.icd, node):
             answer = package.answer(json.dumps(case.request).encode())
-            assert difference(case.answer, json.dumps(answer).encode()) is None, case.why
+            assert (
+                difference(case.answer, json.dumps(answer).encode()) is None
+            ), case.why
             asked += 1
     assert asked > 1000
 
 
 def test_the_other_device_is_another_one(otherwise, shipped):
     there, here = otherwise.module("cubeacp").LINK, shipped.module("cubeacp").LINK
-    assert (there.order, there.framing.escapes_id, there.files.first_packet) == ("big", False, 1)
+    assert (there.order, there.framing.escapes_id, there.files.first_packet) == (
+        "big",
+        False,
+        1,
+    )
     for part in ("framing", "checksum", "mask", "hole_map", "files"):
         assert getattr(there, part) != getattr(here, part)

@@ -13,7 +13,16 @@ from icdgen_messages.cubeacp import (
     decode_telemetry,
 )
 from icdgen_messages.cubewheel import *  # noqa: F403
-from icdgen_messages.wire import AsyncSession, Client, Done, Download, Event, Refused, Session, UartDecoder
+from icdgen_messages.wire import (
+    AsyncSession,
+    Client,
+    Done,
+    Download,
+    Event,
+    Refused,
+    Session,
+    UartDecoder,
+)
 
 
 def roll(id: int, data: bytes) -> float:
@@ -37,11 +46,20 @@ def commands() -> list[bytes]:
     again = EstimatedAttitudeAngles.from_physical(estimated_roll_angle_deg=1.5)
     state = CurrentAdcsState(control_mode=ConModeSelect(3), cubesense1_enabled=True)
     mode: OpenEnum = state.control_mode
-    number: int = state.control_mode.value + state.control_mode + cubeacp.CurrentAdcsState.ID
+    number: int = (
+        state.control_mode.value + state.control_mode + cubeacp.CurrentAdcsState.ID
+    )
     label: str = mode.label
     field: FieldInfo = CurrentAdcsState.FIELDS[number]
-    print(label, field.unit, field.scale, state.as_dict(physical=True), AdcsState.LENGTH)
-    return [angles.to_bytes(), again.to_bytes(), Reset().to_bytes(), decode_telecommand(1, b"\x5a").to_bytes()]
+    print(
+        label, field.unit, field.scale, state.as_dict(physical=True), AdcsState.LENGTH
+    )
+    return [
+        angles.to_bytes(),
+        again.to_bytes(),
+        Reset().to_bytes(),
+        decode_telecommand(1, b"\x5a").to_bytes(),
+    ]
 
 
 def turned(data: bytes) -> float:
@@ -51,11 +69,18 @@ def turned(data: bytes) -> float:
 
 def columns(data: bytes) -> float:
     """The mean of a column."""
-    return float(EstimatedAttitudeAngles.decode_many(data, physical=True)["estimated_roll_angle_deg"].mean())
+    return float(
+        EstimatedAttitudeAngles.decode_many(data, physical=True)[
+            "estimated_roll_angle_deg"
+        ].mean()
+    )
 
 
 def commanded(session: Session, any: type[Message]) -> Message:
-    """A session of some node takes all; that of a node what it speaks, with what it includes, and what nobody knows."""
+    """A session of some node takes all.
+
+    That of a node what it speaks, with what it includes, and what nobody knows.
+    """
     session.send(Reset())
     own = Session(cubeacp.LINK, print, lambda seconds: b"")
     own.send(Reset())
@@ -89,19 +114,29 @@ def wait(session: Session) -> tuple[float, bytes]:
 def ask(session: Session) -> float:
     """What became of a request, without an exception."""
     outcome = session.ask(EstimatedAttitudeAngles)
-    return outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
+    return (
+        outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
+    )
 
 
 async def wait_async(session: AsyncSession) -> tuple[float, float, bytes]:
     """The same while other tasks go on."""
     await session.send(Reset())
     outcome = await session.ask(EstimatedAttitudeAngles)
-    asked = outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
+    asked = (
+        outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
+    )
     download = await session.run(Download(cubeacp.LINK, "uart", 2, 0, 100))
-    return (await session.get(EstimatedAttitudeAngles)).estimated_roll_angle_deg, asked, download.data
+    return (
+        (await session.get(EstimatedAttitudeAngles)).estimated_roll_angle_deg,
+        asked,
+        download.data,
+    )
 
 
 def made(text: str) -> EstimatedAttitudeAngles:
     """Of physical values, and of JSON."""
-    angles = EstimatedAttitudeAngles(estimated_roll_angle_deg=1.5, estimated_pitch_angle=3)
+    angles = EstimatedAttitudeAngles(
+        estimated_roll_angle_deg=1.5, estimated_pitch_angle=3
+    )
     return EstimatedAttitudeAngles.from_json(text or angles.to_json(physical=True))

@@ -1,4 +1,6 @@
-"""What tests of the wire layer share: the link of a node, the reference's facts of it, and hypothesis strategies."""
+"""What tests of the wire layer share: the link of a node, the reference's facts of it,
+and hypothesis strategies.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,8 @@ def link(package: Package, node: str = NODE) -> Any:
     return package.module(node).LINK
 
 
-# Bytes of which most mean something, so that streams are full of starts, ends and escapes.
+# Bytes of which most mean something, so that streams are full of starts, ends and
+# escapes.
 MARKERS = st.sampled_from([0x1F, 0x1F, 0x1F, 0x7F, 0xFF, 0x00, 0x80, 0x92])
 NOISE = st.lists(MARKERS, max_size=12).map(bytes) | st.binary(max_size=12)
 

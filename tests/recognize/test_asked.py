@@ -1,4 +1,6 @@
-"""Where telecommands and telemetry share ids, naming the message or the kind decides what a frame is."""
+"""Where telecommands and telemetry share ids, naming the message or the kind decides
+what a frame is.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,9 @@ def icd(tmp_path_factory) -> Icd:
 
 
 def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
-    return stream.encode(facts.of(icd, icd.node("pack")).stream, direction, id, data).hex()
+    return stream.encode(
+        facts.of(icd, icd.node("pack")).stream, direction, id, data
+    ).hex()
 
 
 @pytest.mark.parametrize(
@@ -63,9 +67,15 @@ def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
     ],
 )
 @pytest.mark.parametrize("frame", [LIMIT, "0101 0208"])
-def test_the_message_or_the_kind_decides_with_the_envelope_and_with_the_id_alone(icd, frame, key, kind, name):
+def test_the_message_or_the_kind_decides_with_the_envelope_and_with_the_id_alone(
+    icd, frame, key, kind, name
+):
     (found,) = recognize(icd, frame, "pack", key, kind)
-    assert (found.message.name, found.what, found.data.hex()) == (name, found.message.kind, "0208")
+    assert (found.message.name, found.what, found.data.hex()) == (
+        name,
+        found.message.kind,
+        "0208",
+    )
     assert not [remark for remark in found.remarks if "can also be" in remark]
 
 
@@ -78,37 +88,53 @@ def test_without_either_what_the_help_says_is_a_way_out(icd):
         assert (found.message.name, found.what) == (name, kind)
 
 
-def test_bytes_that_begin_with_an_id_of_the_other_kind_are_bare_data_of_the_kind_that_is_said(icd):
+def test_bytes_that_begin_with_an_id_of_the_other_kind_are_bare_data_of_the_kind_that_is_said(
+    icd,
+):
     (poll,) = recognize(icd, "0102", kind="telecommand")
     assert poll.message.name == "Poll"
-    with pytest.raises(Ambiguous, match=r"2 bytes without an id can be `Limit` .*, or `Log`"):
+    with pytest.raises(
+        Ambiguous, match=r"2 bytes without an id can be `Limit` .*, or `Log`"
+    ):
         recognize(icd, "0102", kind="telemetry")
 
 
 def test_another_message_is_not_read_as_the_one_that_is_named(icd):
-    with pytest.raises(Ambiguous, match=r"can be `Set Limit` .*, or `Limit` .*, not `Poll`"):
+    with pytest.raises(
+        Ambiguous, match=r"can be `Set Limit` .*, or `Limit` .*, not `Poll`"
+    ):
         recognize(icd, LIMIT, "pack", "Poll")
 
 
 def test_of_a_stream_the_named_message_is_found_in_its_direction(icd):
     line = LIMIT + sent(icd, "telecommand", 258, b"") + LIMIT
     found = recognize(icd, line, "pack", "Limit")
-    assert [(one.message.name, one.data.hex()) for one in found] == [("Limit", "0208")] * 2
+    assert [(one.message.name, one.data.hex()) for one in found] == [
+        ("Limit", "0208")
+    ] * 2
     (poll,) = recognize(icd, line, "pack", "Poll")
     assert poll.message.name == "Poll"
 
 
-def test_nothing_tells_the_direction_of_a_configuration_message_with_one_id_but_the_kind(icd):
+def test_nothing_tells_the_direction_of_a_configuration_message_with_one_id_but_the_kind(
+    icd,
+):
     frame = sent(icd, "telemetry", 259, b"\7")
     with pytest.raises(Ambiguous):
         recognize(icd, frame)
-    for kind, what in [(None, "configuration"), ("telecommand", "telecommand"), ("telemetry", "telemetry")]:
+    for kind, what in [
+        (None, "configuration"),
+        ("telecommand", "telecommand"),
+        ("telemetry", "telemetry"),
+    ]:
         (found,) = recognize(icd, frame, "pack", "Rate", kind)
         assert (found.what, found.data, found.frame.data) == (what, b"\7", b"\7")
 
 
 @pytest.mark.parametrize(("data", "name"), [(b"\1", "Low"), (b"\2", "High")])
-def test_the_id_of_messages_that_share_it_names_the_one_that_the_frame_is(icd, data, name):
+def test_the_id_of_messages_that_share_it_names_the_one_that_the_frame_is(
+    icd, data, name
+):
     for frame in (sent(icd, "telemetry", 260, data), "0104" + data.hex(), data.hex()):
         (found,) = recognize(icd, frame, "pack", "260")
         assert found.message.name == name

@@ -1,4 +1,6 @@
-"""A frame that is cut off is an error: it is never decoded as another message, nor with bytes of its header as values."""
+"""A frame that is cut off is an error: it is never decoded as another message, nor with
+bytes of its header as values.
+"""
 
 from __future__ import annotations
 
@@ -77,21 +79,32 @@ messages:
 
 
 def packets(icd: Icd) -> list[tuple[str, bytes]]:
-    """Some golden frames of each message as they are sent, with the name of the message."""
+    """Some golden frames of each message as they are sent, with the name of the
+    message.
+    """
     found = []
     for node in icd.nodes:
         known = facts.of(icd, node)
         for message in golden(icd, node).messages:
-            for row in message.rows[:: max(1, len(message.rows) // MOST_ROWS)][:MOST_ROWS]:
+            for row in message.rows[:: max(1, len(message.rows) // MOST_ROWS)][
+                :MOST_ROWS
+            ]:
                 for direction in ("telecommand", "telemetry"):
                     id = getattr(message.message, f"{direction}_id")
                     if id is None:
                         continue
                     if known.stream:
-                        found.append((message.message.name, stream.encode(known.stream, direction, id, row.frame)))
+                        found.append(
+                            (
+                                message.message.name,
+                                stream.encode(known.stream, direction, id, row.frame),
+                            )
+                        )
                     elif known.framing:
                         body = bytes([id]) + row.frame
-                        found.append((message.message.name, uart.encode(known.framing, body)))
+                        found.append(
+                            (message.message.name, uart.encode(known.framing, body))
+                        )
     return found
 
 
@@ -105,7 +118,13 @@ def names_in(icd: Icd, data: bytes, *words: str) -> list[str]:
 def prefixes(packet: bytes, most: int = 60) -> list[bytes]:
     """The packet cut after each byte; of a long one after many."""
     sizes = range(1, len(packet))
-    chosen = sorted({*sizes[:most], *sizes[-20:], *random.Random(len(packet)).sample(sizes, min(len(sizes), 20))})
+    chosen = sorted(
+        {
+            *sizes[:most],
+            *sizes[-20:],
+            *random.Random(len(packet)).sample(sizes, min(len(sizes), 20)),
+        }
+    )
     return [packet[:size] for size in chosen]
 
 
@@ -127,7 +146,12 @@ def test_every_golden_frame_of_a_link_is_found_while_it_is_complete(link):
 
 
 def test_no_beginning_of_a_golden_frame_of_a_link_is_decoded(link):
-    decoded = [(name, cut.hex()) for name, packet in packets(link) for cut in prefixes(packet) if names_in(link, cut)]
+    decoded = [
+        (name, cut.hex())
+        for name, packet in packets(link)
+        for cut in prefixes(packet)
+        if names_in(link, cut)
+    ]
     assert decoded == []
 
 
@@ -135,7 +159,8 @@ def test_no_end_of_a_golden_frame_of_a_link_is_decoded_as_another_message(link):
     source = random.Random(5)
     for name, packet in packets(link):
         for at in source.sample(range(1, len(packet)), min(12, len(packet) - 1)):
-            # SLIP, HDLC and COBS need no delimiter in front: what is complete may be read.
+            # SLIP, HDLC and COBS need no delimiter in front: what is complete may be
+            # read.
             assert set(names_in(link, packet[at:])) <= {name}, packet[at:].hex()
 
 
@@ -164,18 +189,48 @@ def motor(tmp_path_factory) -> Icd:
 @pytest.mark.parametrize(
     ("text", "error", "says"),
     [
-        ("A5 5A 03 02 01 86", BadLength, r"`Set Speed` \(telecommand 3\) is cut off: 6 bytes came, 7 are needed"),
-        ("A5 5A 02", BadLength, r"`Power` \(telemetry 2\) is cut off: 3 bytes came, its header has 4"),
+        (
+            "A5 5A 03 02 01 86",
+            BadLength,
+            r"`Set Speed` \(telecommand 3\) is cut off: 6 bytes came, 7 are needed",
+        ),
+        (
+            "A5 5A 02",
+            BadLength,
+            r"`Power` \(telemetry 2\) is cut off: 3 bytes came, its header has 4",
+        ),
         ("A5", BadLength, "a packet of motor is cut off: 1 byte came"),
-        (POWER[:-2] + "0f", BadLength, r"`Power` \(telemetry 2\) has a wrong checksum: it is 0F, expected 0E"),
-        ("A5 5A 09 00 09", NotFound, "a packet of motor with the id 9 and 0 bytes of data is no message"),
-        ("A5 5A 03 01 07 0B", BadLength, r"`Set Speed` \(telecommand 3\) has 1 byte of data, the ICD says 2"),
+        (
+            POWER[:-2] + "0f",
+            BadLength,
+            r"`Power` \(telemetry 2\) has a wrong checksum: it is 0F, expected 0E",
+        ),
+        (
+            "A5 5A 09 00 09",
+            NotFound,
+            "a packet of motor with the id 9 and 0 bytes of data is no message",
+        ),
+        (
+            "A5 5A 03 01 07 0B",
+            BadLength,
+            r"`Set Speed` \(telecommand 3\) has 1 byte of data, the ICD says 2",
+        ),
         ("A5 5A 03 FF", BadLength, "says that it has 260 bytes; packets have up to 11"),
-        ("5A 03 02 01 86 8C", Ambiguous, "6 bytes are no packet of motor, which begin with A5 5A; .* can be `Power`"),
-        ("00 01 02", NotFound, "3 bytes are no packet of motor, which begin with A5 5A"),
+        (
+            "5A 03 02 01 86 8C",
+            Ambiguous,
+            "6 bytes are no packet of motor, which begin with A5 5A; .* can be `Power`",
+        ),
+        (
+            "00 01 02",
+            NotFound,
+            "3 bytes are no packet of motor, which begin with A5 5A",
+        ),
     ],
 )
-def test_bytes_that_are_no_complete_packet_are_an_error_that_says_what_is_wrong(motor, text, error, says):
+def test_bytes_that_are_no_complete_packet_are_an_error_that_says_what_is_wrong(
+    motor, text, error, says
+):
     with pytest.raises(error, match=says):
         recognize(motor, text)
 
@@ -185,9 +240,14 @@ def test_a_packet_cut_to_the_length_of_the_named_message_is_no_data_of_it(motor)
         recognize(motor, POWER[:12], "motor", "Power")
 
 
-def test_data_alone_are_read_where_the_message_is_named_and_what_looks_like_a_packet_is_noted(motor):
+def test_data_alone_are_read_where_the_message_is_named_and_what_looks_like_a_packet_is_noted(
+    motor,
+):
     (one,) = recognize(motor, "A5 5A 00 02 00 03", "motor", "Power")
-    assert one.data.hex() == "a55a00020003" and "the data begin like a packet" in one.remarks[0]
+    assert (
+        one.data.hex() == "a55a00020003"
+        and "the data begin like a packet" in one.remarks[0]
+    )
     (one,) = recognize(motor, "01 86", "motor", "Set Speed")
     assert one.data.hex() == "0186" and not one.remarks
 
@@ -204,7 +264,9 @@ def test_packets_of_both_directions_are_read_in_their_order(motor):
 
 def test_each_packet_that_cannot_be_decoded_is_reported(motor):
     (one,) = recognize(motor, SPEED + "a55a090009" + POWER[:-2] + "ff" + "a55a03")
-    assert [text.partition(" is ")[0].partition(" has ")[0] for text in one.left_out] == [
+    assert [
+        text.partition(" is ")[0].partition(" has ")[0] for text in one.left_out
+    ] == [
         "a packet of motor with the id 9 and 0 bytes of data",
         "a packet of motor, `Power` (telemetry 2)",
         "a packet of motor, `Set Speed` (telecommand 3)",
@@ -215,18 +277,27 @@ def test_each_packet_that_cannot_be_decoded_is_reported(motor):
 def test_a_request_that_the_icd_has_no_message_for_is_a_packet_and_no_text(tmp_path):
     battery = icd_of(BATTERY, tmp_path)
     for words in ((), ("battery",)):
-        with pytest.raises(NotFound, match="a packet of battery with the id 165 and 0 bytes of data is no message"):
+        with pytest.raises(
+            NotFound,
+            match="a packet of battery with the id 165 and 0 bytes of data is no message",
+        ):
             recognize(battery, "DD A5 03 00 FF FD 77", *words)
     (reply,) = recognize(battery, "DD 03 00 02 0E 10 FF E0 77")
     assert reply.message.name == "Basic" and reply.data.hex() == "0e10"
 
 
-def test_a_long_recording_with_much_damage_is_read_in_a_time_that_grows_with_its_length(motor):
+def test_a_long_recording_with_much_damage_is_read_in_a_time_that_grows_with_its_length(
+    motor,
+):
     def seconds(count: int) -> float:
         begin = process_time()
-        found = recognize(motor, bytes.fromhex((SPEED + "a55a090009" + POWER[:-2] + "ff") * count))
+        found = recognize(
+            motor, bytes.fromhex((SPEED + "a55a090009" + POWER[:-2] + "ff") * count)
+        )
         assert len(found) == count and len(found[0].left_out) == 2 * count
         return process_time() - begin
 
     seconds(10)
-    assert seconds(4000) < 20 * max(seconds(500), 0.02)  # 64 times where it is quadratic
+    assert seconds(4000) < 20 * max(
+        seconds(500), 0.02
+    )  # 64 times where it is quadratic

@@ -1,4 +1,6 @@
-"""Frames in envelopes, as people paste them: the envelope comes off, and what is wrong with it is said."""
+"""Frames in envelopes, as people paste them: the envelope comes off, and what is wrong
+with it is said.
+"""
 
 from __future__ import annotations
 
@@ -31,23 +33,41 @@ CASES = [
 
 @pytest.mark.parametrize(("node", "direction", "id", "data"), CASES)
 @pytest.mark.parametrize("is_named", [False, True])
-def test_a_frame_is_found_with_its_node_direction_and_message(node, direction, id, data, is_named):
-    (found,) = recognize(ICD, sent(node, direction, id, data).hex(" "), node if is_named else None)
-    assert (found.endpoint.node.name, found.what, found.id, found.data) == (node, direction, id, data)
+def test_a_frame_is_found_with_its_node_direction_and_message(
+    node, direction, id, data, is_named
+):
+    (found,) = recognize(
+        ICD, sent(node, direction, id, data).hex(" "), node if is_named else None
+    )
+    assert (found.endpoint.node.name, found.what, found.id, found.data) == (
+        node,
+        direction,
+        id,
+        data,
+    )
     assert found.frame.data == data and "envelope with id" in found.remarks[0]
 
 
 def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_said():
-    clock, epoch = sent("receiver", "telemetry", 0x0122, bytes(20)), sent("receiver", "telemetry", 0x0161, bytes(4))
+    clock, epoch = sent("receiver", "telemetry", 0x0122, bytes(20)), sent(
+        "receiver", "telemetry", 0x0161, bytes(4)
+    )
     first, second = recognize(ICD, b"\x00\xb5" + clock + epoch[:-1] + b"\0" + epoch)
-    assert [one.message.name for one in (first, second)] == ["Navigation Clock", "End of Epoch"]
+    assert [one.message.name for one in (first, second)] == [
+        "Navigation Clock",
+        "End of Epoch",
+    ]
     wrong = "a packet of receiver, `End of Epoch` (telemetry 01 61) has a wrong checksum: it is 66 00, expected 66 C7"
     assert first.left_out == (wrong,) and f"left out: {wrong}" in first.remarks
-    assert any("14 bytes around the frame belong to none" in remark for remark in first.remarks)
+    assert any(
+        "14 bytes around the frame belong to none" in remark for remark in first.remarks
+    )
 
 
 def test_what_the_sender_chose_of_the_envelope_is_said():
-    (found,) = recognize(ICD, sent("autopilot", "telemetry", 30, bytes(28), source=7, sequence=9).hex())
+    (found,) = recognize(
+        ICD, sent("autopilot", "telemetry", 30, bytes(28), source=7, sequence=9).hex()
+    )
     assert "source 7" in found.remarks[0] and "sequence 9" in found.remarks[0]
 
 
@@ -55,7 +75,8 @@ def test_a_wrong_checksum_is_said_and_nothing_is_read():
     line = bytearray(sent("receiver", "telemetry", 0x0161, bytes(4)))
     line[-1] ^= 1
     with pytest.raises(
-        BadLength, match=r"`End of Epoch` \(telemetry 01 61\) has a wrong checksum: it is 66 C6, expected 66 C7"
+        BadLength,
+        match=r"`End of Epoch` \(telemetry 01 61\) has a wrong checksum: it is 66 C6, expected 66 C7",
     ):
         recognize(ICD, bytes(line))
 

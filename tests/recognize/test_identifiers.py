@@ -1,4 +1,6 @@
-"""CAN identifiers of nodes that say nothing of CAN are the ids of their messages, as definitions of CAN have them."""
+"""CAN identifiers of nodes that say nothing of CAN are the ids of their messages, as
+definitions of CAN have them.
+"""
 
 from __future__ import annotations
 
@@ -44,14 +46,24 @@ def icd(tmp_path_factory) -> Icd:
 @pytest.mark.parametrize("names", [(), ("train",), ("train", "Drive")])
 def test_exactly_the_message_of_the_identifier_is_read(icd, text, names):
     (found,) = recognize(icd, text, *names)
-    assert (found.message.name, found.what, found.id, found.data.hex()) == ("Drive", "telemetry", 0x100, DRIVE)
+    assert (found.message.name, found.what, found.id, found.data.hex()) == (
+        "Drive",
+        "telemetry",
+        0x100,
+        DRIVE,
+    )
     assert found.frame.remarks == ("CAN identifier 0x100 removed",)
 
 
-@pytest.mark.parametrize("text", ["can0  18914001   [2]  01 F4", "18914001#01F4", "T18914001201F4"])
+@pytest.mark.parametrize(
+    "text", ["can0  18914001   [2]  01 F4", "18914001#01F4", "T18914001201F4"]
+)
 def test_identifiers_of_29_bits_are_ids_too(icd, text):
     (found,) = recognize(icd, text)
-    assert (found.message.name, found.frame.remarks) == ("Cells", ("CAN identifier 0x18914001 removed",))
+    assert (found.message.name, found.frame.remarks) == (
+        "Cells",
+        ("CAN identifier 0x18914001 removed",),
+    )
 
 
 def test_every_packet_of_a_log_is_a_message_and_what_none_knows_is_said(icd):
@@ -62,34 +74,58 @@ def test_every_packet_of_a_log_is_a_message_and_what_none_knows_is_said(icd):
         ("Brake", BRAKE),
         ("Drive", BRAKE),
     ]
-    assert found[0].left_out == ("no message of train has the CAN identifier 0x7FF (1 CAN packet)",)
-    assert [one.message.name for one in recognize(icd, log, "train", "Brake")] == ["Brake"]
+    assert found[0].left_out == (
+        "no message of train has the CAN identifier 0x7FF (1 CAN packet)",
+    )
+    assert [one.message.name for one in recognize(icd, log, "train", "Brake")] == [
+        "Brake"
+    ]
 
 
 @pytest.mark.parametrize(
     ("text", "names", "error", "says"),
     [
-        (f"7FF#{DRIVE}", (), NotFound, "no message of train has the CAN identifier 0x7FF"),
+        (
+            f"7FF#{DRIVE}",
+            (),
+            NotFound,
+            "no message of train has the CAN identifier 0x7FF",
+        ),
         (f"00000300#{DRIVE}", (), NotFound, "CAN identifier 0x00000300"),
         ("100#3930", (), BadLength, r"`Drive` \(telemetry 256\) has 8 bytes, 2 given"),
         (f"100#{DRIVE}", ("train", "Brake"), NotFound, "is not `Brake` but `Drive`"),
-        ("200#01", (), Ambiguous, "the CAN identifier 0x200 can be `Set Mode` .*, or `Mode`"),
+        (
+            "200#01",
+            (),
+            Ambiguous,
+            "the CAN identifier 0x200 can be `Set Mode` .*, or `Mode`",
+        ),
     ],
 )
-def test_an_identifier_of_no_message_or_of_another_is_an_error(icd, text, names, error, says):
+def test_an_identifier_of_no_message_or_of_another_is_an_error(
+    icd, text, names, error, says
+):
     with pytest.raises(error, match=says):
         recognize(icd, text, *names)
 
 
-@pytest.mark.parametrize("names", [("train", "Mode"), ("train", None, "telemetry"), (None, None, "telemetry")])
-def test_where_both_directions_share_an_identifier_the_message_or_the_kind_decides(icd, names):
+@pytest.mark.parametrize(
+    "names",
+    [("train", "Mode"), ("train", None, "telemetry"), (None, None, "telemetry")],
+)
+def test_where_both_directions_share_an_identifier_the_message_or_the_kind_decides(
+    icd, names
+):
     (found,) = recognize(icd, "200#01", *names)
     assert (found.message.name, found.what) == ("Mode", "telemetry")
 
 
 def test_a_message_that_is_named_is_read_from_an_identifier_that_none_has(icd):
     (found,) = recognize(icd, f"7FF#{DRIVE}", "train", "Drive")
-    assert found.data.hex() == DRIVE and "no message of train has the CAN identifier 0x7FF" in found.frame.remarks
+    assert (
+        found.data.hex() == DRIVE
+        and "no message of train has the CAN identifier 0x7FF" in found.frame.remarks
+    )
 
 
 def test_a_remote_request_asks_for_the_telemetry_of_its_identifier(icd):
@@ -113,8 +149,13 @@ def test_the_times_of_slcan_are_kept_as_seconds_of_the_minute(icd):
 
 
 def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
-    (message,) = [one for one in shipped.node("cubeacp").messages if one.telemetry_id == 0xBE]
-    pieces = [bytes(range(at, at + 7))[: message.length - at].ljust(7, b"\0") for at in range(0, message.length, 7)]
+    (message,) = [
+        one for one in shipped.node("cubeacp").messages if one.telemetry_id == 0xBE
+    ]
+    pieces = [
+        bytes(range(at, at + 7))[: message.length - at].ljust(7, b"\0")
+        for at in range(0, message.length, 7)
+    ]
     lines = [
         f"(10.{number}) can0 08BE0201#{piece.hex()}{len(pieces) - 1 - number:02x}"
         for number, piece in enumerate(pieces)
@@ -124,9 +165,17 @@ def test_a_message_of_several_packets_has_the_time_of_the_last(shipped):
 
 
 @pytest.mark.parametrize(
-    ("packet", "name"), [("100#2a", "Brake"), ("00000100#2a", "Cells"), ("00000101#2a", None), ("101#2a", None)]
+    ("packet", "name"),
+    [
+        ("100#2a", "Brake"),
+        ("00000100#2a", "Cells"),
+        ("00000101#2a", None),
+        ("101#2a", None),
+    ],
 )
-def test_standard_and_extended_frames_of_one_number_are_two_messages(packet, name, tmp_path):
+def test_standard_and_extended_frames_of_one_number_are_two_messages(
+    packet, name, tmp_path
+):
     messages = [
         f"  - {{name: {name}, id: {id}, kind: telemetry, length: 1, fields: [{{at: 0, bits: 8, name: Level, type: uint}}]}}\n"
         for name, id in (("Brake", "0x100"), ("Cells", "0x80000100"))

@@ -14,23 +14,37 @@ from tests.recognize.ways import BARE, DATA, WHOLE
 @pytest.mark.parametrize("way", BARE)
 def test_data_in_any_spelling_are_the_same_frame(shipped, way):
     (one,) = recognize(shipped, BARE[way], "cubeacp", "146")
-    assert (one.data, one.message.name) == (DATA, "Estimated Attitude Angles") and one.frame.rows[0].text == "-12.34"
+    assert (one.data, one.message.name) == (
+        DATA,
+        "Estimated Attitude Angles",
+    ) and one.frame.rows[0].text == "-12.34"
 
 
 @pytest.mark.parametrize("way", WHOLE)
 def test_a_frame_that_says_what_it_is_needs_no_name(shipped, way):
-    found = [recognize(shipped, WHOLE[way], *names) for names in [(), ("cubeacp",), ("cubeacp", "146")]]
-    assert {(one.endpoint.node.name, one.message.id, one.what, one.data) for (one,) in found} == {
-        ("cubeacp", 146, "telemetry", DATA)
-    }
+    found = [
+        recognize(shipped, WHOLE[way], *names)
+        for names in [(), ("cubeacp",), ("cubeacp", "146")]
+    ]
+    assert {
+        (one.endpoint.node.name, one.message.id, one.what, one.data) for (one,) in found
+    } == {("cubeacp", 146, "telemetry", DATA)}
 
 
 def test_several_frames_of_a_stream_are_told_apart(shipped):
     text = "1F 7F 92 1F FF 1F 7F 92 2E FB 0A 00 00 00 1F FF 1F 7F 11 05 1F FF"
     request, reply, acknowledge = recognize(shipped, text)
-    assert [one.what for one in (request, reply, acknowledge)] == ["request", "telemetry", "acknowledge"]
+    assert [one.what for one in (request, reply, acknowledge)] == [
+        "request",
+        "telemetry",
+        "acknowledge",
+    ]
     assert "error 5" in acknowledge.title and acknowledge.to_json()["error"] == 5
-    assert [one.what for one in recognize(shipped, bytes.fromhex(text))] == ["request", "telemetry", "acknowledge"]
+    assert [one.what for one in recognize(shipped, bytes.fromhex(text))] == [
+        "request",
+        "telemetry",
+        "acknowledge",
+    ]
 
 
 def test_a_line_may_be_a_frame(shipped):
@@ -59,9 +73,24 @@ def test_the_packets_of_a_long_message_are_joined_and_a_missing_one_is_named(shi
         ("2E FB 0A 00 00 00", ("cubeacp",), Ambiguous, "without an id can be `"),
         ("1F 7F 92 2E FB", (), BadLength, "end of the message is missing"),
         ("1F 7F 92 2E 1F 02 1F FF", (), BadLength, "followed by neither"),
-        ("1F 7F 92 2E FB 1F FF", (), BadLength, "has 6 bytes, 2 given after the id 146"),
-        ("1F 7F 8D 2E FB 0A 00 00 00 1F FF", ("cubeacp", "146"), NotFound, "is not `Estimated Attitude Angles` but"),
-        ("1F 7F 92 2E FB 0A 00 00 00 07 1F FF", ("cubeacp",), BadLength, "as CRC after them"),
+        (
+            "1F 7F 92 2E FB 1F FF",
+            (),
+            BadLength,
+            "has 6 bytes, 2 given after the id 146",
+        ),
+        (
+            "1F 7F 8D 2E FB 0A 00 00 00 1F FF",
+            ("cubeacp", "146"),
+            NotFound,
+            "is not `Estimated Attitude Angles` but",
+        ),
+        (
+            "1F 7F 92 2E FB 0A 00 00 00 07 1F FF",
+            ("cubeacp",),
+            BadLength,
+            "as CRC after them",
+        ),
         ("2E FB 0A 00 00 00 07", ("cubeacp", "146"), BadLength, "as CRC after them"),
         ("can0 123 [1] 00", (), NotFound, "11-bit"),
         ("can0 1F920201 [1] 00", (), NotFound, "unknown type"),
@@ -88,7 +117,10 @@ def test_a_checksum_is_checked_and_taken_off(shipped):
 @pytest.mark.parametrize(
     ("text", "data"),
     [
-        ("[46, 25, 10]", "462510"),  # digits in pairs are hexadecimal, even where they could be decimal
+        (
+            "[46, 25, 10]",
+            "462510",
+        ),  # digits in pairs are hexadecimal, even where they could be decimal
         ("deadbeef", "deadbeef"),  # and are no base64
         ("00000000: 00", "00"),
         ("0000 0001 0002", "000000010002"),  # an address is one only if it counts
@@ -99,7 +131,15 @@ def test_what_can_be_hexadecimal_is(text, data):
 
 
 @pytest.mark.parametrize(
-    "text", ["{300, 0, 1}", "0000000: 00 00\n0000008: 00", "can0 05920201 [7] 00", "=", "x", "(1)]["]
+    "text",
+    [
+        "{300, 0, 1}",
+        "0000000: 00 00\n0000008: 00",
+        "can0 05920201 [7] 00",
+        "=",
+        "x",
+        "(1)][",
+    ],
 )
 def test_what_only_looks_like_bytes_is_refused(text):
     with pytest.raises(BadHex):

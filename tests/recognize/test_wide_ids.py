@@ -1,4 +1,6 @@
-"""Frames of a node whose ids have more than a byte: the id stands in front as its bytes, the most significant first."""
+"""Frames of a node whose ids have more than a byte: the id stands in front as its
+bytes, the most significant first.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ WIDTHS = {
 def receiver(request, tmp_path):
     written, sent = WIDTHS[request.param]
     path = tmp_path / "receiver.yaml"
-    path.write_text(ICD.replace("BITS", str(request.param)).replace("ID", written), encoding="utf-8")
+    path.write_text(
+        ICD.replace("BITS", str(request.param)).replace("ID", written), encoding="utf-8"
+    )
     loaded = load([path])
     assert loaded.findings == []
     return loaded.icd, sent
@@ -47,7 +51,9 @@ def test_the_id_in_front_tells_the_message(receiver):
 def test_the_id_comes_off_where_the_message_is_named_too(receiver):
     icd, sent = receiver
     (one,) = recognize(icd, f"{sent} 01 00 00 00", "receiver", "Clock")
-    assert one.data == bytes([1, 0, 0, 0]) and f"id {one.id} removed" in one.frame.remarks
+    assert (
+        one.data == bytes([1, 0, 0, 0]) and f"id {one.id} removed" in one.frame.remarks
+    )
 
 
 def test_data_alone_are_known_by_their_length(receiver):

@@ -1,4 +1,6 @@
-"""Ways to paste the same frame: attitude angles of -12.34, 0.1 and 0 degrees, telemetry 146 of CubeACP."""
+"""Ways to paste the same frame: attitude angles of -12.34, 0.1 and 0 degrees, telemetry
+146 of CubeACP.
+"""
 
 from __future__ import annotations
 

@@ -73,7 +73,9 @@ def test_sarif_names_the_tool_and_the_rules_that_were_broken():
     assert driver["name"] == "icdgen"
     assert [rule["id"] for rule in driver["rules"]] == ["ICD020", "ICD041", "ICD999"]
     first = driver["rules"][0]
-    assert first["shortDescription"]["text"] == "Field extends past the end of its message"
+    assert (
+        first["shortDescription"]["text"] == "Field extends past the end of its message"
+    )
     assert first["fullDescription"]["text"]
     assert "Wrong:" in first["help"]["text"]
     assert first["defaultConfiguration"] == {"level": "error"}
@@ -95,8 +97,15 @@ def test_sarif_results_refer_to_rules_and_places():
 
 
 def test_sarif_files_are_uris():
-    uris = [r["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] for r in run()["results"]]
-    assert uris == ["icd/demo.yaml", "icd/demo.yaml", "a%20b/gr%C3%B6%C3%9Fe%2C1%3A2.yaml"]
+    uris = [
+        r["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
+        for r in run()["results"]
+    ]
+    assert uris == [
+        "icd/demo.yaml",
+        "icd/demo.yaml",
+        "a%20b/gr%C3%B6%C3%9Fe%2C1%3A2.yaml",
+    ]
     absolute = ERROR._replace(place=ERROR.place._replace(file="/icd/a b.yaml"))
     report = json.loads(get("sarif")([absolute], {}))
     place = report["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
@@ -104,7 +113,9 @@ def test_sarif_files_are_uris():
 
 
 def test_sarif_has_the_correction_and_the_other_place():
-    corrected, twice = json.loads(get("sarif")([CORRECTED, TWICE], TEXTS))["runs"][0]["results"]
+    corrected, twice = json.loads(get("sarif")([CORRECTED, TWICE], TEXTS))["runs"][0][
+        "results"
+    ]
     (fix,) = corrected["fixes"]
     assert fix["description"]["text"] == "did you mean `demos`?"
     (change,) = fix["artifactChanges"]

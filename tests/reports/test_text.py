@@ -1,4 +1,6 @@
-"""The report for people: what is wrong, the line, a caret under the right characters, and what to do."""
+"""The report for people: what is wrong, the line, a caret under the right characters,
+and what to do.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,9 @@ def test_two_places_are_shown_in_the_order_of_the_file():
 def test_the_place_in_another_file_is_named():
     there = Place("other.yaml", 11, 1, 4)
     found = TWICE._replace(related=TWICE.related._replace(place=there))
-    assert get("text")([found], TEXTS | {"other.yaml": "\n" * 10 + "name\n"}).splitlines()[1:8] == [
+    assert get("text")(
+        [found], TEXTS | {"other.yaml": "\n" * 10 + "name\n"}
+    ).splitlines()[1:8] == [
         "   |",
         " 4 | 温度: {at: 0, bits: 温}",
         "   |              ^^^^",
@@ -69,7 +73,9 @@ def test_the_place_in_another_file_is_named():
 
 def test_the_last_line_counts():
     assert get("text")([], TEXTS) == "no findings\n"
-    assert get("text")([ERROR, ERROR, WARNING, NOTE], TEXTS).endswith("\n2 errors, 1 warning, 1 note in 2 files\n")
+    assert get("text")([ERROR, ERROR, WARNING, NOTE], TEXTS).endswith(
+        "\n2 errors, 1 warning, 1 note in 2 files\n"
+    )
 
 
 def test_without_the_text_there_is_no_excerpt():
@@ -86,7 +92,9 @@ def test_colour_changes_nothing_but_colour():
 
     coloured = get("text")([ERROR, WARNING, NOTE], TEXTS, colour=True)
     assert "\x1b[1;31m^^^^^^^^^^^^\x1b[0m" in coloured
-    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == get("text")([ERROR, WARNING, NOTE], TEXTS)
+    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == get("text")(
+        [ERROR, WARNING, NOTE], TEXTS
+    )
 
 
 def test_tabs_become_blanks_in_the_line_and_before_the_caret():
@@ -111,23 +119,40 @@ def test_of_a_line_of_ten_thousand_columns_a_window_is_shown():
     assert len(line) == WIDTH
 
 
-@pytest.mark.parametrize("column", [1, 2, 29, 30, 31, 99, 100, 101, 9_001, 10_004, 10_005, 10_006])
+@pytest.mark.parametrize(
+    "column", [1, 2, 29, 30, 31, 99, 100, 101, 9_001, 10_004, 10_005, 10_006]
+)
 def test_the_caret_is_under_its_character_wherever_the_window_is(column):
     line, caret = shown(5, column, 1)
     whole = TEXTS["icd/demo.yaml"].splitlines()[4]
     wanted = whole[column - 1 : column + 4]
-    assert line[len(caret) - 1 :].startswith(wanted[: max(1, len(line) - len(caret) - 3)].strip())
+    assert line[len(caret) - 1 :].startswith(
+        wanted[: max(1, len(line) - len(caret) - 3)].strip()
+    )
     assert len(line) <= WIDTH
 
 
 def test_a_place_past_the_end_of_its_line_or_file_does_no_harm():
     assert shown(6, 50, 3) == ["last", "    ^"]
-    assert get("text")([Finding("ICD001", "wrong", Place("icd/demo.yaml", 99))], TEXTS).count("\n") == 3
+    assert (
+        get("text")(
+            [Finding("ICD001", "wrong", Place("icd/demo.yaml", 99))], TEXTS
+        ).count("\n")
+        == 3
+    )
 
 
 def test_lines_end_where_yaml_ends_them():
     lines = Lines("\ufeffone\r\ntwo\rthree\x85four\u2028five\n")
-    assert [lines[n] for n in range(1, 8)] == ["one", "two", "three", "four", "five", "", None]
+    assert [lines[n] for n in range(1, 8)] == [
+        "one",
+        "two",
+        "three",
+        "four",
+        "five",
+        "",
+        None,
+    ]
 
 
 def test_nothing_in_an_icd_can_act_upon_the_terminal():

@@ -1,4 +1,6 @@
-"""The checksums of the runtimes, where they lie, against the check values of the usual catalogues."""
+"""The checksums of the runtimes, where they lie, against the check values of the usual
+catalogues.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,9 @@ CATALOGUE = [
     Catalogued("CRC-16/MODBUS", 16, 0x8005, 0xFFFF, 1, 1, 0x0000, 0x4B37),
     Catalogued("CRC-16/IBM-SDLC", 16, 0x1021, 0xFFFF, 1, 1, 0xFFFF, 0x906E),
     Catalogued("CRC-24/OPENPGP", 24, 0x864CFB, 0xB704CE, 0, 0, 0x000000, 0x21CF02),
-    Catalogued("CRC-32/ISO-HDLC", 32, 0x04C11DB7, 0xFFFFFFFF, 1, 1, 0xFFFFFFFF, 0xCBF43926),
+    Catalogued(
+        "CRC-32/ISO-HDLC", 32, 0x04C11DB7, 0xFFFFFFFF, 1, 1, 0xFFFFFFFF, 0xCBF43926
+    ),
 ]
 DIGITS = b"123456789"
 
@@ -60,27 +64,50 @@ def test_python(one):
     code += f"whole = Crc(form).feed({DIGITS!r}).result()\n"
     code += f"assert whole == Crc(form, table=False).feed({DIGITS[:4]!r}).feed({DIGITS[4:]!r}).result()\nprint(whole)"
     command = [sys.executable, "-B", "-c", code, json.dumps(one[1:7])]
-    done = subprocess.run(command, cwd=RUNTIME / "python", check=True, capture_output=True, text=True)
+    done = subprocess.run(
+        command, cwd=RUNTIME / "python", check=True, capture_output=True, text=True
+    )
     assert int(done.stdout) == one.check
 
 
 @pytest.mark.parametrize("one", CATALOGUE, ids=lambda one: one.name)
 def test_the_reference(one):
-    assert crc.compute(Crc(*one[1:4], bool(one.reflect_in), bool(one.reflect_out), one.xor_out), DIGITS) == one.check
+    assert (
+        crc.compute(
+            Crc(*one[1:4], bool(one.reflect_in), bool(one.reflect_out), one.xor_out),
+            DIGITS,
+        )
+        == one.check
+    )
 
 
-@pytest.mark.parametrize("width, polynomial", [(3, 0x3), (7, 0x09), (12, 0x80F), (32, 0x04C11DB7)])
+@pytest.mark.parametrize(
+    "width, polynomial", [(3, 0x3), (7, 0x09), (12, 0x80F), (32, 0x04C11DB7)]
+)
 def test_the_tables_of_generated_c(width, polynomial):
     plain = Crc(width, polynomial, 0, False, False, 0)
-    assert byte_table(plain) == [crc.compute(plain, bytes([byte])) for byte in range(256)]
+    assert byte_table(plain) == [
+        crc.compute(plain, bytes([byte])) for byte in range(256)
+    ]
 
 
 @pytest.fixture(scope="module")
 def c_program(tmp_path_factory) -> Path:
     program = tmp_path_factory.mktemp("c") / "crc"
     checked = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-    options = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-DICDGEN_SHARED", *checked, "-I", RUNTIME / "c")
-    run("gcc", *options, HERE / "crc.c", RUNTIME / "c" / "wire" / "crc.c", "-o", program)
+    options = (
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-DICDGEN_SHARED",
+        *checked,
+        "-I",
+        RUNTIME / "c",
+    )
+    run(
+        "gcc", *options, HERE / "crc.c", RUNTIME / "c" / "wire" / "crc.c", "-o", program
+    )
     return program
 
 
@@ -88,10 +115,28 @@ def c_program(tmp_path_factory) -> Path:
 def rust_program(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("rust")
     toolchain = Toolchain("default")
-    options = ("--crate-type", "lib", "--crate-name", "icdgen_runtime", "--out-dir", folder)
+    options = (
+        "--crate-type",
+        "lib",
+        "--crate-name",
+        "icdgen_runtime",
+        "--out-dir",
+        folder,
+    )
     run("rustc", "--edition", "2021", *options, RUNTIME / "rust" / "src" / "lib.rs")
     extern = f"icdgen_runtime={folder / 'libicdgen_runtime.rlib'}"
-    run("rustc", "--edition", "2021", "-D", "warnings", "--extern", extern, "-o", folder / "crc", HERE / "crc.rs")
+    run(
+        "rustc",
+        "--edition",
+        "2021",
+        "-D",
+        "warnings",
+        "--extern",
+        extern,
+        "-o",
+        folder / "crc",
+        HERE / "crc.rs",
+    )
     toolchain.formatted(HERE / "crc.rs")
     return folder / "crc"
 

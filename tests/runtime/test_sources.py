@@ -1,4 +1,6 @@
-"""The runtimes are source: compilers, linters, type checkers and formatters take them as they lie."""
+"""The runtimes are source: compilers, linters, type checkers and formatters take them
+as they lie.
+"""
 
 from __future__ import annotations
 
@@ -35,11 +37,23 @@ def test_every_c_file_stands_alone_and_compiles_without_a_warning(compiler, tmp_
     for header in headers:
         for language, standard in (("c", "c99"), ("c++", "c++11")):
             program = tmp_path / f"{header.stem}_{header.suffix[1:]}.{language}"
-            program.write_text(f'#include "{header}"\n#include "{header}"\ntypedef int something;\n')
+            program.write_text(
+                f'#include "{header}"\n#include "{header}"\ntypedef int something;\n'
+            )
             shared = (
                 ("-DICDGEN_SHARED",) if header.parent.name == "wire" else ()
             )  # a part alone lacks the functions of others
-            run(compiler, f"-std={standard}", *STRICT, *shared, "-I", C, "-x", language, program)
+            run(
+                compiler,
+                f"-std={standard}",
+                *STRICT,
+                *shared,
+                "-I",
+                C,
+                "-x",
+                language,
+                program,
+            )
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
@@ -49,7 +63,12 @@ def test_the_c_self_test_compiles_without_a_warning(compiler):
 
 @pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
 def test_c_is_as_clang_format_lays_it_out():
-    run("clang-format", "--dry-run", "-Werror", *sorted((*C.rglob("*.[ch]"), *SELFTEST.iterdir())))
+    run(
+        "clang-format",
+        "--dry-run",
+        "-Werror",
+        *sorted((*C.rglob("*.[ch]"), *SELFTEST.iterdir())),
+    )
 
 
 @pytest.mark.parametrize("options", [(), STD], ids=["core", "std"])
@@ -71,7 +90,14 @@ def test_rust_is_formatted_linted_and_documented(name, options, tmp_path):
 
 def test_no_template_is_left_in_them():
     files = [
-        path for folder in (C, PYTHON, RUST) for path in folder.rglob("*.*") if path.suffix in (".h", ".py", ".rs")
+        path
+        for folder in (C, PYTHON, RUST)
+        for path in folder.rglob("*.*")
+        if path.suffix in (".h", ".py", ".rs")
     ]
     assert len(files) > 70
-    assert [path for path in files if any(mark in path.read_text("utf-8") for mark in ("{{ ", "{% ", "{# "))] == []
+    assert [
+        path
+        for path in files
+        if any(mark in path.read_text("utf-8") for mark in ("{{ ", "{% ", "{# "))
+    ] == []

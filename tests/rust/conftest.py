@@ -1,4 +1,6 @@
-"""The crate of the shipped ICDs and that of odd ones, each generated and built once a run."""
+"""The crate of the shipped ICDs and that of odd ones, each generated and built once a
+run.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,10 @@ class Subject(NamedTuple):
 
 @pytest.fixture(scope="session")
 def shipped(tmp_path_factory) -> Subject:
-    return Subject(harness.shipped(), harness.generate(harness.shipped(), tmp_path_factory.mktemp("shipped")))
+    return Subject(
+        harness.shipped(),
+        harness.generate(harness.shipped(), tmp_path_factory.mktemp("shipped")),
+    )
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,6 @@
-"""Generates the crate and its testee, builds them, and asks the testee what the reference codec is asked."""
+"""Generates the crate and its testee, builds them, and asks the testee what the
+reference codec is asked.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,11 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.places import NodePlace
 from icdgen.render import Renderer
 from tests.conformance.build import build
-from tests.conformance.icds import SHIPPED, read, shipped  # noqa: F401  (tests take them from here)
+from tests.conformance.icds import (
+    SHIPPED,  # noqa: F401
+    read,  # noqa: F401
+    shipped,  # noqa: F401
+)
 from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
 
@@ -30,7 +36,10 @@ def _renderer(name: str) -> Renderer:
 
 def texts(icd: Icd, backend: str = "rust") -> dict[str, str]:
     """Every file of the backend."""
-    return {str(path): text for path, text in backends.get(backend).files(icd, _renderer(backend))}
+    return {
+        str(path): text
+        for path, text in backends.get(backend).files(icd, _renderer(backend))
+    }
 
 
 def generate(icd: Icd, folder: Path) -> Path:
@@ -49,23 +58,38 @@ def main_of_testee(crate: Path) -> Path:
 
 
 def build_testee(icd: Icd) -> list[str]:
-    """The command that starts the testee, with the checks of a debug build; shared with the conformance run."""
+    """The command that starts the testee, with the checks of a debug build.
+
+    Shared with the conformance run.
+    """
     return build(all_languages()["rust-debug"], icd)
 
 
 def ask(program: list[str], lines: Iterable[bytes]) -> list[dict]:
     """The testee's answers."""
-    done = subprocess.run(program, input=b"".join(line + b"\n" for line in lines), capture_output=True)
+    done = subprocess.run(
+        program, input=b"".join(line + b"\n" for line in lines), capture_output=True
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
-def differences(icd: Icd, program: list[str], requests: list[dict]) -> list[tuple[dict, dict, dict]]:
-    """Requests that the reference codec answers otherwise: request, its answer, the testee's."""
+def differences(
+    icd: Icd, program: list[str], requests: list[dict]
+) -> list[tuple[dict, dict, dict]]:
+    """Requests that the reference codec answers otherwise: request, its answer, the
+    testee's.
+    """
     reference = Reference(icd)
     lines = [json.dumps(request).encode() for request in requests]
-    pairs = zip(requests, map(reference.answer, lines), ask(program, lines), strict=True)
-    return [(request, good, given) for request, good, given in pairs if _bare(good) != _bare(given)]
+    pairs = zip(
+        requests, map(reference.answer, lines), ask(program, lines), strict=True
+    )
+    return [
+        (request, good, given)
+        for request, good, given in pairs
+        if _bare(good) != _bare(given)
+    ]
 
 
 def _bare(answer: dict) -> dict:
@@ -76,19 +100,33 @@ def routes(icd: Icd) -> Iterator[tuple[Node, Message, str, int]]:
     """Every way to every message: node, message, kind, id."""
     for node in icd.nodes:
         for message in icd.messages_of(node):
-            for kind, id in (("telecommand", message.telecommand_id), ("telemetry", message.telemetry_id)):
+            for kind, id in (
+                ("telecommand", message.telecommand_id),
+                ("telemetry", message.telemetry_id),
+            ):
                 if id is not None:
                     yield node, message, kind, id
 
 
 def frame_requests(icd: Icd, count: int, seed: int = 1) -> list[dict]:
-    """Decoding of zeros, ones, one-hot bytes and random frames, and of frames that are too short or too long."""
+    """Decoding of zeros, ones, one-hot bytes and random frames, and of frames that are
+    too short or too long.
+    """
     source = random.Random(seed)
     found = []
     for node, message, kind, id in routes(icd):
         size = message.length
-        frames = [bytes(size), b"\xff" * size, b"\x01" * (size + 1), b"\x80" * max(0, size - 1), b""]
-        frames += [bytes(1 << (at + n) % 8 if n == at else 0 for n in range(size)) for at in range(min(size, 40))]
+        frames = [
+            bytes(size),
+            b"\xff" * size,
+            b"\x01" * (size + 1),
+            b"\x80" * max(0, size - 1),
+            b"",
+        ]
+        frames += [
+            bytes(1 << (at + n) % 8 if n == at else 0 for n in range(size))
+            for at in range(min(size, 40))
+        ]
         frames += [source.randbytes(size) for _ in range(count)]
         to = {"op": "decode", "node": node.name, "kind": kind, "id": id, "names": True}
         found += [{**to, "bytes": frame.hex()} for frame in frames]
@@ -96,9 +134,11 @@ def frame_requests(icd: Icd, count: int, seed: int = 1) -> list[dict]:
 
 
 def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
-    """Encoding with values at and beyond the ends of each field, and with physical values near and at ties.
+    """Encoding with values at and beyond the ends of each field, and with physical
+    values near and at ties.
 
-    Messages of more than ``largest`` fields are left out: every request holds all of them.
+    Messages of more than ``largest`` fields are left out: every request holds all of
+    them.
     """
     source = random.Random(seed)
     reference = Reference(icd)
@@ -111,9 +151,14 @@ def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
         fresh = reference.answer(json.dumps(found[-1]).encode())["default"]
         for field in message.fields:
             rest = {name: value for name, value in fresh.items() if name != field.name}
-            found += [{"op": "encode", **to, "raw": {**fresh, field.name: value}} for value in _raw_values(field)]
+            found += [
+                {"op": "encode", **to, "raw": {**fresh, field.name: value}}
+                for value in _raw_values(field)
+            ]
             for value in _doubles(field, source) if field.scale else ():
-                found.append({"op": "encode", **to, "raw": rest, "physical": {field.name: value}})
+                found.append(
+                    {"op": "encode", **to, "raw": rest, "physical": {field.name: value}}
+                )
     return found
 
 
@@ -148,5 +193,9 @@ def _doubles(field: NodePlace, source: random.Random) -> list[str]:
         for doubled in (2 * raw - 1, 2 * raw, 2 * raw + 1):  # a tie, the value, a tie
             middle = field.scale.factor * doubled / 2 + field.scale.offset
             value = middle.numerator / middle.denominator
-            found += [math.nextafter(value, -math.inf), value, math.nextafter(value, math.inf)]
+            found += [
+                math.nextafter(value, -math.inf),
+                value,
+                math.nextafter(value, math.inf),
+            ]
     return [struct.pack(">d", value).hex() for value in found]

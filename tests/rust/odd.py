@@ -1,4 +1,6 @@
-"""ICDs unlike ours for Rust: names of every length, ids beyond a byte, enumerations of every kind, and what C's tests found odd."""
+"""ICDs unlike ours for Rust: names of every length, ids beyond a byte, enumerations of
+every kind, and what C's tests found odd.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,16 @@ from pathlib import Path
 
 from tests.c import odd as of_c
 
-LENGTHS = (1, 2, 9, *range(17, 41), 44, 48, *range(50, 57), 60)  # where lines begin to be broken
+LENGTHS = (
+    1,
+    2,
+    9,
+    *range(17, 41),
+    44,
+    48,
+    *range(50, 57),
+    60,
+)  # where lines begin to be broken
 BORROWED = (
     "Core",
     "Alloc",
@@ -29,7 +40,11 @@ BORROWED = (
 def write(folder: Path) -> list[Path]:
     """The files, those that are included first."""
     base = _write(folder / "base.yaml", _base())
-    return [base, _write(folder / "lengths.yaml", _lengths(LENGTHS)), *of_c.write(folder)]
+    return [
+        base,
+        _write(folder / "lengths.yaml", _lengths(LENGTHS)),
+        *of_c.write(folder),
+    ]
 
 
 def _write(path: Path, tree: dict) -> Path:
@@ -55,9 +70,18 @@ def _base() -> dict:
         "node_type": 300,
         "interface_version": 1,
     }
-    every = {"name": "Every Byte", "members": [{"value": n, "name": f"Value {n}"} for n in range(256)]}
-    one = {"name": "One Value", "members": [{"value": 3, "name": "Unknown"}, {"value": 4, "name": "Unlisted"}]}
-    gaps = {"name": "Gaps", "members": [{"value": n, "name": f"At {n}"} for n in (1, 5, 200, 70_000)]}
+    every = {
+        "name": "Every Byte",
+        "members": [{"value": n, "name": f"Value {n}"} for n in range(256)],
+    }
+    one = {
+        "name": "One Value",
+        "members": [{"value": 3, "name": "Unknown"}, {"value": 4, "name": "Unlisted"}],
+    }
+    gaps = {
+        "name": "Gaps",
+        "members": [{"value": n, "name": f"At {n}"} for n in (1, 5, 200, 70_000)],
+    }
     fields = [
         {"at": 0, "bits": 8, "name": "Every", "type": "enum", "enum": "Every Byte"},
         {"at": 8, "bits": 3, "name": "One", "type": "enum", "enum": "One Value"},
@@ -75,22 +99,54 @@ def _base() -> dict:
         {"name": "Telemetry Of Base", "kind": "telemetry", "id": 5000, "length": 1,
          "fields": [{"at": 0, "bits": 8, "name": "x", "type": "uint"}]},
     ]  # fmt: skip
-    return {"icdgen": 1, "node": head, "enums": [every, one, gaps], "messages": messages}
+    return {
+        "icdgen": 1,
+        "node": head,
+        "enums": [every, one, gaps],
+        "messages": messages,
+    }
 
 
 def _lengths(lengths: tuple[int, ...]) -> dict:
-    """A message, fields of every kind, an enumeration and a member for each length of name."""
-    head = {"name": "lengths", "title": "Lengths", "byte_order": "little", "bit_order": "lsb0"}
+    """A message, fields of every kind, an enumeration and a member for each length of
+    name.
+    """
+    head = {
+        "name": "lengths",
+        "title": "Lengths",
+        "byte_order": "little",
+        "bit_order": "lsb0",
+    }
     messages, enums = [], []
     for number, length in enumerate(lengths):
         enum = word("e", length)
-        members = [{"value": 0, "name": word("z", length)}, {"value": 77_777, "name": word("m", length)}]
+        members = [
+            {"value": 0, "name": word("z", length)},
+            {"value": 77_777, "name": word("m", length)},
+        ]
         enums.append({"name": enum, "members": members})
         kinds = [
             ("a", {"bits": 8, "type": "uint"}),
-            ("b", {"bits": 16, "type": "int", "unit": "deg", "formula": "raw*0.01", "min": -100.25}),
+            (
+                "b",
+                {
+                    "bits": 16,
+                    "type": "int",
+                    "unit": "deg",
+                    "formula": "raw*0.01",
+                    "min": -100.25,
+                },
+            ),
             ("c", {"bits": 32, "type": "uint", "formula": "raw*-3 + 40"}),
-            ("d", {"bits": 64, "type": "int", "unit": "deg/s", "formula": "raw/4294967295"}),
+            (
+                "d",
+                {
+                    "bits": 64,
+                    "type": "int",
+                    "unit": "deg/s",
+                    "formula": "raw/4294967295",
+                },
+            ),
             ("f", {"bits": 32, "type": "float", "unit": "m"}),
             ("g", {"bits": 64, "type": "float"}),
             ("h", {"bits": 24, "type": "enum", "enum": enum}),
@@ -122,12 +178,40 @@ def _lengths(lengths: tuple[int, ...]) -> dict:
             at += more["bits"]
         kind = ("telecommand", "telemetry")[number % 2]
         messages.append(
-            {"name": word("x", length), "kind": kind, "id": number, "length": -(-at // 8), "fields": fields}
+            {
+                "name": word("x", length),
+                "kind": kind,
+                "id": number,
+                "length": -(-at // 8),
+                "fields": fields,
+            }
         )
     for number, name in enumerate(BORROWED):
-        fields = [{"at": 0, "bits": 8, "name": name, "identifier": f"{name} x", "type": "uint"}]
-        messages.append({"name": name, "kind": "telemetry", "id": 100 + number, "length": 1, "fields": fields})
-    return {"icdgen": 1, "node": head, "include": ["base.yaml"], "enums": enums, "messages": messages}
+        fields = [
+            {
+                "at": 0,
+                "bits": 8,
+                "name": name,
+                "identifier": f"{name} x",
+                "type": "uint",
+            }
+        ]
+        messages.append(
+            {
+                "name": name,
+                "kind": "telemetry",
+                "id": 100 + number,
+                "length": 1,
+                "fields": fields,
+            }
+        )
+    return {
+        "icdgen": 1,
+        "node": head,
+        "include": ["base.yaml"],
+        "enums": enums,
+        "messages": messages,
+    }
 
 
 def write_long(folder: Path) -> list[Path]:
@@ -138,10 +222,29 @@ def write_long(folder: Path) -> list[Path]:
 
 def write_clashing(folder: Path) -> Path:
     """An ICD whose names clash with each other or with the generated code, in Rust."""
-    head = {"name": "support", "title": "Support", "byte_order": "little", "bit_order": "lsb0"}
+    head = {
+        "name": "support",
+        "title": "Support",
+        "byte_order": "little",
+        "bit_order": "lsb0",
+    }
     fields = [
-        {"at": 0, "bits": 8, "name": "Angle", "type": "uint", "unit": "deg", "formula": "raw*2"},
-        {"at": 8, "bits": 8, "name": "Set Angle", "type": "uint", "unit": "deg", "formula": "raw*2"},
+        {
+            "at": 0,
+            "bits": 8,
+            "name": "Angle",
+            "type": "uint",
+            "unit": "deg",
+            "formula": "raw*2",
+        },
+        {
+            "at": 8,
+            "bits": 8,
+            "name": "Set Angle",
+            "type": "uint",
+            "unit": "deg",
+            "formula": "raw*2",
+        },
         {"at": 16, "bits": 8, "name": "Type", "type": "enum", "enum": "Words"},
     ]
     messages = [
@@ -150,12 +253,22 @@ def write_clashing(folder: Path) -> Path:
         {"name": "Enums", "kind": "telemetry", "id": 3, "length": 0},
         {"name": "Str", "kind": "telemetry", "id": 4, "length": 0},
     ]
-    enums = [{"name": "Words", "members": [{"value": 0, "name": "Self"}, {"value": 1, "name": "Ok"}]}]
-    return _write(folder / "clashing.yaml", {"icdgen": 1, "node": head, "enums": enums, "messages": messages})
+    enums = [
+        {
+            "name": "Words",
+            "members": [{"value": 0, "name": "Self"}, {"value": 1, "name": "Ok"}],
+        }
+    ]
+    return _write(
+        folder / "clashing.yaml",
+        {"icdgen": 1, "node": head, "enums": enums, "messages": messages},
+    )
 
 
 def write_least(folder: Path) -> Path:
     """A node of one telecommand without parameters."""
     head = {"name": "least", "title": "Least", "byte_order": "big", "bit_order": "msb0"}
     messages = [{"name": "Stop", "kind": "telecommand", "id": 1, "length": 0}]
-    return _write(folder / "least.yaml", {"icdgen": 1, "node": head, "messages": messages})
+    return _write(
+        folder / "least.yaml", {"icdgen": 1, "node": head, "messages": messages}
+    )

@@ -45,23 +45,45 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     rows = {one.model.name: one for one in describe(icd).node(node).all_messages}
 
     def of(messages, values) -> list[Row]:
-        return [_row(icd, rows[message.name], values(icd, message)) for message in messages]
+        return [
+            _row(icd, rows[message.name], values(icd, message)) for message in messages
+        ]
 
     commands = [m for m in known.telecommands.values() if m.kind != CONFIGURATION]
-    starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    starters = [
+        one.name
+        for one in icd.nodes
+        if one.protocol.get("program_start", {}).get("application") == node.name
+    ]
     boot = icd.node(starters[0])
-    last, log = known.polled, icd.protocol_of(node).get("unsolicited_log", {}).get("configured_by", {}).get("message")
+    last, log = known.polled, icd.protocol_of(node).get("unsolicited_log", {}).get(
+        "configured_by", {}
+    ).get("message")
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+        loader=jinja2.FileSystemLoader(HERE),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
     )
     return environment.get_template("sim_client.rs.j2").render(
         node=node.name,
         telemetry=of(known.telemetry.values(), allowed_values),
-        settings=of((m for m in known.telecommands.values() if m.kind == CONFIGURATION), numbered),
-        acknowledged=of((m for m in commands if m.acknowledge and not m.expects_reset), allowed_values),
-        silent=of((m for m in commands if not m.acknowledge and not m.expects_reset), allowed_values),
+        settings=of(
+            (m for m in known.telecommands.values() if m.kind == CONFIGURATION),
+            numbered,
+        ),
+        acknowledged=of(
+            (m for m in commands if m.acknowledge and not m.expects_reset),
+            allowed_values,
+        ),
+        silent=of(
+            (m for m in commands if not m.acknowledge and not m.expects_reset),
+            allowed_values,
+        ),
         resets=of((m for m in commands if m.expects_reset), allowed_values),
-        last=Place(_type(rows[last.message.name]), _field(rows[last.message.name], last.id)),
+        last=Place(
+            _type(rows[last.message.name]), _field(rows[last.message.name], last.id)
+        ),
         identification=_type(rows[known.identification.message.name]),
         log=log and _type(rows[log]),
         restarted=starters[0],
@@ -73,14 +95,18 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 def _start(icd: Icd, boot: Node) -> str:
     """The type of the telecommand that starts the application."""
     name = boot.protocol["program_start"]["message"]
-    return _type(next(one for one in describe(icd).node(boot).messages if one.model.name == name))
+    return _type(
+        next(one for one in describe(icd).node(boot).messages if one.model.name == name)
+    )
 
 
 def build(folder: Path) -> list[str]:
     """The command that starts the client, built in that folder."""
     icd, tools = harness.shipped(), Toolchain("default")
     shutil.rmtree(folder / "rust", ignore_errors=True)  # of an earlier build
-    library = tools.library(harness.generate(icd, folder), "0", *STD)  # with checks of arithmetic
+    library = tools.library(
+        harness.generate(icd, folder), "0", *STD
+    )  # with checks of arithmetic
     main = folder / "sim_client.rs"
     main.write_text(source(icd), encoding="utf-8")
     shutil.copy(HERE / "sim_device.rs", folder)
@@ -88,7 +114,9 @@ def build(folder: Path) -> list[str]:
 
 
 def numbered(icd: Icd, message: Message) -> dict[str, int | bytes]:
-    """A message in which hardly two fields have the same value, so that none can be taken for another."""
+    """A message in which hardly two fields have the same value, so that none can be
+    taken for another.
+    """
     raw = allowed_values(icd, message)
     for number, field in enumerate(message.fields, 1):
         if field.const is None:

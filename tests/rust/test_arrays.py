@@ -1,4 +1,7 @@
-"""Arrays in Rust: `[T; N]`, accessors that take the index of an element, and no way to a panic."""
+"""Arrays in Rust: `[T.
+
+N]`, accessors that take the index of an element, and no way to a panic.
+"""
 
 from __future__ import annotations
 
@@ -86,10 +89,16 @@ def arrays(tmp_path_factory) -> Subject:
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_elements_are_values_and_an_index_is_held_to_the_count(arrays, toolchain, tmp_path):
+def test_elements_are_values_and_an_index_is_held_to_the_count(
+    arrays, toolchain, tmp_path
+):
     tools = Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(USER)
-    run(tools.program(tmp_path / "user.rs", tools.library(arrays.crate, "0"), tmp_path / "user"))
+    run(
+        tools.program(
+            tmp_path / "user.rs", tools.library(arrays.crate, "0"), tmp_path / "user"
+        )
+    )
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
@@ -97,6 +106,10 @@ def test_no_way_to_a_panic_is_left_in_arrays(arrays, level, tmp_path):
     assert suspicious(symbols(arrays, "default", level, tmp_path)) == []
 
 
-def test_sources_of_arrays_are_formatted_and_clippy_has_nothing_to_say(arrays, tmp_path):
+def test_sources_of_arrays_are_formatted_and_clippy_has_nothing_to_say(
+    arrays, tmp_path
+):
     Toolchain("default").formatted(arrays.crate)
-    Toolchain("default").linted(arrays.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+    Toolchain("default").linted(
+        arrays.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd"
+    )

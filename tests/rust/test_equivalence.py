@@ -1,4 +1,6 @@
-"""Every message of the generated crate does what the reference codec does, to the last bit."""
+"""Every message of the generated crate does what the reference codec does, to the last
+bit.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +27,16 @@ def test_constants_and_encoding_of_raw_and_physical_values(subject, testee):
 
 
 def test_every_physical_value_of_every_scale(subject, testee):
-    """All raw values of each scaled field of up to 12 bits, one field for each scale, width and sign."""
+    """All raw values of each scaled field of up to 12 bits, one field for each scale,
+    width and sign.
+    """
     fields = {}
     for node, message, kind, id in harness.routes(subject.icd):
         for field in message.fields:
             if field.scale is not None and field.bits <= 12:
-                fields.setdefault((field.scale, field.bits, field.type), (node, kind, id, field))
+                fields.setdefault(
+                    (field.scale, field.bits, field.type), (node, kind, id, field)
+                )
     assert fields
     requests = [
         {
@@ -39,14 +45,22 @@ def test_every_physical_value_of_every_scale(subject, testee):
         }
         for node, kind, id, field in fields.values()
     ]  # fmt: skip
-    answers = harness.ask(testee, [json.dumps(request).encode() for request in requests])
-    for (scale, _, _), (*_, field), answer in zip(fields, fields.values(), answers, strict=True):
-        assert answer["failures"] == (_lost(field) if answer["failures"] else 0), field.name
+    answers = harness.ask(
+        testee, [json.dumps(request).encode() for request in requests]
+    )
+    for (scale, _, _), (*_, field), answer in zip(
+        fields, fields.values(), answers, strict=True
+    ):
+        assert answer["failures"] == (
+            _lost(field) if answer["failures"] else 0
+        ), field.name
         assert answer["physical"] == _all_doubles(scale, field), field.name
 
 
 def _lost(field: NodePlace) -> int:
-    """How many raw values do not come back from their double: none but for scales of more digits than a double has."""
+    """How many raw values do not come back from their double: none but for scales of
+    more digits than a double has.
+    """
     assert abs(field.scale.offset) > 1 << 53
     raws = range(field.raw_min, field.raw_max + 1)
     return sum(_back(field, codec.physical_double(field, raw)) != raw for raw in raws)
@@ -62,7 +76,10 @@ def _back(field: NodePlace, value: float) -> int | None:
 def _all_doubles(scale: Scale, field: NodePlace) -> str:
     divisor = lcm(scale.factor.denominator, scale.offset.denominator)
     factor, offset = int(scale.factor * divisor), int(scale.offset * divisor)
-    values = [(raw * factor + offset) / divisor for raw in range(field.raw_min, field.raw_max + 1)]
+    values = [
+        (raw * factor + offset) / divisor
+        for raw in range(field.raw_min, field.raw_max + 1)
+    ]
     return struct.pack(f">{len(values)}d", *values).hex()
 
 

@@ -25,8 +25,13 @@ UNWINDS = ("-C", "panic=unwind")  # as examples do
 
 
 def test_each_of_them_runs(subject):
-    """All; where each is a program of its own, those of the node with the fewest messages."""
-    library, tools = Toolchain("default").library(subject.crate, "0", *UNWINDS, *STD), Toolchain("default")
+    """All.
+
+    Where each is a program of its own, those of the node with the fewest messages.
+    """
+    library, tools = Toolchain("default").library(
+        subject.crate, "0", *UNWINDS, *STD
+    ), Toolchain("default")
     least = min(subject.icd.nodes, key=lambda node: len(node.messages))
     only = "" if tools.merges else f"/{least.name}/"
     said = tools.tested(subject.crate, library, only)
@@ -39,13 +44,17 @@ def test_every_message_enumeration_and_direction_has_one(subject):
             parts = DECLARED.split(file.read_text())
             for before, name in zip(parts[:-1:2], parts[1::2], strict=True):
                 comment = before.rsplit("\n\n", 1)[-1]
-                assert name == "Node" or len(EXAMPLE.findall(comment)) == 2, f"{file.name}: {name}"
+                assert (
+                    name == "Node" or len(EXAMPLE.findall(comment)) == 2
+                ), f"{file.name}: {name}"
 
 
 def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
     for node in shipped.icd.nodes:
         text = (shipped.crate.parent / node.name / "mod.rs").read_text()
-        assert ("//! ```" in text) == ("pub use crate::wire::links" in text and "pub enum Telemetry" in text), node.name
+        assert ("//! ```" in text) == (
+            "pub use crate::wire::links" in text and "pub enum Telemetry" in text
+        ), node.name
 
 
 def test_one_that_says_otherwise_fails(shipped, tmp_path):

@@ -1,4 +1,6 @@
-"""Nothing in the crate can panic, and nothing allocates: an optimised program of all of it holds no code that does."""
+"""Nothing in the crate can panic, and nothing allocates: an optimised program of all of
+it holds no code that does.
+"""
 
 from __future__ import annotations
 
@@ -60,23 +62,50 @@ def everything(icd: Icd) -> Iterator[str]:
     described = describe(icd)
     for node in described.nodes:
         for message in node.messages:
-            name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{message.camel_name}"
+            name, type_ = (
+                f"{node.name}_{message.name}",
+                f"icd::{node.name}::{message.camel_name}",
+            )
             yield MESSAGE.format(name=name, type=type_)
-            for field in (field for field in message.declared_members if field.is_scaled):
-                one, templates = field.physical_name, (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
+            for field in (
+                field for field in message.declared_members if field.is_scaled
+            ):
+                one, templates = field.physical_name, (
+                    (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
+                )
                 template = templates[not field.is_settable]
                 value = "Option<f64>" if field.model.conditions else "f64"
-                yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}", value=value)
-        for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):
+                yield template.format(
+                    name=f"{name}_{one}",
+                    type=type_,
+                    getter=one,
+                    setter=f"set_{one}",
+                    value=value,
+                )
+        for way, messages in (
+            ("telecommand", node.telecommands),
+            ("telemetry", node.telemetry),
+        ):
             if messages:
                 type_ = f"icd::{node.name}::{way.capitalize()}"
-                yield DISPATCHER.format(name=f"{node.name}_{way}", type=type_, id=f"u{described.id_bits}")
+                yield DISPATCHER.format(
+                    name=f"{node.name}_{way}", type=type_, id=f"u{described.id_bits}"
+                )
         for enum in node.enums:
-            name, type_ = f"{node.name}_{enum.camel_name}", f"icd::{node.name}::enums::{enum.camel_name}"
-            yield ENUM.format(name=name, type=type_, raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}")
+            name, type_ = (
+                f"{node.name}_{enum.camel_name}",
+                f"icd::{node.name}::enums::{enum.camel_name}",
+            )
+            yield ENUM.format(
+                name=name,
+                type=type_,
+                raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}",
+            )
 
 
-def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
+def symbols(
+    subject, toolchain: str, level: str, folder: Path, more: str = ""
+) -> set[str]:
     """What the linker sees of the program."""
     tools = Toolchain(toolchain)
     library = Toolchain(toolchain).library(subject.crate, level)
@@ -84,7 +113,9 @@ def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -
     source.write_text(HEAD + "".join(everything(subject.icd)) + more)
     archive = tools.freestanding(source, library, folder / "libeverything.a", level)
     lines = run("nm", "-C", archive).splitlines()
-    return {line.split(maxsplit=2)[-1].split(" ", 1)[-1] for line in lines if " " in line}
+    return {
+        line.split(maxsplit=2)[-1].split(" ", 1)[-1] for line in lines if " " in line
+    }
 
 
 ALLOCATORS = {
@@ -100,14 +131,18 @@ ALLOCATORS = {
 
 
 def suspicious(found: set[str]) -> list[str]:
-    return sorted(one for one in found if "panic" in one or "_fail" in one or "unwrap" in one)
+    return sorted(
+        one for one in found if "panic" in one or "_fail" in one or "unwrap" in one
+    )
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))
 def test_no_way_to_a_panic_is_left(shipped, toolchain, tmp_path):
     found = symbols(shipped, toolchain, FAST, tmp_path, WIRE.read_text())
     assert {"wire_uart_feed", "wire_client_received", "wire_download_next"} <= found
-    assert sum(one.startswith("decode_") for one in found) == sum(len(node.messages) for node in shipped.icd.nodes)
+    assert sum(one.startswith("decode_") for one in found) == sum(
+        len(node.messages) for node in shipped.icd.nodes
+    )
     assert suspicious(found) == []
 
 
@@ -115,11 +150,17 @@ def test_no_way_to_a_panic_is_left_in_odd_messages(strange, tmp_path):
     assert suspicious(symbols(strange, "default", SMALL, tmp_path)) == []
 
 
-def test_messages_of_variable_length_neither_panic_nor_allocate(tmp_path_factory, tmp_path):
+def test_messages_of_variable_length_neither_panic_nor_allocate(
+    tmp_path_factory, tmp_path
+):
     icd = harness.read(*odd.variable(tmp_path))
     variable = Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("variable")))
     found = symbols(variable, "default", FAST, tmp_path)
-    assert {"decode_ublox_nav_sat", "dispatch_open_telemetry", "dispatch_mux_telemetry"} <= found
+    assert {
+        "decode_ublox_nav_sat",
+        "dispatch_open_telemetry",
+        "dispatch_mux_telemetry",
+    } <= found
     assert suspicious(found) == []
     assert {one.split("::")[-1] for one in found} & ALLOCATORS == set()
 

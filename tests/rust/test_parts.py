@@ -1,4 +1,6 @@
-"""Parts of composite messages in Rust: `From` gives them as the messages that are repeated."""
+"""Parts of composite messages in Rust: `From` gives them as the messages that are
+repeated.
+"""
 
 from __future__ import annotations
 
@@ -27,10 +29,18 @@ def path(message: MessageDescription) -> str:
 def program(icd: Icd) -> str:
     description, checks = describe(icd), []
     for case in composites.cases(icd):
-        lines = [f"let message = {path(description.message(case.message))}::from_bytes(&{list(case.frame)}).unwrap();"]
+        lines = [
+            f"let message = {path(description.message(case.message))}::from_bytes(&{list(case.frame)}).unwrap();"
+        ]
         for one in case.parts:
-            part, count = path(description.message(one.part)), sum(other.part is one.part for other in case.parts)
-            given = f"<[{part}; {count}]>::from(&message)[{one.index}]" if count > 1 else f"{part}::from(&message)"
+            part, count = path(description.message(one.part)), sum(
+                other.part is one.part for other in case.parts
+            )
+            given = (
+                f"<[{part}; {count}]>::from(&message)[{one.index}]"
+                if count > 1
+                else f"{part}::from(&message)"
+            )
             lines.append(f"assert_eq!({given}.to_bytes().unwrap(), {list(one.frame)});")
         checks.append("    {\n        " + "\n        ".join(lines) + "\n    }\n")
     assert len(checks) > 3
@@ -42,7 +52,13 @@ def program(icd: Icd) -> str:
 def test_parts_are_what_the_reference_reads_there(request, which, toolchain, tmp_path):
     subject, tools = request.getfixturevalue(which), Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(program(subject.icd))
-    run(tools.program(tmp_path / "user.rs", Toolchain(toolchain).library(subject.crate, "0"), tmp_path / "user"))
+    run(
+        tools.program(
+            tmp_path / "user.rs",
+            Toolchain(toolchain).library(subject.crate, "0"),
+            tmp_path / "user",
+        )
+    )
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
@@ -52,5 +68,7 @@ def test_no_way_to_a_panic_is_left_in_parts(odd, level, tmp_path):
 
 def test_sources_with_parts_are_tidy(odd, tmp_path):
     Toolchain("default").formatted(odd.crate)
-    Toolchain("default").linted(odd.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+    Toolchain("default").linted(
+        odd.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd"
+    )
     Toolchain("default").documented(odd.crate, tmp_path)

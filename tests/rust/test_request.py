@@ -31,5 +31,9 @@ def test_it_talks_to_the_simulator_of_the_command_line(tmp_path):
     with simulator("--node", "cubeacp", "--tcp", "0", *told) as (place, _):
         (folder / REQUEST).write_text(code.replace(PORT, urlsplit(place).netloc))
         cargo = ("cargo", "run", "--quiet", "--offline", "--bin", "request")
-        own = {"CARGO_HOME": tmp_path / "home", "CARGO_TARGET_DIR": tmp_path / "target", "RUSTFLAGS": "-D warnings"}
+        own = {
+            "CARGO_HOME": tmp_path / "home",
+            "CARGO_TARGET_DIR": tmp_path / "target",
+            "RUSTFLAGS": "-D warnings",
+        }
         assert run(*cargo, cwd=folder, **own) == "roll -12.34 deg\n"

@@ -1,4 +1,6 @@
-"""Clients over envelopes in Rust: each event is read as the message that it brings, and as no other."""
+"""Clients over envelopes in Rust: each event is read as the message that it brings, and
+as no other.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,15 @@ fn main() {
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_an_event_is_read_as_the_message_that_it_brings_and_as_no_other(toolchain, tmp_path):
+def test_an_event_is_read_as_the_message_that_it_brings_and_as_no_other(
+    toolchain, tmp_path
+):
     crate = harness.generate(harness.read(LINKS / "packets.yaml"), tmp_path)
     (tmp_path / "user.rs").write_text(PROGRAM)
-    run(Toolchain(toolchain).program(tmp_path / "user.rs", Toolchain(toolchain).library(crate, "0"), tmp_path / "user"))
+    run(
+        Toolchain(toolchain).program(
+            tmp_path / "user.rs",
+            Toolchain(toolchain).library(crate, "0"),
+            tmp_path / "user",
+        )
+    )

@@ -1,4 +1,6 @@
-"""Structs in Rust: types of their own in messages, errors that name the field, and no way to a panic."""
+"""Structs in Rust: types of their own in messages, errors that name the field, and no
+way to a panic.
+"""
 
 from __future__ import annotations
 
@@ -49,10 +51,16 @@ def structs(tmp_path_factory) -> Subject:
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_a_struct_is_a_value_of_its_own_wherever_it_stands(structs, toolchain, tmp_path):
+def test_a_struct_is_a_value_of_its_own_wherever_it_stands(
+    structs, toolchain, tmp_path
+):
     tools = Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(USER)
-    run(tools.program(tmp_path / "user.rs", tools.library(structs.crate, "0"), tmp_path / "user"))
+    run(
+        tools.program(
+            tmp_path / "user.rs", tools.library(structs.crate, "0"), tmp_path / "user"
+        )
+    )
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
@@ -60,6 +68,10 @@ def test_no_way_to_a_panic_is_left_in_structs(structs, level, tmp_path):
     assert suspicious(symbols(structs, "default", level, tmp_path)) == []
 
 
-def test_sources_of_structs_are_formatted_and_clippy_has_nothing_to_say(structs, tmp_path):
+def test_sources_of_structs_are_formatted_and_clippy_has_nothing_to_say(
+    structs, tmp_path
+):
     Toolchain("default").formatted(structs.crate)
-    Toolchain("default").linted(structs.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+    Toolchain("default").linted(
+        structs.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd"
+    )

@@ -1,4 +1,6 @@
-"""The generated crate passes Rust's own tools, pedantic ones included, with the newest and the oldest toolchain."""
+"""The generated crate passes Rust's own tools, pedantic ones included, with the newest
+and the oldest toolchain.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +23,24 @@ def test_rustfmt_leaves_it_as_it_is(subject, toolchain):
 
 
 def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
-    toolchain.linted(subject.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+    toolchain.linted(
+        subject.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd"
+    )
     library = f"icd={tmp_path / 'libicd.rmeta'}"
-    toolchain.linted(main_of_testee(subject.crate), tmp_path, "--crate-name", "testee", "--extern", library)
+    toolchain.linted(
+        main_of_testee(subject.crate),
+        tmp_path,
+        "--crate-name",
+        "testee",
+        "--extern",
+        library,
+    )
 
 
 def test_nor_with_the_standard_library(shipped, toolchain, tmp_path):
-    toolchain.linted(shipped.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd", *STD)
+    toolchain.linted(
+        shipped.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd", *STD
+    )
     toolchain.documented(shipped.crate, tmp_path, *STD)
 
 
@@ -41,7 +54,9 @@ def test_rustdoc_takes_no_word_of_an_icd_for_markup(toolchain, tmp_path):
     toolchain.formatted(crate)
 
 
-def test_it_compiles_without_a_warning_and_with_names_of_any_length(toolchain, tmp_path):
+def test_it_compiles_without_a_warning_and_with_names_of_any_length(
+    toolchain, tmp_path
+):
     folder = tmp_path / "icd"
     folder.mkdir()
     crate = harness.generate(harness.read(*odd.write_long(folder)), tmp_path)

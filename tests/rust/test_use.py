@@ -1,4 +1,6 @@
-"""The crate in a user's hands: by cargo and by the oldest compiler, with and without its features."""
+"""The crate in a user's hands: by cargo and by the oldest compiler, with and without
+its features.
+"""
 
 from __future__ import annotations
 
@@ -52,8 +54,20 @@ def test_a_program_gets_it_with_cargo_add_and_no_registry(shipped, name, tmp_pat
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "main.rs").write_text(USER.read_text())
     (tmp_path / "Cargo.toml").write_text(MANIFEST)
-    own = {"CARGO_HOME": tmp_path / "home", "CARGO_TARGET_DIR": tmp_path / "target", "CARGO_NET_OFFLINE": "true"}
-    run(*cargo, "add", "--quiet", "--path", shipped.crate.parent.parent, cwd=tmp_path, **own)
+    own = {
+        "CARGO_HOME": tmp_path / "home",
+        "CARGO_TARGET_DIR": tmp_path / "target",
+        "CARGO_NET_OFFLINE": "true",
+    }
+    run(
+        *cargo,
+        "add",
+        "--quiet",
+        "--path",
+        shipped.crate.parent.parent,
+        cwd=tmp_path,
+        **own,
+    )
     run(*cargo, "run", "--quiet", cwd=tmp_path, **own)
 
 
@@ -61,25 +75,41 @@ def test_its_features(shipped, tmp_path):
     """`std`, `serde` and `defmt`; they come from a registry."""
     version = Toolchain("default").version
     if version < NEWEST_FEATURES:
-        pytest.skip(f"the current serde and defmt need a newer Rust than {version[0]}.{version[1]}")
+        pytest.skip(
+            f"the current serde and defmt need a newer Rust than {version[0]}.{version[1]}"
+        )
     crate, target = shipped.crate.parent.parent, cache_folder() / "rust-features"
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "main.rs").write_text(SERDE)
     dependencies = f'[dependencies]\nicd = {{ path = "{crate}", features = ["std", "serde"] }}\nserde_json = "1"\n'
     (tmp_path / "Cargo.toml").write_text(MANIFEST + dependencies)
-    fetched = subprocess.run(["cargo", "fetch", "--quiet"], cwd=tmp_path, capture_output=True, text=True)
+    fetched = subprocess.run(
+        ["cargo", "fetch", "--quiet"], cwd=tmp_path, capture_output=True, text=True
+    )
     if fetched.returncode:
         pytest.skip(f"no registry: {fetched.stderr[-200:]}")
     run("cargo", "run", "--quiet", "--target-dir", target, cwd=tmp_path)
-    command = ("cargo", "clippy", "--quiet", "--all-features", "--target-dir", target, "--")
+    command = (
+        "cargo",
+        "clippy",
+        "--quiet",
+        "--all-features",
+        "--target-dir",
+        target,
+        "--",
+    )
     run(*command, "-D", "warnings", "-W", "clippy::pedantic", cwd=crate)
 
 
 def test_its_clients_over_the_ports_of_embedded_programs(shipped, tmp_path):
     """`embedded-io` and `embedded-hal` come from a registry."""
-    receiver = harness.generate(harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path).parent.parent
+    receiver = harness.generate(
+        harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path
+    ).parent.parent
     manifest = receiver / "Cargo.toml"
-    manifest.write_text(manifest.read_text().replace('name = "icd"', 'name = "receiver"'))
+    manifest.write_text(
+        manifest.read_text().replace('name = "icd"', 'name = "receiver"')
+    )
     user = tmp_path / "user"
     (user / "src").mkdir(parents=True)
     (user / "src" / "main.rs").write_text(PORTS.read_text())
@@ -91,7 +121,16 @@ embedded-io = "0.6"
 embedded-hal = "1"
 """
     (user / "Cargo.toml").write_text(MANIFEST + dependencies)
-    fetched = subprocess.run(["cargo", "fetch", "--quiet"], cwd=user, capture_output=True, text=True)
+    fetched = subprocess.run(
+        ["cargo", "fetch", "--quiet"], cwd=user, capture_output=True, text=True
+    )
     if fetched.returncode:
         pytest.skip(f"no registry: {fetched.stderr[-200:]}")
-    run("cargo", "run", "--quiet", "--target-dir", cache_folder() / "rust-features", cwd=user)
+    run(
+        "cargo",
+        "run",
+        "--quiet",
+        "--target-dir",
+        cache_folder() / "rust-features",
+        cwd=user,
+    )

@@ -1,4 +1,7 @@
-"""A raw value with more bits than its field is refused, and the field is named; the largest that fits is written."""
+"""A raw value with more bits than its field is refused, and the field is named.
+
+The largest that fits is written.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,9 @@ def cases(icd: Icd) -> Iterator[str]:
             for one in (field for field in message.fields if field.is_narrow):
                 field, length = one.model, message.model.length
                 zeros = codec.decode(node.model, message.model, bytes(length))
-                frame = codec.encode(node.model, message.model, {**zeros, field.name: field.raw_max})
+                frame = codec.encode(
+                    node.model, message.model, {**zeros, field.name: field.raw_max}
+                )
                 kind = integer_type(one)
                 coded = "Coded::from_raw({})" if field.type == "enum" else "{}"
                 yield CASE.format(
@@ -53,9 +58,13 @@ def test_what_does_not_fit_is_refused_by_name(subject, tmp_path):
     tools = Toolchain("default")
     found = list(cases(subject.icd))
     assert found
-    functions = "".join(f"fn case_{index}() {{\n{text}}}\n" for index, text in enumerate(found))
+    functions = "".join(
+        f"fn case_{index}() {{\n{text}}}\n" for index, text in enumerate(found)
+    )
     calls = "".join(f"    case_{index}();\n" for index in range(len(found)))
     source = tmp_path / "main.rs"
-    source.write_text(f"#![allow(unused_imports)]\nuse icd::Coded;\n{functions}fn main() {{\n{calls}}}\n")
+    source.write_text(
+        f"#![allow(unused_imports)]\nuse icd::Coded;\n{functions}fn main() {{\n{calls}}}\n"
+    )
     library = Toolchain("default").library(subject.crate, "0")
     run(tools.program(source, library, tmp_path / "main"))

@@ -23,8 +23,14 @@ messages:
 
 def test_the_golden_vectors(shipped):
     program = harness.build_testee(shipped.icd)
-    cases = [case for node in json.loads(protocol.text(shipped.icd))["nodes"] for case in node["cases"]]
-    answers = harness.ask(program, [json.dumps(case["request"]).encode() for case in cases])
+    cases = [
+        case
+        for node in json.loads(protocol.text(shipped.icd))["nodes"]
+        for case in node["cases"]
+    ]
+    answers = harness.ask(
+        program, [json.dumps(case["request"]).encode() for case in cases]
+    )
     wrong = [
         (case, given)
         for case, given in zip(cases, answers, strict=True)
@@ -34,7 +40,9 @@ def test_the_golden_vectors(shipped):
 
 
 def test_streams_packets_and_scripts_that_nobody_thought_of(shipped):
-    """Streams cut anywhere, packets in any order, long scripts of the client and of file transfer."""
+    """Streams cut anywhere, packets in any order, long scripts of the client and of
+    file transfer.
+    """
     program = harness.build_testee(shipped.icd)
     asked = list(wire_random.requests(shipped.icd, 60))
     assert harness.differences(shipped.icd, program, asked) == []
@@ -42,8 +50,15 @@ def test_streams_packets_and_scripts_that_nobody_thought_of(shipped):
 
 def test_changed_requests_are_answered_like_the_reference(shipped):
     vectors = wire.vectors_of(shipped.icd)
-    asked = [request for request, _ in wire_changed.requests(shipped.icd, vectors, random.Random(7), 3000)]
-    assert harness.differences(shipped.icd, harness.build_testee(shipped.icd), asked) == []
+    asked = [
+        request
+        for request, _ in wire_changed.requests(
+            shipped.icd, vectors, random.Random(7), 3000
+        )
+    ]
+    assert (
+        harness.differences(shipped.icd, harness.build_testee(shipped.icd), asked) == []
+    )
 
 
 def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
@@ -54,30 +69,61 @@ def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
     message = bytes.fromhex("1f1f1fff00")
     stream = noise + uart.encode(known.framing, message)
     request = {"op": "uart_events", "node": "cubeacp", "chunks": [stream.hex()]}
-    [answer] = harness.ask(harness.build_testee(shipped.icd), [json.dumps(request).encode()])
-    assert answer["events"][-1] == {"event": "message", "kind": "other", "bytes": message.hex()}
+    [answer] = harness.ask(
+        harness.build_testee(shipped.icd), [json.dumps(request).encode()]
+    )
+    assert answer["events"][-1] == {
+        "event": "message",
+        "kind": "other",
+        "bytes": message.hex(),
+    }
     found = [event for event in answer["events"] if event["event"] == "message"]
-    lengths = sum(len(uart.encode(known.framing, bytes.fromhex(one["bytes"]))) for one in found)
+    lengths = sum(
+        len(uart.encode(known.framing, bytes.fromhex(one["bytes"]))) for one in found
+    )
     assert answer["discarded"] + answer["pending"] + lengths == len(stream)
 
 
 def test_a_node_of_which_the_icd_says_little(tmp_path):
-    """Another framing, numbers most significant byte first; what is not described is refused."""
+    """Another framing, numbers most significant byte first.
+
+    What is not described is refused.
+    """
     (tmp_path / "small.yaml").write_text(SMALL)
     icd = harness.read(tmp_path / "small.yaml")
     known, source = facts.of(icd, icd.nodes[0]), random.Random(3)
     asked = [wire_random.stream(known, source) for _ in range(500)]
-    asked += [{"op": "uart_encode", "bytes": "10" + source.randbytes(9).hex()} for _ in range(50)]
-    script = [{"at": 0, "telecommand": 16, "bytes": "1010"}, {"at": 4, "receive": "10021001"}, {"at": 1 << 31}]
-    asked += [{"op": "client", "bus": bus, "script": script} for bus in ("uart", "can", "i2c")]
-    asked += [{"op": "crc8", "bytes": ""}, {"op": "file", "do": "list", "script": []}, {"op": "dos_time", "value": 3}]
+    asked += [
+        {"op": "uart_encode", "bytes": "10" + source.randbytes(9).hex()}
+        for _ in range(50)
+    ]
+    script = [
+        {"at": 0, "telecommand": 16, "bytes": "1010"},
+        {"at": 4, "receive": "10021001"},
+        {"at": 1 << 31},
+    ]
+    asked += [
+        {"op": "client", "bus": bus, "script": script} for bus in ("uart", "can", "i2c")
+    ]
+    asked += [
+        {"op": "crc8", "bytes": ""},
+        {"op": "file", "do": "list", "script": []},
+        {"op": "dos_time", "value": 3},
+    ]
     assert harness.differences(icd, harness.build_testee(icd), asked) == []
 
 
 def test_a_node_without_a_protocol_has_no_link(shipped):
     texts = harness.texts(shipped.icd)
-    assert "LINK" in texts["src/cubeacp/mod.rs"] and "LINK" not in texts["src/cubemag/mod.rs"]
+    assert (
+        "LINK" in texts["src/cubeacp/mod.rs"]
+        and "LINK" not in texts["src/cubemag/mod.rs"]
+    )
 
 
 def test_without_any_protocol_there_is_no_wire_layer(strange):
-    assert not [name for name, text in harness.texts(strange.icd).items() if "wire" in name or "crate::wire" in text]
+    assert not [
+        name
+        for name, text in harness.texts(strange.icd).items()
+        if "wire" in name or "crate::wire" in text
+    ]

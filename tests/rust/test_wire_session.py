@@ -1,4 +1,7 @@
-"""Sessions of the crate over ports that fail, requests that are given up; and messages of other nodes, which do not compile."""
+"""Sessions of the crate over ports that fail, requests that are given up.
+
+And messages of other nodes, which do not compile.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,11 @@ STATEMENTS = {
     "message": "client.tick(0, |event| assert!(event.message::<icd::%s::State>().is_none()))",
 }
 OWN = {"request": "cubeacp", "send": "cubeacp::ClearErrors", "message": "cubeacp"}
-OTHERS = {"request": "bootloader", "send": "bootloader::SetBootIndex", "message": "bootloader"}
+OTHERS = {
+    "request": "bootloader",
+    "send": "bootloader::SetBootIndex",
+    "message": "bootloader",
+}
 
 
 def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path):
@@ -36,28 +43,54 @@ def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
-def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(name, tmp_path):
+def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(
+    name, tmp_path
+):
     tools = Toolchain(name)
-    crate = harness.generate(harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path)
-    run(tools.program(PROGRAM.with_name("stream_session.rs"), tools.library(crate, "0", *STD), tmp_path / "program"))
+    crate = harness.generate(
+        harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path
+    )
+    run(
+        tools.program(
+            PROGRAM.with_name("stream_session.rs"),
+            tools.library(crate, "0", *STD),
+            tmp_path / "program",
+        )
+    )
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
 def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
-    """Telemetry 132 is `State` on both nodes; it is refused where it is requested, and where it is taken from an event."""
+    """Telemetry 132 is `State` on both nodes.
+
+    It is refused where it is requested, and where it is taken from an event.
+    """
     tools = Toolchain(name)
     library = Toolchain(name).library(shipped.crate, "0")
 
     def compiled(text: str) -> str:
         source = tmp_path / "main.rs"
         source.write_text(WHOLE % text)
-        command = (*tools.start, "rustc", "--edition", "2021", "--emit", "metadata", "-C", "panic=abort")
+        command = (
+            *tools.start,
+            "rustc",
+            "--edition",
+            "2021",
+            "--emit",
+            "metadata",
+            "-C",
+            "panic=abort",
+        )
         options = ("--extern", f"icd={library}", "--out-dir", tmp_path, source)
-        return subprocess.run([*command, *map(str, options)], capture_output=True, text=True).stderr
+        return subprocess.run(
+            [*command, *map(str, options)], capture_output=True, text=True
+        ).stderr
 
     for use, statement in STATEMENTS.items():
         assert "error" not in compiled(statement % OWN[use]), use
         said = compiled(statement % OTHERS[use])
-        assert "error[E0277]" in said and "Of<icd::cubeacp::Node>` is not satisfied" in said.replace(
-            "Of<Node>", "Of<icd::cubeacp::Node>"
+        assert (
+            "error[E0277]" in said
+            and "Of<icd::cubeacp::Node>` is not satisfied"
+            in said.replace("Of<Node>", "Of<icd::cubeacp::Node>")
         ), (use, said)

@@ -44,12 +44,24 @@ def test_an_array_is_one_line_of_the_table(tmp_path):
 def test_what_is_shown_for_programs_is_read_back_with_every_element(tmp_path):
     icd = read(tmp_path)
     tree = to_json(icd)
-    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
+    jsonschema_rs.validator_for(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))
+    ).validate(tree)
     fields = tree["nodes"][0]["messages"][0]["fields"]
-    assert [(one["name"], one["offset"], one["bits"], one["count"]) for one in fields] == [
+    assert [
+        (one["name"], one["offset"], one["bits"], one["count"]) for one in fields
+    ] == [
         ("Temperatures", 0, 16, 3),
         ("Levels", 48, 12, 2),
     ]
     again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    key = lambda one: (one.name, one.at, one.bits, one.scale, one.byte_order)  # noqa: E731
-    assert list(map(key, again.nodes[0].messages[0].fields)) == list(map(key, icd.nodes[0].messages[0].fields))
+    key = lambda one: (  # noqa: E731
+        one.name,
+        one.at,
+        one.bits,
+        one.scale,
+        one.byte_order,
+    )
+    assert list(map(key, again.nodes[0].messages[0].fields)) == list(
+        map(key, icd.nodes[0].messages[0].fields)
+    )

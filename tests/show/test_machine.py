@@ -59,7 +59,11 @@ notes:
 def icd(tmp_path_factory) -> Icd:
     folder = tmp_path_factory.mktemp("show")
     (folder / "errata").mkdir()
-    for name, text in (("base.yaml", BASE), ("top.yaml", TOP), ("errata/top.yaml", OVERLAY)):
+    for name, text in (
+        ("base.yaml", BASE),
+        ("top.yaml", TOP),
+        ("errata/top.yaml", OVERLAY),
+    ):
         (folder / name).write_text(text, encoding="utf-8")
     loaded = load([folder / "top.yaml"], check=False)
     assert loaded.findings == []
@@ -84,12 +88,20 @@ def schema():
 def test_the_keys_that_programs_look_for(shown):
     assert list(shown) == ["format", "nodes", "loggable"]
     base, top = shown["nodes"]
-    assert (top["name"], top["node_type"], top["interface_version"], top["includes"]) == ("top", 0, 7, ["base"])
+    assert (
+        top["name"],
+        top["node_type"],
+        top["interface_version"],
+        top["includes"],
+    ) == ("top", 0, 7, ["base"])
     assert base["enums"] == [
         {
             "name": "Mode",
             "table": 3,
-            "members": [{"value": 0, "name": "Idle"}, {"value": 1, "name": "Run", "summary": "At speed."}],
+            "members": [
+                {"value": 0, "name": "Idle"},
+                {"value": 1, "name": "Run", "summary": "At speed."},
+            ],
         }
     ]
     assert "node_type" not in base and base["messages"] == [] and top["enums"] == []
@@ -98,7 +110,11 @@ def test_the_keys_that_programs_look_for(shown):
         "name": "Reset", "kind": "telecommand", "id": 0, "length": 1, "acknowledge": False, "notes": ["TOP-003"],
         "fields": [{"name": "Magic", "offset": 0, "bits": 8, "type": "uint", "const": 0}],
     }  # fmt: skip
-    assert (temperature["set_id"], temperature["get_id"], temperature["table"]) == (2, 140, 98)
+    assert (temperature["set_id"], temperature["get_id"], temperature["table"]) == (
+        2,
+        140,
+        98,
+    )
     assert "id" not in temperature
     assert temperature["fields"] == [
         {"name": "Air", "offset": 0, "bits": 16, "type": "int", "unit": "K", "scale": "5/9", "scale_offset": "-160/9",
@@ -107,12 +123,21 @@ def test_the_keys_that_programs_look_for(shown):
         {"name": "Count", "offset": 24, "bits": 8, "type": "uint", "unit": "stars", "scale": "5", "formula": "raw*5",
          "special": [{"value": 255, "meaning": "many"}]},
     ]  # fmt: skip
-    assert nothing == {"name": "Nothing", "kind": "telemetry", "id": 141, "length": 0, "fields": []}
+    assert nothing == {
+        "name": "Nothing",
+        "kind": "telemetry",
+        "id": 141,
+        "length": 0,
+        "fields": [],
+    }
     assert top["protocol"] == {"uart": {"baud_rate": 115200}}
 
 
 def test_loggable_frames_of_a_node_and_of_all(shown):
-    rows = [{"bit": 0, "id": 141, "name": "Nothing"}, {"bit": 5, "id": 140, "notes": ["TOP-003"]}]
+    rows = [
+        {"bit": 0, "id": 141, "name": "Nothing"},
+        {"bit": 5, "id": 140, "notes": ["TOP-003"]},
+    ]
     assert shown["nodes"][1]["loggable"] == rows
     assert shown["loggable"] == [{"node": "top"} | row for row in rows]
 
@@ -124,7 +149,12 @@ def test_errata_with_the_places_they_concern(shown):
         "tables": [98], "printed": {"unit": "C"}, "held": {"unit": "K"}, "changes": True,
         "places": [{"message": "Temperature", "field": "Air"}],
     }  # fmt: skip
-    assert two == {"id": "TOP-002", "title": "A section", "what": "W.", "evidence": "E."}
+    assert two == {
+        "id": "TOP-002",
+        "title": "A section",
+        "what": "W.",
+        "evidence": "E.",
+    }
     assert three["places"] == [{"message": "Reset"}, {"loggable": 5}]
 
 
@@ -157,7 +187,10 @@ def test_the_shipped_icds_have_what_the_manual_has(shipped):
     fields = [field for message in messages for field in message["fields"]]
     enums = [enum for node in shipped["nodes"] for enum in node["enums"]]
     order = ("telecommand", "telemetry", "configuration")
-    kinds = {n["name"]: tuple(sum(m["kind"] == k for m in n["messages"]) for k in order) for n in shipped["nodes"]}
+    kinds = {
+        n["name"]: tuple(sum(m["kind"] == k for m in n["messages"]) for k in order)
+        for n in shipped["nodes"]
+    }
     assert kinds == {
         "common": (14, 15, 12),
         "bootloader": (5, 3, 0),
@@ -166,7 +199,10 @@ def test_the_shipped_icds_have_what_the_manual_has(shipped):
         "cubewheel": (0, 3, 0),
     }
     assert len(messages) == 171
-    assert sum(len({"id", "set_id", "get_id"} & message.keys()) for message in messages) == 209
+    assert (
+        sum(len({"id", "set_id", "get_id"} & message.keys()) for message in messages)
+        == 209
+    )
     assert len(fields) == 1251
     assert sum("scale" in field for field in fields) == 346
     assert sum("unit" in field for field in fields) == 324
@@ -176,7 +212,10 @@ def test_the_shipped_icds_have_what_the_manual_has(shipped):
 
 def test_scales_are_exact(shipped):
     fields = {
-        (n["name"], m["name"], f["name"]): f for n in shipped["nodes"] for m in n["messages"] for f in m["fields"]
+        (n["name"], m["name"], f["name"]): f
+        for n in shipped["nodes"]
+        for m in n["messages"]
+        for f in m["fields"]
     }
     roll = fields["cubeacp", "Estimated Attitude Angles", "Estimated Roll Angle"]
     assert roll["scale"] == "1/100"

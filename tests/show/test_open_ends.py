@@ -23,8 +23,14 @@ def read():
 def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it():
     icd = read()
     node = icd.node("open")
-    tables = {message.name: field_table(message, node).splitlines()[-1] for message in node.messages}
-    assert "up to 5 x 24" in tables["Narrow"] and "up to the end of the frame" in tables["Narrow"]
+    tables = {
+        message.name: field_table(message, node).splitlines()[-1]
+        for message in node.messages
+    }
+    assert (
+        "up to 5 x 24" in tables["Narrow"]
+        and "up to the end of the frame" in tables["Narrow"]
+    )
     assert "as many as Levels Count says" in tables["Counted"]
     assert "up to 80 x 8" in tables["Text"]
     assert "Samples Count" not in "".join(tables.values())  # it is in no frame
@@ -34,9 +40,13 @@ def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it():
 def test_what_is_shown_for_programs_is_read_back_with_the_open_ends():
     icd = read()
     tree = to_json(icd)
-    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
+    jsonschema_rs.validator_for(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))
+    ).validate(tree)
     again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
-    assert list(map(_facts, again.nodes[0].messages)) == list(map(_facts, icd.nodes[0].messages))
+    assert list(map(_facts, again.nodes[0].messages)) == list(
+        map(_facts, icd.nodes[0].messages)
+    )
 
 
 def test_arrays_in_elements_are_shown_with_their_counters_and_read_back():
@@ -46,10 +56,16 @@ def test_arrays_in_elements_are_shown_with_their_counters_and_read_back():
     table = field_table(icd.node("curves").messages[0], icd.node("curves"))
     assert "up to 4 of Points, as many as Points Count says" in " ".join(table.split())
     tree = to_json(icd)
-    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
-    (curve,) = (struct for struct in tree["nodes"][0]["structs"] if struct["name"] == "Curve")
+    jsonschema_rs.validator_for(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))
+    ).validate(tree)
+    (curve,) = (
+        struct for struct in tree["nodes"][0]["structs"] if struct["name"] == "Curve"
+    )
     counted = {
-        field["name"]: (field["counter"], field.get("plus", 0)) for field in curve["fields"] if "counter" in field
+        field["name"]: (field["counter"], field.get("plus", 0))
+        for field in curve["fields"]
+        if "counter" in field
     }
     assert counted == {"Points": ("Points Count", 0), "Levels": ("Last Level", 1)}
     again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
@@ -60,10 +76,20 @@ def test_arrays_in_elements_are_shown_with_their_counters_and_read_back():
 
 def _counted(message):
     return [
-        (part.name, part.counter, part.begin, part.step, part.most, part.plus) for part in message.layout.counted_parts
+        (part.name, part.counter, part.begin, part.step, part.most, part.plus)
+        for part in message.layout.counted_parts
     ]
 
 
 def _facts(message):
-    parts = [(part.name, part.counter, part.begin, part.step, part.most, part.plus) for part in message.layout.parts]
-    return message.name, message.length, message.layout.lengths, parts, [field.name for field in message.fields]
+    parts = [
+        (part.name, part.counter, part.begin, part.step, part.most, part.plus)
+        for part in message.layout.parts
+    ]
+    return (
+        message.name,
+        message.length,
+        message.layout.lengths,
+        parts,
+        [field.name for field in message.fields],
+    )

@@ -44,7 +44,11 @@ Erratum TOP-001 (likely): Wrong unit
 def icd(tmp_path_factory):
     folder = tmp_path_factory.mktemp("show")
     (folder / "errata").mkdir()
-    for name, text in (("base.yaml", BASE), ("top.yaml", TOP), ("errata/top.yaml", OVERLAY)):
+    for name, text in (
+        ("base.yaml", BASE),
+        ("top.yaml", TOP),
+        ("errata/top.yaml", OVERLAY),
+    ):
         (folder / name).write_text(text, encoding="utf-8")
     return load([folder / "top.yaml"], check=False).icd
 
@@ -76,11 +80,18 @@ def test_a_node(icd):
 
 def test_a_message_by_id_or_name(icd):
     assert to_text(icd, ["top", "140"]) == EXPECTED
-    assert to_text(icd, ["top", "0x8c"]) == to_text(icd, ["top", "temperature"]) == to_text(icd, ["top", "140"])
+    assert (
+        to_text(icd, ["top", "0x8c"])
+        == to_text(icd, ["top", "temperature"])
+        == to_text(icd, ["top", "140"])
+    )
 
 
 def test_a_message_without_fields_and_one_that_is_not_acknowledged(icd):
-    assert to_text(icd, ["top", "141"]) == "top: Nothing\ntelemetry 141 (hex 8D); 0 bytes\n"
+    assert (
+        to_text(icd, ["top", "141"])
+        == "top: Nothing\ntelemetry 141 (hex 8D); 0 bytes\n"
+    )
     assert "not acknowledged" in to_text(icd, ["top", "reset"])
     assert "always 0" in to_text(icd, ["top", "reset"])
 
@@ -144,7 +155,12 @@ def test_ids_of_several_bytes_are_shown_as_decode_shows_them():
     clock = to_text(icd, ["receiver", "Navigation Clock"])
     assert clock.startswith("receiver: Navigation Clock\ntelemetry 01 22; ")
     assert "(telemetry 01 22)" in values_text(
-        frame(icd, icd.node("receiver"), find_message(icd, "receiver", "Navigation Clock"), bytes(20))
+        frame(
+            icd,
+            icd.node("receiver"),
+            find_message(icd, "receiver", "Navigation Clock"),
+            bytes(20),
+        )
     )
     assert "01 22  telemetry" in to_text(icd, ["receiver"])
     with pytest.raises(NotFound) as error:

@@ -1,4 +1,6 @@
-"""``icdgen show --format json`` of every feature of the format agrees with the schema that describes it."""
+"""``icdgen show --format json`` of every feature of the format agrees with the schema
+that describes it.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,16 @@ from tests.conftest import ROOT
 from tests.features.data import examples, features
 
 VALIDATOR = jsonschema_rs.validator_for(json.loads(SCHEMA.read_text("utf-8")))
-TEXTS = {f"{section} {number}": text for section, texts in examples().items() for number, text in enumerate(texts, 1)}
-FILES = [ROOT / "icd", *sorted((ROOT / "examples").rglob("*.yaml")), ROOT / "tests" / "conformance" / "odd_icds"]
+TEXTS = {
+    f"{section} {number}": text
+    for section, texts in examples().items()
+    for number, text in enumerate(texts, 1)
+}
+FILES = [
+    ROOT / "icd",
+    *sorted((ROOT / "examples").rglob("*.yaml")),
+    ROOT / "tests" / "conformance" / "odd_icds",
+]
 
 
 def shown(path: Path) -> object:
@@ -25,7 +35,10 @@ def shown(path: Path) -> object:
 
 
 def violations(tree: object) -> list[str]:
-    return [f"{list(error.instance_path)}: {error.message}" for error in VALIDATOR.iter_errors(tree)]
+    return [
+        f"{list(error.instance_path)}: {error.message}"
+        for error in VALIDATOR.iter_errors(tree)
+    ]
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -42,6 +55,8 @@ def test_every_feature_said_otherwise_is_shown_as_the_schema_says(tmp_path, feat
     assert violations(shown(path)) == []
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(ROOT).as_posix())
+@pytest.mark.parametrize(
+    "path", FILES, ids=lambda path: path.relative_to(ROOT).as_posix()
+)
 def test_all_shipped_icds_are_shown_as_the_schema_says(path):
     assert violations(shown(path)) == []

@@ -8,8 +8,16 @@ import sys
 
 from icdgen.tables import Column, clean, render, width_of
 
-COLUMNS = [Column("name"), Column("value", right=True, fixed=True), Column("empty"), Column("remark")]
-ROWS = [("alpha", "1", "", "a remark that is rather long and has many words"), ("b", "-20", "", "")]
+COLUMNS = [
+    Column("name"),
+    Column("value", right=True, fixed=True),
+    Column("empty"),
+    Column("remark"),
+]
+ROWS = [
+    ("alpha", "1", "", "a remark that is rather long and has many words"),
+    ("b", "-20", "", ""),
+]
 
 
 def test_in_a_pipe_nothing_is_cut_and_no_line_ends_in_spaces():
@@ -46,7 +54,9 @@ def test_markup_and_control_characters_are_shown_not_obeyed():
 
 
 def test_wide_characters_keep_columns_aligned():
-    lines = render([Column("a"), Column("b")], [("日本", "x"), ("e\u0301", "y")]).splitlines()
+    lines = render(
+        [Column("a"), Column("b")], [("日本", "x"), ("e\u0301", "y")]
+    ).splitlines()
     assert lines[2:] == ["日本  x", "e\u0301     y"]
 
 
@@ -57,8 +67,8 @@ def test_a_pipe_and_a_file_have_no_width(tmp_path):
 
 
 def test_a_pipe_never_pays_for_rich():
-    script = (
-        "import sys; from icdgen.tables import *; render([Column('a')], [('b' * 999,)]); print('rich' in sys.modules)"
+    script = "import sys; from icdgen.tables import *; render([Column('a')], [('b' * 999,)]); print('rich' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"

@@ -20,7 +20,9 @@ ICD = icd_of()
 
 
 def _interruptible() -> None:
-    """A shell starts what runs in the background without an interrupt, and children inherit that."""
+    """A shell starts what runs in the background without an interrupt, and children
+    inherit that.
+    """
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -46,12 +48,16 @@ def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
 
 
 @contextmanager
-def session(*options: str, node: str = "cubeacp", settings: Settings = FAST, **more) -> Iterator[Session]:
+def session(
+    *options: str, node: str = "cubeacp", settings: Settings = FAST, **more
+) -> Iterator[Session]:
     """A client that is connected to a simulator of its own."""
     ways = () if {"--tcp", "--udp", "--pty"} & set(options) else ("--tcp", "0")
     with (
         simulator("--node", node, *ways, *options) as (place, _),
-        Session(ICD, ICD.node(node), open_port(place, {}), settings=settings, **more) as connected,
+        Session(
+            ICD, ICD.node(node), open_port(place, {}), settings=settings, **more
+        ) as connected,
     ):
         connected.known = hasty(connected.known)
         yield connected
@@ -59,17 +65,25 @@ def session(*options: str, node: str = "cubeacp", settings: Settings = FAST, **m
 
 def hasty(known):
     """The facts with short waits, for a device that is never slow."""
-    procedures = {name: replace(one, poll_interval=5) for name, one in known.files.procedures.items()}
+    procedures = {
+        name: replace(one, poll_interval=5)
+        for name, one in known.files.procedures.items()
+    }
     if "download" in procedures:
         procedures["download"] = replace(procedures["download"], silence=60)
     operations = {
         name: form and replace(form, poll_interval=5)
-        for name, form in (("program_copy", known.program_copy), ("program_information", known.program_information))
+        for name, form in (
+            ("program_copy", known.program_copy),
+            ("program_information", known.program_information),
+        )
     }
     return replace(known, files=replace(known.files, **procedures), **operations)
 
 
-def download(client: Session, type_: int, counter: int, size: int | None) -> tuple[str, bytes]:
+def download(
+    client: Session, type_: int, counter: int, size: int | None
+) -> tuple[str, bytes]:
     """The result, and what came."""
     procedure = transfer.Download(client.known, "uart", type_, counter, size)
     result = client.run(procedure)

@@ -1,9 +1,10 @@
-"""Runs a client, of any language, against the simulator, with losses and spoiled acknowledges.
+"""Runs a client, of any language, against the simulator, with losses and spoiled
+acknowledges.
 
     python -m tests.sim.harness [--size 1048576] [--loss 0,1,10,30] [--fault ...] -- CLIENT [ARGUMENT]...
 
-CLIENT is started for each loss with three more arguments: host, TCP port, size of the file. On that connection, which is the UART,
-it is expected to
+CLIENT is started for each loss with three more arguments: host, TCP port, size of the
+file. On that connection, which is the UART, it is expected to
 
 1. identify the node, and end with 3 if it is not the one of its ICD,
 2. request every telemetry frame,
@@ -15,12 +16,14 @@ it is expected to
 7. have it copied to where it can run, and see that size and checksum of the copy are those of what it uploaded,
 8. start it, and see that the node of its ICD identifies itself again,
 
-and to end with 0. What it uploaded, and what runs, is held against the file, so both directions are proved at once; every frame
-must have been requested, and every telecommand sent. A telecommand that is refused for a reason that the ICD has is answered (such
-as one of the file transfer for which nothing is prepared), one without an answer is a failure; after one that restarts the node
-another program answers. Acknowledges carry no checksum: a refusal with a code that the ICD does not have is a damaged one, and
-worth asking again.
-A client that takes longer than ``--limit`` seconds hangs, which is a failure. The reference is ``python -m tests.sim.client``.
+and to end with 0. What it uploaded, and what runs, is held against the file, so both
+directions are proved at once; every frame must have been requested, and every
+telecommand sent. A telecommand that is refused for a reason that the ICD has is
+answered (such as one of the file transfer for which nothing is prepared), one without
+an answer is a failure; after one that restarts the node another program answers.
+Acknowledges carry no checksum: a refusal with a code that the ICD does not have is a
+damaged one, and worth asking again. A client that takes longer than ``--limit`` seconds
+hangs, which is a failure. The reference is ``python -m tests.sim.client``.
 """
 
 from __future__ import annotations
@@ -43,10 +46,14 @@ RUNNING = 1  # the program that a copy becomes
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--size", type=int, default=1 << 20)
     parser.add_argument("--loss", default=LOSSES, help="per cent")
-    parser.add_argument("--fault", action="append", default=[], help="as of `icdgen sim`")
+    parser.add_argument(
+        "--fault", action="append", default=[], help="as of `icdgen sim`"
+    )
     parser.add_argument("--node", default="cubeacp")
     parser.add_argument("--limit", type=float, default=900.0)
     parser.add_argument("client", nargs="+")
@@ -54,14 +61,29 @@ def main(arguments: list[str] | None = None) -> int:
     good = True
     for loss in options.loss.split(","):
         begin = time.monotonic()
-        wrong = run(options.client, options.size, loss, options.fault, options.node, options.limit)
-        print(f"{loss} % lost: {wrong or 'identical'}, {time.monotonic() - begin:.1f} s", flush=True)
+        wrong = run(
+            options.client,
+            options.size,
+            loss,
+            options.fault,
+            options.node,
+            options.limit,
+        )
+        print(
+            f"{loss} % lost: {wrong or 'identical'}, {time.monotonic() - begin:.1f} s",
+            flush=True,
+        )
         good &= wrong is None
     return 0 if good else 1
 
 
 def run(
-    client: list[str], size: int, loss: str, faults: list[str], node: str = "cubeacp", limit: float = 900.0
+    client: list[str],
+    size: int,
+    loss: str,
+    faults: list[str],
+    node: str = "cubeacp",
+    limit: float = 900.0,
 ) -> str | None:
     """What went wrong; None if nothing did."""
     data = Random(f"{loss} {size}").randbytes(size)
@@ -69,18 +91,33 @@ def run(
         stored, uploaded = Path(folder, "stored"), Path(folder, "3.bin")
         stored.write_bytes(data)
         spoil = [word for fault in faults for word in ("--fault", fault)]
-        options = ("--file", f"2:1={stored}", "--uploads", folder, "--loss", f"{loss}%", "--late", "400", *spoil)
+        options = (
+            "--file",
+            f"2:1={stored}",
+            "--uploads",
+            folder,
+            "--loss",
+            f"{loss}%",
+            "--late",
+            "400",
+            *spoil,
+        )
         with simulator("--node", node, "--tcp", "0", *options) as (place, _):
             where = urlsplit(place)
             with Tap(str(where.hostname), int(where.port or 0)) as tap:
                 words = [*client, "127.0.0.1", str(tap.port), str(size)]
                 try:
-                    ended = subprocess.run(words, capture_output=True, text=True, timeout=limit)
+                    ended = subprocess.run(
+                        words, capture_output=True, text=True, timeout=limit
+                    )
                 except subprocess.TimeoutExpired:
                     return "hangs"
         if ended.returncode:
             return f"ended with {ended.returncode}: {ended.stderr.strip() or ended.stdout.strip()}"
-        for path, what in ((uploaded, "uploaded"), (Path(folder, f"{RUNNING}.bin"), "running")):
+        for path, what in (
+            (uploaded, "uploaded"),
+            (Path(folder, f"{RUNNING}.bin"), "running"),
+        ):
             if not path.is_file() or path.read_bytes() != data[:ROOM]:
                 return f"the {what} file is another one"
         never = missing(ICD, node, tap.messages(ICD, node))
@@ -88,7 +125,10 @@ def run(
 
 
 def against(client: list[str], *options: str) -> subprocess.CompletedProcess:
-    """The client's end against a simulator with these options; the file it wants has 100 bytes."""
+    """The client's end against a simulator with these options.
+
+    The file it wants has 100 bytes.
+    """
     with simulator(*options, "--tcp", "0") as (place, _):
         where = urlsplit(place)
         words = [*client, str(where.hostname), str(where.port), "100"]

@@ -1,4 +1,6 @@
-"""A byte port with the simulated device behind it, in a time that passes as fast as it can."""
+"""A byte port with the simulated device behind it, in a time that passes as fast as it
+can.
+"""
 
 from __future__ import annotations
 
@@ -35,12 +37,19 @@ class Port:
 
 
 class Refusing(Port):
-    """So many times the acknowledge of the telecommand has the error code. ``acknowledged``: how often there was one."""
+    """So many times the acknowledge of the telecommand has the error code.
 
-    def __init__(self, icd: Icd, node: str, id: int, code: int, times: int, **options) -> None:
+    ``acknowledged``: how often there was one.
+    """
+
+    def __init__(
+        self, icd: Icd, node: str, id: int, code: int, times: int, **options
+    ) -> None:
         super().__init__(icd, node, **options)
         framing = self.line.computer.program.facts.framing
-        self.good, self.bad = (uart.encode(framing, bytes((id, one))) for one in (0, code))
+        self.good, self.bad = (
+            uart.encode(framing, bytes((id, one))) for one in (0, code)
+        )
         self.times, self.acknowledged = times, 0
 
     def read(self, seconds: float) -> bytes:

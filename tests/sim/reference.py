@@ -1,4 +1,6 @@
-"""The reference client and the reference procedures over a port: they judge the simulator, which runs on the Python runtime."""
+"""The reference client and the reference procedures over a port: they judge the
+simulator, which runs on the Python runtime.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,10 @@ LONGEST_WAIT = 3600.0  # s
 
 
 class Session:
-    """One device on one port. ``on_event`` is told of what came unasked: packets, logs, stray messages, errors."""
+    """One device on one port.
+
+    ``on_event`` is told of what came unasked: packets, logs, stray messages, errors.
+    """
 
     def __init__(
         self,
@@ -50,7 +55,10 @@ class Session:
         return time.monotonic_ns() // 1_000_000
 
     def ask(self, request: Request) -> dict:
-        """Sends a request and waits for its end: ``done``, ``refused`` or ``timeout``. Raises `PortError`."""
+        """Sends a request and waits for its end: ``done``, ``refused`` or ``timeout``.
+
+        Raises `PortError`.
+        """
         events = self.client.start(self.now, request)
         try:
             while True:
@@ -75,21 +83,32 @@ class Session:
         return self.ask(Request(TELECOMMAND, message.telecommand_id, data, repeat))
 
     def identify(self) -> tuple[dict[str, int], bool] | None:
-        """What the node says it is, by role, and whether the ICD is that of it; None without an answer."""
+        """What the node says it is, by role, and whether the ICD is that of it.
+
+        None without an answer.
+        """
         step = self.known.identification
         frame = self.telemetry(step.message) if step else None
         if step is None or frame is None:
             return None
         raw = codec.decode(self.icd.node(step.message.node), step.message, frame)
         found = {role: int(raw[name]) for role, name in step.fields.items()}
-        expected = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
-        return found, all(expected.get(role) in (None, value) for role, value in found.items())
+        expected = {
+            "node_type": self.node.node_type,
+            "interface_version": self.node.interface_version,
+        }
+        return found, all(
+            expected.get(role) in (None, value) for role, value in found.items()
+        )
 
-    def run(self, procedure: Procedure, progress: Callable[[], None] | None = None) -> str:
+    def run(
+        self, procedure: Procedure, progress: Callable[[], None] | None = None
+    ) -> str:
         """Runs a procedure to its end; its result. Raises `PortError`.
 
-        A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated is
-        asked again, and else it is as if none had come. ``on_event`` is told of each, with its code.
+        A refusal with a code that the ICD does not have is a damaged acknowledge, which
+        tells nothing: what may be repeated is asked again, and else it is as if none
+        had come. ``on_event`` is told of each, with its code.
         """
         try:
             return self._driven(procedure, progress)
@@ -111,7 +130,11 @@ class Session:
                 waiting = self.client.start(self.now, request)
                 self._write()
             elif procedure.result is None:
-                times = [at for at in (procedure.deadline, self.client.deadline) if at is not None]
+                times = [
+                    at
+                    for at in (procedure.deadline, self.client.deadline)
+                    if at is not None
+                ]
                 waiting = self._wait(min(times, default=None))
                 self._write()
             for event in waiting:
@@ -121,7 +144,9 @@ class Session:
                 if damaged and asked is not None and asked.repeat and left > 0:
                     again, left = True, left - 1
                     continue
-                procedure.event(self.now, {**event, "event": "timeout"} if damaged else event)
+                procedure.event(
+                    self.now, {**event, "event": "timeout"} if damaged else event
+                )
                 if event["event"] not in (*OUTCOMES, "packet"):
                     self.on_event(event)
         return procedure.result
@@ -133,12 +158,20 @@ class Session:
 
     def _wait(self, deadline: int | None) -> list[dict]:
         """Waits until something comes, or until then."""
-        timeout = LONGEST_WAIT if deadline is None else max(0.0, (deadline - self.now) / 1000)
+        timeout = (
+            LONGEST_WAIT if deadline is None else max(0.0, (deadline - self.now) / 1000)
+        )
         if isinstance(self.port, Can):
             packet = self.port.receive(timeout)
-            return self.client.packet(self.now, packet) if packet else self.client.tick(self.now)
+            return (
+                self.client.packet(self.now, packet)
+                if packet
+                else self.client.tick(self.now)
+            )
         data = self.port.read(timeout)
-        return self.client.received(self.now, data) if data else self.client.tick(self.now)
+        return (
+            self.client.received(self.now, data) if data else self.client.tick(self.now)
+        )
 
     def _write(self) -> None:
         out, self.client.out = self.client.out, []
@@ -151,4 +184,8 @@ class Session:
 
 def _is_damaged(event: dict) -> bool:
     """Whether it is a refusal with a code that the ICD does not have."""
-    return event["event"] == "refused" and event["code"] is not None and event["reason"] is None
+    return (
+        event["event"] == "refused"
+        and event["code"] is not None
+        and event["reason"] is None
+    )

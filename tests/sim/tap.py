@@ -24,7 +24,9 @@ class Tap:
     def __enter__(self) -> Tap:
         return self
 
-    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+    def __exit__(
+        self, *_: type[BaseException] | BaseException | TracebackType | None
+    ) -> None:
         for end in (self.server, *self.ends):
             end.close()
 
@@ -32,7 +34,11 @@ class Tap:
         """What the client sent, id first."""
         known = facts.of(icd, icd.node(node))
         decoder = uart.Decoder(known.framing, known.longest_telecommand)
-        return [event.message for event in decoder.feed(bytes(self.sent)) if event.event == uart.MESSAGE]
+        return [
+            event.message
+            for event in decoder.feed(bytes(self.sent))
+            if event.event == uart.MESSAGE
+        ]
 
     def _serve(self) -> None:
         try:
@@ -43,7 +49,9 @@ class Tap:
         self.ends = [client, device]
         for end in self.ends:
             end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        threading.Thread(target=_pass, args=(device, client, bytearray()), daemon=True).start()
+        threading.Thread(
+            target=_pass, args=(device, client, bytearray()), daemon=True
+        ).start()
         _pass(client, device, self.sent)
 
 
@@ -58,10 +66,17 @@ def _pass(source: socket.socket, target: socket.socket, kept: bytearray) -> None
 
 
 def missing(icd: Icd, node: str, messages: list[bytes]) -> list[str]:
-    """Names of what was never requested or never sent; also of what came too late, after a reset."""
+    """Names of what was never requested or never sent.
+
+    Also of what came too late, after a reset.
+    """
     known = facts.of(icd, icd.node(node))
     ids = [message[0] for message in messages]
     resets = {id for id, message in known.telecommands.items() if message.expects_reset}
     first = next((at for at, id in enumerate(ids) if id in resets), len(ids))
     before = {*ids[:first], *resets.intersection(ids)}
-    return [m.name for id, m in (known.telemetry | known.telecommands).items() if id not in before]
+    return [
+        m.name
+        for id, m in (known.telemetry | known.telecommands).items()
+        if id not in before
+    ]

@@ -37,17 +37,28 @@ def icd(tmp_path_factory):
         ("Temperatures[0]", 4, {0: 400}),
     ],
 )
-def test_values_of_an_array_come_as_a_list_and_of_an_element_as_a_number(icd, key, value, raw):
+def test_values_of_an_array_come_as_a_list_and_of_an_element_as_a_number(
+    icd, key, value, raw
+):
     found = fields_of(icd, icd.node("demo"), "Heat", key, value)
-    assert {one.steps[-1].element: raw_value_of(message, one, given) for message, one, given in found} == raw
+    assert {
+        one.steps[-1].element: raw_value_of(message, one, given)
+        for message, one, given in found
+    } == raw
 
 
 def test_a_wave_of_an_array_moves_each_element(icd):
     wave = {"wave": "sine", "min": 0, "max": 1}
     found = fields_of(icd, icd.node("demo"), "Heat", "temperatures", wave)
-    assert [(one.steps[-1].element, given) for _, one, given in found] == [(0, wave), (1, wave), (2, wave)]
+    assert [(one.steps[-1].element, given) for _, one, given in found] == [
+        (0, wave),
+        (1, wave),
+        (2, wave),
+    ]
 
 
 def test_too_few_values_are_refused(icd):
-    with pytest.raises(BadValue, match="`temperatures` takes 3 values in brackets, 2 given"):
+    with pytest.raises(
+        BadValue, match="`temperatures` takes 3 values in brackets, 2 given"
+    ):
         fields_of(icd, icd.node("demo"), "Heat", "temperatures", [1, 2])

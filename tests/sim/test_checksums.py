@@ -1,4 +1,6 @@
-"""A board that demands a checksum both ways: what is sent has one, and what comes without one, or with a wrong one, is told of."""
+"""A board that demands a checksum both ways: what is sent has one, and what comes
+without one, or with a wrong one, is told of.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ HEATER, VOLTAGES = 5, 130
 
 
 class Port:
-    """The simulated board, whose replies ``spoil`` changes, and which gets what ``changed`` makes of a message."""
+    """The simulated board, whose replies ``spoil`` changes, and which gets what
+    ``changed`` makes of a message.
+    """
 
     def __init__(self, spoil=lambda message: message, changed=lambda message: message):
         self.line, _ = run.build(ICD, "battery", run.Options())
@@ -34,24 +38,32 @@ class Port:
 
     def write(self, data: bytes) -> None:
         for event in UartDecoder(LINK).feed(data):
-            self.line.received(round(self.now * 1000), uart_encode(LINK, self.changed(event.message)))
+            self.line.received(
+                round(self.now * 1000), uart_encode(LINK, self.changed(event.message))
+            )
 
     def read(self, seconds: float) -> bytes:
         data = self.line.take(round(self.now * 1000))
         self.now += 0 if data else seconds
-        return b"".join(uart_encode(LINK, self.spoil(event.message)) for event in UartDecoder(LINK).feed(data))
+        return b"".join(
+            uart_encode(LINK, self.spoil(event.message))
+            for event in UartDecoder(LINK).feed(data)
+        )
 
 
 def asked(port: Port, request: Request):
     heard = []
-    session = Session(LINK, port.write, port.read, on_event=heard.append, clock=lambda: port.now)
+    session = Session(
+        LINK, port.write, port.read, on_event=heard.append, clock=lambda: port.now
+    )
     return session.start(request), heard
 
 
 def test_both_directions_have_their_checksum_without_being_told_to():
     seen = []
     outcome, heard = asked(
-        Port(changed=lambda message: seen.append(message) or message), Request("telecommand", HEATER, b"\1")
+        Port(changed=lambda message: seen.append(message) or message),
+        Request("telecommand", HEATER, b"\1"),
     )
     assert outcome == Done(HEATER, 1) and heard == []
     assert seen == [i2c_write(LINK, HEATER, b"\1", True)] and len(seen[0]) == 4
@@ -68,11 +80,18 @@ def test_both_directions_have_their_checksum_without_being_told_to():
 )
 def test_a_frame_with_a_wrong_checksum_or_none_is_told_of_and_not_taken(spoil, error):
     outcome, heard = asked(Port(spoil=spoil), Request("telemetry", VOLTAGES))
-    assert isinstance(outcome, Timeout) and heard == [LineError(error, VOLTAGES)] * outcome.attempts
+    assert (
+        isinstance(outcome, Timeout)
+        and heard == [LineError(error, VOLTAGES)] * outcome.attempts
+    )
 
 
 @pytest.mark.parametrize(
-    "changed", [lambda message: message[:-2], lambda message: message[:-1] + bytes([message[-1] ^ 1])]
+    "changed",
+    [
+        lambda message: message[:-2],
+        lambda message: message[:-1] + bytes([message[-1] ^ 1]),
+    ],
 )
 def test_the_board_refuses_a_telecommand_without_its_checksum(changed):
     outcome, _ = asked(Port(changed=changed), Request("telecommand", HEATER, b"\1"))
@@ -88,18 +107,36 @@ class Board(socketserver.BaseRequestHandler):
         decoder = UartDecoder(LINK)
         while data := self.request.recv(4096):
             for event in decoder.feed(data):
-                self.request.sendall(uart_encode(LINK, event.message[:1] + bytes(16) + self.end))
+                self.request.sendall(
+                    uart_encode(LINK, event.message[:1] + bytes(16) + self.end)
+                )
 
 
-@pytest.mark.parametrize(("end", "said"), [(b"", "no checksum"), (b"\0\0", "wrong checksum")])
+@pytest.mark.parametrize(
+    ("end", "said"), [(b"", "no checksum"), (b"\0\0", "wrong checksum")]
+)
 def test_the_monitor_says_what_is_wrong_and_not_that_nothing_answers(end, said):
     handler = type("Board", (Board,), {"end": end})
     with socketserver.ThreadingTCPServer(("127.0.0.1", 0), handler) as board:
         threading.Thread(target=board.serve_forever, daemon=True).start()
         place = f"tcp://127.0.0.1:{board.server_address[1]}"
-        command = [sys.executable, "-m", "icdgen", "monitor", "Cell Voltages", "--once", "--timeout", "100"]
+        command = [
+            sys.executable,
+            "-m",
+            "icdgen",
+            "monitor",
+            "Cell Voltages",
+            "--once",
+            "--timeout",
+            "100",
+        ]
         done = subprocess.run(
-            [*command, "--icd", str(FILE), "--port", place], capture_output=True, text=True, timeout=60
+            [*command, "--icd", str(FILE), "--port", place],
+            capture_output=True,
+            text=True,
+            timeout=60,
         )
         board.shutdown()
-    assert done.returncode == 1 and said in done.stdout and "no answer" not in done.stdout
+    assert (
+        done.returncode == 1 and said in done.stdout and "no answer" not in done.stdout
+    )

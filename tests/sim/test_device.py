@@ -1,4 +1,6 @@
-"""The simulated device is what the ICD says: over a real port, with the reference client."""
+"""The simulated device is what the ICD says: over a real port, with the reference
+client.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,9 @@ def test_it_identifies_itself_and_answers_every_request(node, way):
 
 
 @pytest.mark.parametrize("node", ["cubeacp", "bootloader"])
-def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_set(node):
+def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_set(
+    node,
+):
     with session(node=node) as client:
         client.identify()  # so that a boot program stays
         for message in client.known.telecommands.values():
@@ -52,16 +56,24 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
                 raw |= {f.name: f.const for f in message.fields if f.const is not None}
             data = codec.encode(ICD.node(message.node), message, raw)
             outcome = client.telecommand(message, data)
-            allowed = ("done",) if message.name not in refusable(client) else ("done", "refused")
+            allowed = (
+                ("done",)
+                if message.name not in refusable(client)
+                else ("done", "refused")
+            )
             assert outcome["event"] in allowed, (message.name, outcome)
             if message.kind == CONFIGURATION:
                 assert client.telemetry(message) == data, message.name
 
 
 def refusable(client) -> set[str]:
-    """Telecommands that may be refused: for what the device holds just now, for a destination, or by the node."""
+    """Telecommands that may be refused: for what the device holds just now, for a
+    destination, or by the node.
+    """
     upload = ICD.protocol_of(client.node)["file_transfer"]["upload"]
-    found = {upload[step]["message"] for step in ("initiate", "begin", "packet", "finalize")}
+    found = {
+        upload[step]["message"] for step in ("initiate", "begin", "packet", "finalize")
+    }
     if client.known.program_copy:
         found.add(client.known.program_copy.request.message.name)
     return {client.known.files.steps["download.burst"].message.name, *found}
@@ -69,19 +81,30 @@ def refusable(client) -> set[str]:
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
     with session(crc=True) as client:
-        assert client.telecommand(client.known.telecommands[17], bytes(6))["event"] == "done"
+        assert (
+            client.telecommand(client.known.telecommands[17], bytes(6))["event"]
+            == "done"
+        )
         wrong = bytes([17]) + bytes(6) + b"\x01"
         assert raw_exchange(client, wrong)["code"] == client.known.errors["checksum"]
 
 
 @pytest.mark.parametrize(
     ("message", "reason"),
-    [(b"\x63", "unknown_id"), (b"\x11" + bytes(3), "length"), (b"\x21\x59", "parameter")],
+    [
+        (b"\x63", "unknown_id"),
+        (b"\x11" + bytes(3), "length"),
+        (b"\x21\x59", "parameter"),
+    ],
 )
 def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
     with session() as client:
         assert raw_exchange(client, message)["code"] == client.known.errors[reason]
-        frame = codec.decode(client.node, client.known.polled.message, client.telemetry(client.known.polled.message))
+        frame = codec.decode(
+            client.node,
+            client.known.polled.message,
+            client.telemetry(client.known.polled.message),
+        )
         assert frame[client.known.polled.id] == message[0]
         assert frame[client.known.polled.error] == client.known.errors[reason]
         assert frame[client.known.polled.processed] == 1
@@ -149,7 +172,9 @@ def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
         assert client.telecommand(reset, data)["event"] == "done"
         assert client.identify()[0]["node_type"] == ICD.node("bootloader").node_type
         start = ICD.protocol_of(ICD.node("bootloader"))["program_start"]["message"]
-        id = next(m.id for m in ICD.messages_of(ICD.node("bootloader")) if m.name == start)
+        id = next(
+            m.id for m in ICD.messages_of(ICD.node("bootloader")) if m.name == start
+        )
         from icdgen.protocol import uart
 
         client.port.write(uart.encode(client.known.framing, bytes([id])))
@@ -162,21 +187,34 @@ def test_values_are_set_by_options_orders_and_scripts(tmp_path):
         "- set: {Estimated Attitude Angles: {pitch: 2.5, yaw: {wave: steps, min: -1, max: 1, period: 1000000}}}\n"
         "- {at: 0.2, set: {Estimated Attitude Angles: {pitch: 3.5}}}\n"
     )
-    options = ("--set", "Estimated Attitude Angles", "roll=12.34", "--script", str(script), "--orders")
+    options = (
+        "--set",
+        "Estimated Attitude Angles",
+        "roll=12.34",
+        "--script",
+        str(script),
+        "--orders",
+    )
     with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, process):
         from icdgen.link.ports import open_port
         from tests.sim.reference import Session
 
-        with Session(ICD, ICD.node("cubeacp"), open_port(place, {}), settings=FAST) as client:
+        with Session(
+            ICD, ICD.node("cubeacp"), open_port(place, {}), settings=FAST
+        ) as client:
             name = "Estimated Attitude Angles"
             assert value_of(client, name, "Estimated Roll Angle") == 1234
             assert value_of(client, name, "Estimated Yaw Angle") == -100
             time.sleep(0.3)
             assert value_of(client, name, "Estimated Pitch Angle") == 350
-            process.stdin.write("set 'Estimated Attitude Angles' roll=-1.5\nset nonsense x=1\n")
+            process.stdin.write(
+                "set 'Estimated Attitude Angles' roll=-1.5\nset nonsense x=1\n"
+            )
             process.stdin.flush()
             assert process.stdout.readline() == "ok\n"
-            assert process.stdout.readline().startswith("error: cubeacp has no telemetry `nonsense`")
+            assert process.stdout.readline().startswith(
+                "error: cubeacp has no telemetry `nonsense`"
+            )
             assert value_of(client, name, "Estimated Roll Angle") == -150
 
 
@@ -194,7 +232,9 @@ def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
 @pytest.mark.parametrize("turns", range(4))
 def test_an_interrupt_ends_it_even_where_data_come_at_the_same_moment(turns):
     async def ends() -> bool:
-        running = asyncio.create_task((server := Server(*build(ICD, "cubeacp", Options()))).run())
+        running = asyncio.create_task(
+            (server := Server(*build(ICD, "cubeacp", Options()))).run()
+        )
         await asyncio.sleep(0.01)
         server.wake.set()
         for _ in range(turns):
@@ -210,7 +250,9 @@ def test_unsolicited_logs_come_as_they_are_configured():
     events = []
     with session(on_event=events.append) as client:
         role = ICD.protocol_of(client.node)["unsolicited_log"]["configured_by"]
-        message = next(m for m in client.known.telecommands.values() if m.name == role["message"])
+        message = next(
+            m for m in client.known.telecommands.values() if m.name == role["message"]
+        )
         bit = min(client.known.mask.bits)
         raw = allowed_values(ICD, message) | {
             role["fields"]["mask"]: bytes([1 << bit]) + bytes(9),
@@ -229,13 +271,23 @@ def test_the_same_seed_brings_the_same_faults(seed):
 
         from icdgen.sim.faults import Faults, parse
 
-        kinds = ["drop=20%", "corrupt=20%", "cut=20%", "repeat=20%", "noise=20%", "duplicate=20%", "late=20%"]
+        kinds = [
+            "drop=20%",
+            "corrupt=20%",
+            "cut=20%",
+            "repeat=20%",
+            "noise=20%",
+            "duplicate=20%",
+            "late=20%",
+        ]
         faults = Faults(Random(seed), [parse(one) for one in kinds])
         return [faults.apply("reply", bytes(range(20))) for _ in range(200)]
 
     first = outcomes()
     assert first == outcomes()
-    assert any(not pieces for pieces in first) and any(len(pieces) == 2 for pieces in first)
+    assert any(not pieces for pieces in first) and any(
+        len(pieces) == 2 for pieces in first
+    )
 
 
 FAULTS = [
@@ -254,7 +306,9 @@ def test_whatever_happens_on_the_line_every_request_ends(fault):
     with session("--fault", fault, "--late", "300", "--seed", "3") as client:
         begin = time.monotonic()
         for number in range(12):
-            outcome = client.telecommand(client.known.telecommands[17], bytes([number] * 6), repeat=True)
+            outcome = client.telecommand(
+                client.known.telecommands[17], bytes([number] * 6), repeat=True
+            )
             assert outcome["event"] in ("done", "refused", "timeout")
             client.identify()
         assert time.monotonic() - begin < 24 * 5 * 0.3 + 5
@@ -262,7 +316,9 @@ def test_whatever_happens_on_the_line_every_request_ends(fault):
 
 def test_a_refused_telecommand_is_not_executed():
     with session("--fault", "nack=1") as client:
-        message = next(m for m in client.known.telecommands.values() if m.kind == CONFIGURATION)
+        message = next(
+            m for m in client.known.telecommands.values() if m.kind == CONFIGURATION
+        )
         before = client.telemetry(message)
         outcome = client.telecommand(message, bytes([1] * message.length))
         assert (outcome["event"], outcome["reason"]) == ("refused", "parameter")
@@ -282,22 +338,58 @@ def test_strict_refuses_what_no_enumeration_has():
     ("options", "text"),
     [
         ((), "it is not said which node is meant"),
-        (("--tcp", "0", "--node", "cubeacp", "--set", "146", "roll=1", "pitch"), "`pitch` is not of the form"),
-        (("--tcp", "0", "--node", "cubeacp", "--set", "146", "roll=1", "salt=1"), "has no field `salt`"),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--set", "146", "roll=1", "pitch"),
+            "`pitch` is not of the form",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--set", "146", "roll=1", "salt=1"),
+            "has no field `salt`",
+        ),
         (("--tcp", "0", "--node", "cubeacp", "roll=1"), "unexpected extra argument"),
-        (("--tcp", "0", "--node", "cubemag"), "does not say how messages of cubemag are framed"),
+        (
+            ("--tcp", "0", "--node", "cubemag"),
+            "does not say how messages of cubemag are framed",
+        ),
         (("--tcp", "0"), "it is not said which node is meant"),
-        (("--tcp", "0", "--icd", "demo.yaml"), "no node of the ICD says how its messages are framed"),
+        (
+            ("--tcp", "0", "--icd", "demo.yaml"),
+            "no node of the ICD says how its messages are framed",
+        ),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "rain=1"), "is no fault"),
-        (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=2"), "not between 0 and 1"),
-        (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=1@tea"), "cannot be on `tea`"),
-        (("--tcp", "0", "--node", "cubeacp", "--file", "2:1"), "is no file of the device"),
-        (("--tcp", "0", "--node", "cubeacp", "--file", "foo"), "`foo` is no file of the device"),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--fault", "drop=2"),
+            "not between 0 and 1",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--fault", "drop=1@tea"),
+            "cannot be on `tea`",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--file", "2:1"),
+            "is no file of the device",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--file", "foo"),
+            "`foo` is no file of the device",
+        ),
         (("--tcp", "0", "--node", "cubeacp", "--uploads", __file__), "is not a folder"),
-        (("--tcp", "0", "--node", "cubeacp", "--host", "192.0.2.1"), "--host is an address of this machine"),
-        (("--tcp", "0", "--node", "cubeacp", "--file", "2:1=missing.bin"), "cannot read missing.bin"),
-        (("--tcp", "0", "--node", "cubeacp", "--script", "missing.yaml"), "cannot read missing.yaml"),
-        (("--tcp", "0", "--node", "cubeacp", "--set", "Nothing", "x=1"), "no telemetry `Nothing`"),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--host", "192.0.2.1"),
+            "--host is an address of this machine",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--file", "2:1=missing.bin"),
+            "cannot read missing.bin",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--script", "missing.yaml"),
+            "cannot read missing.yaml",
+        ),
+        (
+            ("--tcp", "0", "--node", "cubeacp", "--set", "Nothing", "x=1"),
+            "no telemetry `Nothing`",
+        ),
     ],
 )
 def test_what_cannot_be_is_said(options, text, tmp_path):
@@ -306,8 +398,14 @@ def test_what_cannot_be_is_said(options, text, tmp_path):
 
     (tmp_path / "demo.yaml").write_text(DEMO)
     command = [sys.executable, "-m", "icdgen", "sim", *options]
-    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert result.returncode == 2 and text in result.stderr and "Traceback" not in result.stderr
+    result = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert (
+        result.returncode == 2
+        and text in result.stderr
+        and "Traceback" not in result.stderr
+    )
 
 
 @pytest.mark.parametrize(
@@ -332,21 +430,55 @@ def test_monitor_and_send_from_the_outside():
     import sys
 
     def icdgen(*words: str) -> subprocess.CompletedProcess:
-        return subprocess.run([sys.executable, "-m", "icdgen", *words], capture_output=True, text=True, timeout=60)
+        return subprocess.run(
+            [sys.executable, "-m", "icdgen", *words],
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
 
-    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "146", "roll=1.25") as (place, _):
+    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "146", "roll=1.25") as (
+        place,
+        _,
+    ):
         shown = icdgen(
-            "monitor", "cubeacp", "146", "--port", place, "--count", "2", "--every", "0.05", "--format", "json"
+            "monitor",
+            "cubeacp",
+            "146",
+            "--port",
+            place,
+            "--count",
+            "2",
+            "--every",
+            "0.05",
+            "--format",
+            "json",
         )
         rounds = [json.loads(line) for line in shown.stdout.splitlines()]
         assert [one["fields"][0]["value"] for one in rounds] == [1.25, 1.25]
         table = icdgen("monitor", "cubeacp", "146", "--port", place, "--once").stdout
         assert "Estimated Roll Angle" in table and "1.25  deg" in table
-        sent = icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place)
+        sent = icdgen(
+            "send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place
+        )
         assert (sent.returncode, sent.stdout) == (0, "Set Wheel Speed: acknowledged\n")
-        refused = icdgen("send", "cubeacp", "Format SD card", "magic=1", "--raw", "--yes", "--port", place)
-        assert refused.returncode == 1 and "refused: Incorrect Parameter (code 3)" in refused.stderr
+        refused = icdgen(
+            "send",
+            "cubeacp",
+            "Format SD card",
+            "magic=1",
+            "--raw",
+            "--yes",
+            "--port",
+            place,
+        )
+        assert (
+            refused.returncode == 1
+            and "refused: Incorrect Parameter (code 3)" in refused.stderr
+        )
         other = icdgen("monitor", "bootloader", "--port", place, "--once")
         assert "the device says node type 10" in other.stderr
-    silent = icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place)
+    silent = icdgen(
+        "send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place
+    )
     assert silent.returncode == 2 and "cannot connect" in silent.stderr

@@ -1,4 +1,6 @@
-"""Links with envelopes, simulated and talked over: what comes unasked, replies, gaps, and what is wrong with what comes."""
+"""Links with envelopes, simulated and talked over: what comes unasked, replies, gaps,
+and what is wrong with what comes.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,10 @@ POLL, CLOCK, EPOCH, RATE = 0x0122, 0x0122, 0x0161, 0x0601  # of the receiver
 
 
 class Port:
-    """A simulated device in memory, in a time of its own. ``spoil`` is what becomes of what it sends."""
+    """A simulated device in memory, in a time of its own.
+
+    ``spoil`` is what becomes of what it sends.
+    """
 
     def __init__(self, node: str, spoil=lambda data: data, **options):
         self.line, self.control = run.build(ICD, node, run.Options(**options))
@@ -61,7 +66,14 @@ def talking(node: str, values=None, spoil=lambda data: data, **options):
     """A session, its port, and the list of what it is told."""
     heard, port = [], Port(node, spoil, **options)
     link = link_of(ICD, facts.of(ICD, ICD.node(node)))
-    session = Session(link, port.write, port.read, on_event=heard.append, clock=lambda: port.now, values=values)
+    session = Session(
+        link,
+        port.write,
+        port.read,
+        on_event=heard.append,
+        clock=lambda: port.now,
+        values=values,
+    )
     return session, port, heard
 
 
@@ -77,7 +89,9 @@ def test_telemetry_that_comes_unasked_is_a_stream_of_messages(node):
 def test_only_the_kinds_that_are_listened_for_come():
     session, _, heard = talking("positioner", every=0.1)
     kind = session.client.link.TELEMETRY[0xFFFF]
-    assert {type(one) for one in session.messages(kind, seconds=0.35)} == {kind} and len(heard) == 8
+    assert {type(one) for one in session.messages(kind, seconds=0.35)} == {
+        kind
+    } and len(heard) == 8
 
 
 def test_a_telecommand_is_answered_with_what_the_icd_says():
@@ -85,28 +99,41 @@ def test_a_telecommand_is_answered_with_what_the_icd_says():
     port.control.set("Navigation Clock", "Clock Bias", 77)
     outcome = session.start(Request("telecommand", POLL))
     assert isinstance(outcome, Done) and outcome.message.clock_bias == 77
-    assert session.get(session.client.link.TELEMETRY[CLOCK]).clock_bias == 77  # which the telecommand asks for
-    assert session.start(Request("telecommand", RATE, bytes(3))) == Done(RATE, 1)  # sent, and nothing answers
+    assert (
+        session.get(session.client.link.TELEMETRY[CLOCK]).clock_bias == 77
+    )  # which the telecommand asks for
+    assert session.start(Request("telecommand", RATE, bytes(3))) == Done(
+        RATE, 1
+    )  # sent, and nothing answers
     with pytest.raises(UnsupportedError, match="sent unasked"):
         session.start(Request("telemetry", EPOCH))
 
 
 def test_telemetry_that_comes_unasked_is_no_reply_and_a_silent_device_is_a_time_out():
-    session, _, heard = talking("receiver", spoil=lambda data: data if data[3] == 0x61 else b"", every=0.1)
+    session, _, heard = talking(
+        "receiver", spoil=lambda data: data if data[3] == 0x61 else b"", every=0.1
+    )
     outcome = session.start(Request("telecommand", POLL, b"", True))
-    assert isinstance(outcome, Timeout) and outcome.attempts == 1 + session.client.settings.retries
+    assert (
+        isinstance(outcome, Timeout)
+        and outcome.attempts == 1 + session.client.settings.retries
+    )
     assert {event.id for event in heard} == {EPOCH}
 
 
 def test_messages_that_get_lost_are_gaps():
     lost = iter([False, False, True, True, True, False, False, False])
-    session, _, heard = talking("autopilot", spoil=lambda data: b"" if next(lost, False) else data, every=0.1)
+    session, _, heard = talking(
+        "autopilot", spoil=lambda data: b"" if next(lost, False) else data, every=0.1
+    )
     assert len(list(session.messages(seconds=0.35))) == 12 - 3
     assert [event for event in heard if isinstance(event, Gap)] == [Gap(30, 3)]
 
 
 def test_what_we_send_is_counted_and_has_the_addresses_that_were_chosen():
-    session, port, _ = talking("autopilot", values={"source": 9, "sequence": 254}, every=0)
+    session, port, _ = talking(
+        "autopilot", values={"source": 9, "sequence": 254}, every=0
+    )
     sent = []
     port.line.received = lambda now, data: sent.append(data)
     for _ in range(3):
@@ -115,7 +142,12 @@ def test_what_we_send_is_counted_and_has_the_addresses_that_were_chosen():
 
 
 @pytest.mark.parametrize(
-    ("values", "error"), [({"source": 256}, RangeError), ({"time": 1}, UnsupportedError), ({"id": 1}, UnsupportedError)]
+    ("values", "error"),
+    [
+        ({"source": 256}, RangeError),
+        ({"time": 1}, UnsupportedError),
+        ({"id": 1}, UnsupportedError),
+    ],
 )
 def test_values_that_the_envelope_cannot_have_are_refused(values, error):
     with pytest.raises(error):
@@ -125,7 +157,12 @@ def test_values_that_the_envelope_cannot_have_are_refused(values, error):
 def test_an_envelope_leaves_no_choice_of_a_checksum():
     port = Port("receiver")
     with pytest.raises(UnsupportedError, match="no choice"):
-        Session(link_of(ICD, facts.of(ICD, ICD.node("receiver"))), port.write, port.read, crc=True)
+        Session(
+            link_of(ICD, facts.of(ICD, ICD.node("receiver"))),
+            port.write,
+            port.read,
+            crc=True,
+        )
 
 
 def damaged(data: bytes) -> bytes:
@@ -151,26 +188,94 @@ def icdgen(*words: str, folder: Path = FOLDER) -> subprocess.CompletedProcess:
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
-@pytest.mark.parametrize("way", [pytest.param(("--pty",), marks=pytest.mark.pty), ("--tcp", "0"), ("--udp", "0")])
+@pytest.mark.parametrize(
+    "way",
+    [pytest.param(("--pty",), marks=pytest.mark.pty), ("--tcp", "0"), ("--udp", "0")],
+)
 def test_monitor_and_send_from_the_outside(way):
-    options = ("--node", "receiver", "--every", "0.1", "--set", "Navigation Clock", "Clock Bias=-3", *way)
+    options = (
+        "--node",
+        "receiver",
+        "--every",
+        "0.1",
+        "--set",
+        "Navigation Clock",
+        "Clock Bias=-3",
+        *way,
+    )
     with simulator(*options, "--icd", str(FOLDER)) as (place, _):
         asked = icdgen("send", "receiver", "Poll Clock", "--port", place)
-        assert asked.returncode == 0 and "answered with Navigation Clock" in asked.stdout and "-3" in asked.stdout
-        sent = icdgen("send", "receiver", "Set Message Rate", "class=1", "number=2", "rate=3", "--port", place)
-        assert (sent.returncode, sent.stdout) == (0, "Set Message Rate: sent; the ICD names no reply to it\n")
-        shown = icdgen("monitor", "receiver", "Navigation Clock", "--port", place, "--once", "--every", "0.4")
-        assert shown.returncode == 0 and "Clock Bias" in shown.stdout and "-3" in shown.stdout
+        assert (
+            asked.returncode == 0
+            and "answered with Navigation Clock" in asked.stdout
+            and "-3" in asked.stdout
+        )
+        sent = icdgen(
+            "send",
+            "receiver",
+            "Set Message Rate",
+            "class=1",
+            "number=2",
+            "rate=3",
+            "--port",
+            place,
+        )
+        assert (sent.returncode, sent.stdout) == (
+            0,
+            "Set Message Rate: sent; the ICD names no reply to it\n",
+        )
+        shown = icdgen(
+            "monitor",
+            "receiver",
+            "Navigation Clock",
+            "--port",
+            place,
+            "--once",
+            "--every",
+            "0.4",
+        )
+        assert (
+            shown.returncode == 0
+            and "Clock Bias" in shown.stdout
+            and "-3" in shown.stdout
+        )
         if "--udp" not in way:  # who never sent anything is not known there
-            all_ = icdgen("monitor", "receiver", "--port", place, "--once", "--every", "0.4", "--format", "json")
-            assert [json.loads(line)["message"] for line in all_.stdout.splitlines()] == ["End of Epoch"]
+            all_ = icdgen(
+                "monitor",
+                "receiver",
+                "--port",
+                place,
+                "--once",
+                "--every",
+                "0.4",
+                "--format",
+                "json",
+            )
+            assert [
+                json.loads(line)["message"] for line in all_.stdout.splitlines()
+            ] == ["End of Epoch"]
 
 
 def test_the_monitor_says_that_the_checksum_is_wrong():
     spoiled = ("--fault", "corrupt=100%@reply", "--every", "0", "--seed", "3")
-    with simulator("--node", "receiver", "--tcp", "0", *spoiled, "--icd", str(FOLDER)) as (place, _):
-        shown = icdgen("monitor", "receiver", "Navigation Clock", "--port", place, "--once", "--every", "0.1")
-    assert shown.returncode == 1 and "wrong checksum" in shown.stdout and "no answer" not in shown.stdout
+    with simulator(
+        "--node", "receiver", "--tcp", "0", *spoiled, "--icd", str(FOLDER)
+    ) as (place, _):
+        shown = icdgen(
+            "monitor",
+            "receiver",
+            "Navigation Clock",
+            "--port",
+            place,
+            "--once",
+            "--every",
+            "0.1",
+        )
+    assert (
+        shown.returncode == 1
+        and "wrong checksum" in shown.stdout
+        and "no answer" not in shown.stdout
+    )
 
 
 def test_the_simulated_device_calls_a_client_that_listens():
@@ -187,17 +292,34 @@ def test_the_simulated_device_calls_a_client_that_listens():
 
 
 def test_packets_that_delimit_messages_need_a_way_that_keeps_them_apart():
-    node = next(one.name for one in ICD.nodes if ICD.protocol_of(one).get("stream", {}).get("delimited_by") == "none")
+    node = next(
+        one.name
+        for one in ICD.nodes
+        if ICD.protocol_of(one).get("stream", {}).get("delimited_by") == "none"
+    )
     with pytest.raises(UserError, match="only packets"):
         run.run(ICD, node, [("tcp", "127.0.0.1", 0)], run.Options(), print)
     session, port, heard = talking(node, every=0.1)
     assert list(session.messages(seconds=0.15))
-    assert sum(isinstance(event, Arrived) for event in heard) == 2 * len(port.line.unsolicited)
+    assert sum(isinstance(event, Arrived) for event in heard) == 2 * len(
+        port.line.unsolicited
+    )
 
 
 def test_a_value_of_no_field_of_the_envelope_is_refused():
-    wrong = icdgen("send", "receiver", "Poll Clock", "--port", "tcp://127.0.0.1:1", "--envelope", "source=1")
-    assert wrong.returncode == 2 and "the envelope of receiver has no field `source`" in wrong.stderr
+    wrong = icdgen(
+        "send",
+        "receiver",
+        "Poll Clock",
+        "--port",
+        "tcp://127.0.0.1:1",
+        "--envelope",
+        "source=1",
+    )
+    assert (
+        wrong.returncode == 2
+        and "the envelope of receiver has no field `source`" in wrong.stderr
+    )
     wrong = icdgen(
         "send",
         "autopilot",
@@ -217,9 +339,29 @@ def test_a_receiver_of_the_examples_is_simulated_watched_and_configured():
     folder = ROOT / "examples" / "devices" / "ublox"
     chosen = ("--every", "0.1", "--set", "NAV-EOE", "iTOW=7", "--icd", str(folder))
     with simulator("--node", "ublox", "--tcp", "0", *chosen) as (place, _):
-        shown = icdgen("monitor", "ublox", "NAV-EOE", "--port", place, "--once", "--every", "1", folder=folder)
-        sent = icdgen(
-            "send", "ublox", "CFG-RATE", "measRate=100", "navRate=1", "timeRef=0", "--port", place, folder=folder
+        shown = icdgen(
+            "monitor",
+            "ublox",
+            "NAV-EOE",
+            "--port",
+            place,
+            "--once",
+            "--every",
+            "1",
+            folder=folder,
         )
-    assert shown.returncode == 0 and "iTOW" in shown.stdout and "7" in shown.stdout, shown.stderr
+        sent = icdgen(
+            "send",
+            "ublox",
+            "CFG-RATE",
+            "measRate=100",
+            "navRate=1",
+            "timeRef=0",
+            "--port",
+            place,
+            folder=folder,
+        )
+    assert (
+        shown.returncode == 0 and "iTOW" in shown.stdout and "7" in shown.stdout
+    ), shown.stderr
     assert sent.returncode == 0 and "answered with ACK-ACK" in sent.stdout, sent.stderr

@@ -1,4 +1,6 @@
-"""The same example program in C, Rust and Python: it compiles without a warning, and says the same whatever the node does."""
+"""The same example program in C, Rust and Python: it compiles without a warning, and
+says the same whatever the node does.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,9 @@ def headers(tmp_path_factory) -> Path:
 def crate(tmp_path_factory) -> Path:
     """The compiled crate, with std."""
     folder = tmp_path_factory.mktemp("crate")
-    return Toolchain("default").library(rust.generate(rust.shipped(), folder), "0", *STD)
+    return Toolchain("default").library(
+        rust.generate(rust.shipped(), folder), "0", *STD
+    )
 
 
 @pytest.fixture(scope="module")
@@ -53,16 +57,35 @@ def programs(headers, crate, package, tmp_path_factory) -> dict[str, list[str | 
     """The command of each."""
     folder = tmp_path_factory.mktemp("programs")
     return {
-        "c": [c.compile(EXAMPLES["c"], *FLAGS, *c.SANITIZERS, f"-I{headers}", output=folder / "c")],
-        "rust": [Toolchain("default").program(EXAMPLES["rust"], crate, folder / "rust")],
-        "python": ["env", f"PYTHONPATH={package}", sys.executable, "-B", EXAMPLES["python"]],
+        "c": [
+            c.compile(
+                EXAMPLES["c"],
+                *FLAGS,
+                *c.SANITIZERS,
+                f"-I{headers}",
+                output=folder / "c",
+            )
+        ],
+        "rust": [
+            Toolchain("default").program(EXAMPLES["rust"], crate, folder / "rust")
+        ],
+        "python": [
+            "env",
+            f"PYTHONPATH={package}",
+            sys.executable,
+            "-B",
+            EXAMPLES["python"],
+        ],
     }
 
 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--set", "Estimated Attitude Angles", "roll=12.5"], (0, "roll 12.50 deg\nnothing is estimated\n", "")),
+        (
+            ["--set", "Estimated Attitude Angles", "roll=12.5"],
+            (0, "roll 12.50 deg\nnothing is estimated\n", ""),
+        ),
         (
             ["--set", "Current ADCS State", "attitude estimation mode=5"],
             (0, "roll 0.00 deg\nestimated by Full-state EKF\n", ""),
@@ -79,20 +102,41 @@ def test_each_language_says_the_same_of_the_same_node(programs, options, said):
     with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, _):
         port = str(urlsplit(place).port)
         ran = {
-            language: subprocess.run([*command, port], capture_output=True, text=True, timeout=60)
+            language: subprocess.run(
+                [*command, port], capture_output=True, text=True, timeout=60
+            )
             for language, command in programs.items()
         }
-    got = {language: (done.returncode, done.stdout, done.stderr) for language, done in ran.items()}
+    got = {
+        language: (done.returncode, done.stdout, done.stderr)
+        for language, done in ran.items()
+    }
     assert got == dict.fromkeys(programs, said)
 
 
 def test_what_was_commanded_is_what_the_node_holds(programs):
     for command in programs.values():
         with simulator("--node", "cubeacp", "--tcp", "0") as (place, _):
-            subprocess.run([*command, str(urlsplit(place).port)], check=True, stdout=subprocess.DEVNULL)
-            monitor = [sys.executable, "-m", "icdgen", "monitor", "cubeacp", "Commanded Attitude Angles", "--once"]
-            shown = subprocess.run([*monitor, "--port", place], capture_output=True, text=True, check=True).stdout
-        assert [line.split()[-2:] for line in shown.splitlines() if "Roll" in line] == [["1.5", "deg"]], command
+            subprocess.run(
+                [*command, str(urlsplit(place).port)],
+                check=True,
+                stdout=subprocess.DEVNULL,
+            )
+            monitor = [
+                sys.executable,
+                "-m",
+                "icdgen",
+                "monitor",
+                "cubeacp",
+                "Commanded Attitude Angles",
+                "--once",
+            ]
+            shown = subprocess.run(
+                [*monitor, "--port", place], capture_output=True, text=True, check=True
+            ).stdout
+        assert [line.split()[-2:] for line in shown.splitlines() if "Roll" in line] == [
+            ["1.5", "deg"]
+        ], command
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
@@ -107,13 +151,30 @@ def test_the_example_in_rust_is_tidy(crate, tmp_path):
 
 
 def test_the_example_in_python_is_typed(package, tmp_path):
-    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path, EXAMPLES["python"]]
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--cache-dir",
+        tmp_path,
+        EXAMPLES["python"],
+    ]
     path = {**os.environ, "MYPYPATH": str(package)}
-    done = subprocess.run(command, cwd=tmp_path, env=path, capture_output=True, text=True)
+    done = subprocess.run(
+        command, cwd=tmp_path, env=path, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout
 
 
 def test_the_pages_show_the_examples_as_they_are():
-    pages = {"c": "guides/driver-in-c", "rust": "guides/rust", "python": "guides/python"}
+    pages = {
+        "c": "guides/driver-in-c",
+        "rust": "guides/rust",
+        "python": "guides/python",
+    }
     for language, example in EXAMPLES.items():
-        assert f"```{language}\n{example.read_text(encoding='utf-8')}```\n" in documents.text(pages[language]), language
+        assert (
+            f"```{language}\n{example.read_text(encoding='utf-8')}```\n"
+            in documents.text(pages[language])
+        ), language

@@ -1,4 +1,6 @@
-"""A serial line serves one program at a time: the second one is told who has it, and sends nothing."""
+"""A serial line serves one program at a time: the second one is told who has it, and
+sends nothing.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ def icdgen(*words: str) -> subprocess.CompletedProcess:
 
 @pytest.fixture
 def line():
-    """Both ends of a line on which nobody answers: file of the device, and path of the terminal."""
+    """Both ends of a line on which nobody answers: file of the device, and path of the
+    terminal.
+    """
     device, terminal = os.openpty()
     path = os.ttyname(terminal)
     os.close(terminal)
@@ -34,7 +38,17 @@ def line():
 def test_send_beside_a_monitor_says_who_has_the_line_and_sends_nothing():
     with simulator("--node", "cubeacp", "--pty") as (place, _):
         watching = subprocess.Popen(
-            [sys.executable, "-m", "icdgen", "monitor", "cubeacp", "--port", place, "--every", "0.2"],
+            [
+                sys.executable,
+                "-m",
+                "icdgen",
+                "monitor",
+                "cubeacp",
+                "--port",
+                place,
+                "--every",
+                "0.2",
+            ],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -43,14 +57,41 @@ def test_send_beside_a_monitor_says_who_has_the_line_and_sends_nothing():
             assert watching.stdout is not None
             watching.stdout.readline()
             for _ in range(3):
-                sent = icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=1", "z=1", "--port", place)
+                sent = icdgen(
+                    "send",
+                    "cubeacp",
+                    "Set Wheel Speed",
+                    "x=1",
+                    "y=1",
+                    "z=1",
+                    "--port",
+                    place,
+                )
                 assert sent.returncode == 2 and "not known" not in sent.stderr
-                assert f"{place} is in use by icdgen monitor (process {watching.pid})" in sent.stderr.replace("\n", " ")
-                assert "nothing was sent" in sent.stderr and "end that program" in sent.stderr
+                assert (
+                    f"{place} is in use by icdgen monitor (process {watching.pid})"
+                    in sent.stderr.replace("\n", " ")
+                )
+                assert (
+                    "nothing was sent" in sent.stderr
+                    and "end that program" in sent.stderr
+                )
         finally:
             watching.terminate()
             watching.communicate()
-        assert icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=1", "z=1", "--port", place).returncode == 0
+        assert (
+            icdgen(
+                "send",
+                "cubeacp",
+                "Set Wheel Speed",
+                "x=1",
+                "y=1",
+                "z=1",
+                "--port",
+                place,
+            ).returncode
+            == 0
+        )
 
 
 @pytest.mark.parametrize("second", ["terminal", "serial"])

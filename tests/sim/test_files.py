@@ -74,7 +74,9 @@ def test_the_list_and_the_index_hold_every_file_until_they_are_erased(tmp_path):
     with session(*options, "--fault", "drop=10%@acknowledge") as client:
         listed = transfer.FileList(client.known)
         assert client.run(listed) == "done"
-        assert [(e["counter"], e["size"]) for e in listed.entries] == [(n, 100 + n) for n in range(5)]
+        assert [(e["counter"], e["size"]) for e in listed.entries] == [
+            (n, 100 + n) for n in range(5)
+        ]
         result, data = download(client, client.known.index.file_type, 0, None)
         entries, truncated = files.read_index(client.known, data)
         assert (result, truncated) == ("done", 0)

@@ -12,15 +12,28 @@ REFERENCE = [sys.executable, "-m", "tests.sim.client"]
 
 
 @pytest.mark.parametrize(
-    ("loss", "faults"), [("0", []), ("30", []), ("10", ["late=10%@acknowledge"]), ("10", ["corrupt=10%@acknowledge"])]
+    ("loss", "faults"),
+    [
+        ("0", []),
+        ("30", []),
+        ("10", ["late=10%@acknowledge"]),
+        ("10", ["corrupt=10%@acknowledge"]),
+    ],
 )
 def test_the_reference_client_passes(loss, faults):
     assert harness.run(REFERENCE, 5_001, loss, faults, limit=120) is None
 
 
 def test_a_client_that_hangs_fails_or_lies_is_found():
-    assert harness.run([sys.executable, "-c", "import time; time.sleep(60)"], 10, "0", [], limit=2) == "hangs"
-    assert "ended with 3" in harness.run([sys.executable, "-c", "raise SystemExit(3)"], 10, "0", [])
+    assert (
+        harness.run(
+            [sys.executable, "-c", "import time; time.sleep(60)"], 10, "0", [], limit=2
+        )
+        == "hangs"
+    )
+    assert "ended with 3" in harness.run(
+        [sys.executable, "-c", "raise SystemExit(3)"], 10, "0", []
+    )
     assert "another one" in harness.run([sys.executable, "-c", ""], 10, "0", [])
 
 
@@ -35,5 +48,8 @@ client.main(*sys.argv[1:])
 """
     found = harness.run([sys.executable, "-c", forgetful], 10, "0", [])
     assert (
-        found.startswith("never sent: ") and "Reset," not in found and "Save Image" in found and "Hole Map" not in found
+        found.startswith("never sent: ")
+        and "Reset," not in found
+        and "Save Image" in found
+        and "Hole Map" not in found
     )

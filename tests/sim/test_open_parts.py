@@ -57,7 +57,10 @@ def icd(tmp_path_factory):
 
 
 def frame(icd, message: str, *assigned: str) -> str:
-    """The frame of a message for which this was set, in hexadecimal; the same from the next start on."""
+    """The frame of a message for which this was set, in hexadecimal.
+
+    The same from the next start on.
+    """
     line, _ = build(icd, None, Options(values=[(message, one) for one in assigned]))
     frames = [bytes(line.computer.program.values.frames[message])]
     line.computer.restart(0)
@@ -79,8 +82,16 @@ def frame(icd, message: str, *assigned: str) -> str:
         ("Keys", ("words=hello", "words="), "00 00 00 00"),
         ("Curves", ("curves[1].last=9",), "00 02 0000 0009"),
         ("Curves", ("curves[0].points[1]=7", "curves[0].last=9"), "02 01 00000709"),
-        ("Curves", ("curves[0].points=[5, 6]", "curves[1].points=[7]"), "01 02 000500 000700"),
-        ("Curves", ("curves[1].kind=1", "points count=3"), "03 02 0000000000 0100000000"),
+        (
+            "Curves",
+            ("curves[0].points=[5, 6]", "curves[1].points=[7]"),
+            "01 02 000500 000700",
+        ),
+        (
+            "Curves",
+            ("curves[1].kind=1", "points count=3"),
+            "03 02 0000000000 0100000000",
+        ),
         ("Data", ("data=01 02 03",), "010203"),
         ("Data", ("data=01 02 03", "data=04"), "04"),
     ],
@@ -89,7 +100,10 @@ def test_what_is_set_is_there_and_is_counted(icd, message, assigned, expected):
     assert frame(icd, message, *assigned) == expected.replace(" ", "")
 
 
-@pytest.mark.parametrize("assigned", ["levels=[1, 2, 3, 4, 5]", "levels=[]", "keys count=4", "words=longer", "data=1"])
+@pytest.mark.parametrize(
+    "assigned",
+    ["levels=[1, 2, 3, 4, 5]", "levels=[]", "keys count=4", "words=longer", "data=1"],
+)
 def test_what_there_cannot_be_is_refused(icd, assigned):
     with pytest.raises(UserError):
         frame(icd, "Keys", assigned)

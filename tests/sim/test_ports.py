@@ -50,8 +50,12 @@ def test_a_can_bus_by_python_can():
 def test_a_request_over_can_that_nobody_answers_ends():
     link = cubeacp()
     settings = link.settings._replace(reply_timeout=50, retries=2)
-    with session(link, open_port("can://virtual/silent", {}), settings=settings) as client:
-        assert client.start(Request("telemetry", link.identification.telemetry)) == Timeout(128, 3)
+    with session(
+        link, open_port("can://virtual/silent", {}), settings=settings
+    ) as client:
+        assert client.start(
+            Request("telemetry", link.identification.telemetry)
+        ) == Timeout(128, 3)
 
 
 def test_a_request_over_can_is_answered_by_the_node_of_the_icd():
@@ -81,7 +85,15 @@ def cubeacp() -> Link:
 
 @pytest.mark.parametrize(
     "name",
-    ["tcp://", "tcp://localhost", "tcp://127.0.0.1:1", "ftp://x:1", "/dev/no-such-port", "can://x", "can://none/0"],
+    [
+        "tcp://",
+        "tcp://localhost",
+        "tcp://127.0.0.1:1",
+        "ftp://x:1",
+        "/dev/no-such-port",
+        "can://x",
+        "can://none/0",
+    ],
 )
 def test_what_cannot_be_opened_is_said(name):
     with pytest.raises(PortError):
@@ -108,7 +120,9 @@ def test_what_was_meant_is_said_before_pyserial_is_asked_for(name, words, monkey
     assert "pyserial" not in f"{error.value} {error.value.help}"
 
 
-@pytest.mark.parametrize(("name", "package"), [("COM3", "pyserial"), ("can://virtual/0", "python-can")])
+@pytest.mark.parametrize(
+    ("name", "package"), [("COM3", "pyserial"), ("can://virtual/0", "python-can")]
+)
 def test_a_missing_library_is_named(name, package, monkeypatch):
     monkeypatch.setitem(sys.modules, "serial", None)
     monkeypatch.setitem(sys.modules, "can", None)

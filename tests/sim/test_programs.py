@@ -13,17 +13,24 @@ from tests.sim.device import ICD
 BOOT = facts.of(ICD, ICD.node("bootloader"))
 REASONS = BOOT.errors
 INITIATE, BEGIN, PACKET, FINALIZE = (
-    BOOT.files.steps[f"upload.{step}"].message.telecommand_id for step in ("initiate", "begin", "packet", "finalize")
+    BOOT.files.steps[f"upload.{step}"].message.telecommand_id
+    for step in ("initiate", "begin", "packet", "finalize")
 )
-COPY, COPIED = (step.message.ids[0] for step in (BOOT.program_copy.request, BOOT.program_copy.progress))
+COPY, COPIED = (
+    step.message.ids[0]
+    for step in (BOOT.program_copy.request, BOOT.program_copy.progress)
+)
 READ, INFORMATION = (
-    step.message.ids[0] for step in (BOOT.program_information.request, BOOT.program_information.progress)
+    step.message.ids[0]
+    for step in (BOOT.program_information.request, BOOT.program_information.progress)
 )
 
 
 @pytest.fixture
 def device():
-    return Computer(ICD, ICD.node("bootloader"), Settings(boot_ms=10**9, busy_ms=10), Storage())
+    return Computer(
+        ICD, ICD.node("bootloader"), Settings(boot_ms=10**9, busy_ms=10), Storage()
+    )
 
 
 def code(device, now: int, *message: int) -> int:
@@ -52,7 +59,9 @@ def test_copying_what_was_never_uploaded_fails(device):
     assert (device.frame(0, COPIED), device.frame(10, COPIED)) == (b"\x01", b"\x02")
 
 
-def test_a_program_that_cannot_be_copied_and_a_destination_that_is_not_supported_are_refused(device):
+def test_a_program_that_cannot_be_copied_and_a_destination_that_is_not_supported_are_refused(
+    device,
+):
     assert code(device, 0, COPY, 0, 0) == REASONS["parameter"]
     assert code(device, 0, INITIATE, 10, 0) == REASONS["parameter"]
     assert code(device, 0, FINALIZE, 10, 0, 0, 0, 0, 1, 0) == REASONS["parameter"]

@@ -1,4 +1,6 @@
-"""The table of `icdgen monitor`: values outlive a device that stops answering, and a small terminal scrolls."""
+"""The table of `icdgen monitor`: values outlive a device that stops answering, and a
+small terminal scrolls.
+"""
 
 from __future__ import annotations
 
@@ -23,21 +25,32 @@ def watched(*names: str) -> live.Monitor:
     return live.Monitor(ICD, "cubeacp", names)
 
 
-def test_a_device_that_stops_answering_leaves_its_last_values_and_their_age(monkeypatch):
+def test_a_device_that_stops_answering_leaves_its_last_values_and_their_age(
+    monkeypatch,
+):
     now = 100.0
     monkeypatch.setattr(live.time, "monotonic", lambda: now)
     monitor = watched("146")
     (message,) = monitor.messages
     monitor.record(message, Timeout(message.telemetry_id, 3))
     assert [row[4] for row in monitor.rows()] == ["no answer"]
-    monitor.record(message, Done(id=message.telemetry_id, attempts=1, data=bytes((1, 0)) + bytes(message.length - 2)))
+    monitor.record(
+        message,
+        Done(
+            id=message.telemetry_id,
+            attempts=1,
+            data=bytes((1, 0)) + bytes(message.length - 2),
+        ),
+    )
     fresh = [row[:4] for row in monitor.rows()]
     assert not any(row[4] for row in monitor.rows()) and not monitor.failed
     for seconds, age in ((12, "12 s"), (200, "3 min 20 s"), (7500, "2 h 5 min")):
         now = 100.0 + seconds
         monitor.record(message, Timeout(message.telemetry_id, 3))
         rows = list(monitor.rows())
-        assert [row[:4] for row in rows] == fresh and rows[0][4] == f"no answer; last value, {age} old"
+        assert [row[:4] for row in rows] == fresh and rows[0][
+            4
+        ] == f"no answer; last value, {age} old"
     assert monitor.failed and not list(monitor.frames())
     monitor.disconnected()
     assert [row[:4] for row in monitor.rows()] == fresh
@@ -47,17 +60,39 @@ def screen_of(columns: int, lines: int, place: str, keys: bytes) -> str:
     """What the monitor writes to a terminal of that size, after keys have been typed."""
     terminal, end = pty.openpty()
     fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
-    words = ["monitor", "cubeacp", "128", "146", "150", "Communication Status", "--port", place, "--every", "0.2"]
-    environment = {**os.environ, "TERM": "xterm", "COLUMNS": str(columns), "LINES": str(lines)}
+    words = [
+        "monitor",
+        "cubeacp",
+        "128",
+        "146",
+        "150",
+        "Communication Status",
+        "--port",
+        place,
+        "--every",
+        "0.2",
+    ]
+    environment = {
+        **os.environ,
+        "TERM": "xterm",
+        "COLUMNS": str(columns),
+        "LINES": str(lines),
+    }
     command = [sys.executable, "-m", "icdgen", *words]
     # A session of its own whose controlling terminal is this one.
     code = "import fcntl, os, sys, termios; os.setsid(); fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.argv[1], sys.argv[1:])"
     program = subprocess.Popen(
-        [sys.executable, "-c", code, *command], stdin=end, stdout=end, stderr=subprocess.PIPE, env=environment
+        [sys.executable, "-c", code, *command],
+        stdin=end,
+        stdout=end,
+        stderr=subprocess.PIPE,
+        env=environment,
     )
     os.close(end)
     try:
-        text = _read_until(terminal, "of 20" if lines < 20 else "Communication Status", 30)
+        text = _read_until(
+            terminal, "of 20" if lines < 20 else "Communication Status", 30
+        )
         os.write(terminal, keys)
         return text + _read_until(terminal, "", 2)
     finally:

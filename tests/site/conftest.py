@@ -1,4 +1,6 @@
-"""The site of the shipped ICDs, made once, a site of hostile names, and a browser to look at them."""
+"""The site of the shipped ICDs, made once, a site of hostile names, and a browser to
+look at them.
+"""
 
 from __future__ import annotations
 
@@ -67,13 +69,16 @@ def served() -> Iterator[str]:
     server.server_close()
 
 
-@pytest.fixture(scope="package")  # while it is open, an event loop runs in this thread, and tests of asyncio fail
+@pytest.fixture(
+    scope="package"
+)  # while it is open, an event loop runs in this thread, and tests of asyncio fail
 def browser():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         found = playwright.chromium.launch(
-            executable_path=program("chromium", "chromium-browser", "google-chrome"), args=["--no-sandbox"]
+            executable_path=program("chromium", "chromium-browser", "google-chrome"),
+            args=["--no-sandbox"],
         )
         yield found
         found.close()

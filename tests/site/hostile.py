@@ -1,4 +1,6 @@
-"""ICDs whose texts are markup, scripts, template code and endless: they are data, and nothing else."""
+"""ICDs whose texts are markup, scripts, template code and endless: they are data, and
+nothing else.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,9 @@ from pathlib import Path
 
 MARKUP = '<script>document.title="broken"</script><img src=x onerror=alert(1)>'
 TEMPLATE = "{{ 7*7 }} {% raw %} {# #} ${alert(1)} `x`"
-QUOTES = "\"'></a></table></svg></textarea></title> --> ]]> </script> &lt; \\ \u2028 \u202e"
+QUOTES = (
+    "\"'></a></table></svg></textarea></title> --> ]]> </script> &lt; \\ \u2028 \u202e"
+)
 ENDLESS = "endless " + "x" * 9_990
 
 
@@ -58,4 +62,12 @@ ICD = {
     "missing": [{"kind": "telemetry", "id": 9, "name": MARKUP, "why": QUOTES}],
 }  # fmt: skip
 
-EMPTY = {"icdgen": 1, "node": {"name": "empty", "title": "Nothing", "byte_order": "little", "bit_order": "lsb0"}}
+EMPTY = {
+    "icdgen": 1,
+    "node": {
+        "name": "empty",
+        "title": "Nothing",
+        "byte_order": "little",
+        "bit_order": "lsb0",
+    },
+}

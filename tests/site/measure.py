@@ -1,4 +1,6 @@
-"""``python -m tests.site.measure [SITE]``: what is cut or too long on any page, at each width."""
+"""``python -m tests.site.measure [SITE]``: what is cut or too long on any page, at each
+width.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ _CUT = """() => [...document.querySelectorAll("body *")].filter((one) => {
 
 def faults(page, width: int) -> list[str]:
     """What is wrong with the open page at its width."""
-    wide, high = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    wide, high = page.evaluate(
+        "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+    )
     found = [f"cut: {one}" for one in page.evaluate(_CUT)]
     found += [f"{wide} pixels wide"] if wide > width else []
     return found + ([f"{high} pixels high"] if high > HIGHEST else [])
@@ -36,14 +40,28 @@ def broken_rules(page) -> list[str]:
     """What axe finds on the open page."""
     page.evaluate(tool("axe-core/axe.min.js").read_text("utf-8"))
     found = page.evaluate("axe.run({ resultTypes: ['violations'], preload: false })")
-    return [f"{one['id']}: {[node['target'] for node in one['nodes']][:5]}" for one in found["violations"]]
+    return [
+        f"{one['id']}: {[node['target'] for node in one['nodes']][:5]}"
+        for one in found["violations"]
+    ]
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.site.measure", description=__doc__)
-    parser.add_argument("site", type=Path, nargs="?", help="folder of the site (default: that of the shipped ICDs)")
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.site.measure", description=__doc__
+    )
+    parser.add_argument(
+        "site",
+        type=Path,
+        nargs="?",
+        help="folder of the site (default: that of the shipped ICDs)",
+    )
     parser.add_argument("--every", type=int, default=1, help="only each n-th page")
-    parser.add_argument("--axe", action="store_true", help="ask axe of it, in light and dark, instead of measuring")
+    parser.add_argument(
+        "--axe",
+        action="store_true",
+        help="ask axe of it, in light and dark, instead of measuring",
+    )
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         site = options.site or Path(folder)
@@ -51,7 +69,9 @@ def main() -> int:
             with tempfile.TemporaryDirectory() as old:
                 shipped(site, Path(old))
         pages = sorted(site.resolve().rglob("*.html"))[:: options.every]
-        browser = playwright.chromium.launch(executable_path=program("chromium"), args=["--no-sandbox"])
+        browser = playwright.chromium.launch(
+            executable_path=program("chromium"), args=["--no-sandbox"]
+        )
         looks = (
             [{"color_scheme": scheme} for scheme in SCHEMES]
             if options.axe
@@ -62,7 +82,11 @@ def main() -> int:
             page = browser.new_page(**look)
             for path in pages:
                 page.goto(path.as_uri())
-                found = broken_rules(page) if options.axe else faults(page, look["viewport"]["width"])
+                found = (
+                    broken_rules(page)
+                    if options.axe
+                    else faults(page, look["viewport"]["width"])
+                )
                 wrong += bool(found)
                 for one in found:
                     print(f"{path.relative_to(site.resolve())} {look}: {one}")

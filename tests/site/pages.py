@@ -27,7 +27,9 @@ KINDS = {
 
 
 def shipped(out: Path, old: Path) -> None:
-    """Writes the site of the shipped ICDs, compared with an older release that is made in ``old``."""
+    """Writes the site of the shipped ICDs, compared with an older release that is made
+    in ``old``.
+    """
     shutil.copytree(ROOT / "icd", old / "icd")
     acp = old / "icd" / "cubeacp.yaml"
     acp.write_text(

@@ -1,4 +1,6 @@
-"""``python -m tests.site.pictures FOLDER``: each kind of page on a desk, a tablet and a phone, light and dark, and on paper."""
+"""``python -m tests.site.pictures FOLDER``: each kind of page on a desk, a tablet and a
+phone, light and dark, and on paper.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,10 @@ from tests.site.pages import KINDS, shipped
 
 WIDTHS = {1440: 1000, 768: 1000, 390: 844}
 LOOKS = {
-    f"{width}-{scheme}": {"viewport": {"width": width, "height": height}, "color_scheme": scheme}
+    f"{width}-{scheme}": {
+        "viewport": {"width": width, "height": height},
+        "color_scheme": scheme,
+    }
     for width, height in WIDTHS.items()
     for scheme in ("light", "dark")
 }
@@ -22,15 +27,23 @@ README = {"viewport": {"width": 1180, "height": 900}, "device_scale_factor": 1.5
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="python -m tests.site.pictures", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.site.pictures", description=__doc__
+    )
     parser.add_argument("folder", type=Path, help="where the pictures go")
-    parser.add_argument("--readme", action="store_true", help="only the picture of the README, into docs/images")
+    parser.add_argument(
+        "--readme",
+        action="store_true",
+        help="only the picture of the README, into docs/images",
+    )
     options = parser.parse_args()
     site = options.folder / "site"
     with tempfile.TemporaryDirectory() as old:
         shipped(site, Path(old))
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program("chromium"), args=["--no-sandbox"])
+        browser = playwright.chromium.launch(
+            executable_path=program("chromium"), args=["--no-sandbox"]
+        )
         if options.readme:
             target = ROOT / "docs" / "images" / "message.png"
             target.parent.mkdir(exist_ok=True)
@@ -54,7 +67,11 @@ def main() -> None:
                 page.close()
             page = browser.new_page()
             page.goto((site / name).as_uri())
-            page.pdf(path=options.folder / f"{kind}.pdf", prefer_css_page_size=True, print_background=True)
+            page.pdf(
+                path=options.folder / f"{kind}.pdf",
+                prefer_css_page_size=True,
+                print_background=True,
+            )
             page.close()
 
 

@@ -17,7 +17,11 @@ NODES = ["common", "bootloader", "cubeacp", "cubemag", "cubewheel"]
 @pytest.fixture(params=["file", "server"])
 def top(request, site) -> str:
     """Where the site is: its address up to the paths of the pages."""
-    return site.as_uri() + "/" if request.param == "file" else request.getfixturevalue("served")
+    return (
+        site.as_uri() + "/"
+        if request.param == "file"
+        else request.getfixturevalue("served")
+    )
 
 
 @contextmanager
@@ -39,7 +43,10 @@ def opened(browser, top: str, path: str, **options):
 def results(page) -> list[tuple[str, str]]:
     page.wait_for_selector("#results a")
     return [
-        (item.query_selector(".what").inner_text(), item.query_selector(".title").inner_text())
+        (
+            item.query_selector(".what").inner_text(),
+            item.query_selector(".title").inner_text(),
+        )
         for item in page.query_selector_all("#results a")
     ]
 
@@ -81,34 +88,59 @@ def test_results_are_there_before_the_next_key_is_typed(browser, site):
 
 
 def golden(node: str) -> tuple[str, dict, dict]:
-    """A message of the node's vectors with as many kinds of fields as there are, and a random frame of it."""
+    """A message of the node's vectors with as many kinds of fields as there are, and a
+    random frame of it.
+    """
     data = json.loads((COMMITTED / f"{node}.json").read_text("utf-8"))
     short = [m for m in data["messages"] if 0 < len(m["fields"]) <= 30]
-    message = max(short, key=lambda m: (len({f["type"] for f in m["fields"]}), len(m["fields"])))
-    return message["name"], message, next(v for v in message["vectors"] if v["why"] == "random 0")
+    message = max(
+        short, key=lambda m: (len({f["type"] for f in m["fields"]}), len(m["fields"]))
+    )
+    return (
+        message["name"],
+        message,
+        next(v for v in message["vectors"] if v["why"] == "random 0"),
+    )
 
 
 @pytest.mark.parametrize("node", NODES)
-def test_the_decoder_decodes_a_golden_vector_and_encodes_it_back(browser, top, shipped, node):
+def test_the_decoder_decodes_a_golden_vector_and_encodes_it_back(
+    browser, top, shipped, node
+):
     from icdgen.backends.html.links import Links
 
     name, data, vector = golden(node)
     message = next(m for m in shipped.node(node).messages if m.name == name)
     with opened(browser, top, Links(shipped).message(message)) as page:
         page.fill("#frame", vector["bytes"])
-        page.evaluate("document.querySelectorAll('details').forEach((one) => (one.open = true))")
+        page.evaluate(
+            "document.querySelectorAll('details').forEach((one) => (one.open = true))"
+        )
         in_grid = set()
-        for key, (field, raw) in enumerate(zip(data["fields"], vector["raw"], strict=True), 1):
-            if field["type"] == "bool" and not page.locator(f"#raw-{key}").count():  # it stands in a grid
+        for key, (field, raw) in enumerate(
+            zip(data["fields"], vector["raw"], strict=True), 1
+        ):
+            if (
+                field["type"] == "bool" and not page.locator(f"#raw-{key}").count()
+            ):  # it stands in a grid
                 assert page.is_checked(f"#value-{key}") == bool(raw)
                 in_grid.add(key)
                 continue
-            shown = page.input_value(f"#raw-{key}").replace(" ", "").lower().removeprefix("0x")
+            shown = (
+                page.input_value(f"#raw-{key}")
+                .replace(" ", "")
+                .lower()
+                .removeprefix("0x")
+            )
             assert shown == (str(raw).lower())
             if field["type"] == "bool":
                 assert page.is_checked(f"#value-{key}") == bool(raw)
         assert page.locator("svg.layout .lit rect").count() > 0
-        values = {k: page.input_value(f"#raw-{k}") for k in range(1, len(data["fields"]) + 1) if k not in in_grid}
+        values = {
+            k: page.input_value(f"#raw-{k}")
+            for k in range(1, len(data["fields"]) + 1)
+            if k not in in_grid
+        }
         flags = {key: page.is_checked(f"#value-{key}") for key in in_grid}
         page.click("#decoder button:text-is('Reset')")
         for key, value in flags.items():
@@ -123,11 +155,17 @@ def test_the_decoder_decodes_a_golden_vector_and_encodes_it_back(browser, top, s
 def test_the_decoder_takes_framing_and_checksums_and_physical_values(browser, site):
     with opened(browser, site.as_uri() + "/", KINDS["numbers"]) as page:
         page.fill("#frame", "1F 7F 92 2e fb 1f 1f 00 00 00 1F FF")
-        assert page.input_value("#value-1") == "-12.34" and page.input_value("#raw-2") == "31"
+        assert (
+            page.input_value("#value-1") == "-12.34"
+            and page.input_value("#raw-2") == "31"
+        )
         assert "framing with id 146 removed" in page.inner_text("#verdict")
         page.fill("#value-2", "-0.015")
         page.locator("#value-2").blur()
-        assert page.input_value("#frame") == "2E FB FF FF 00 00" or page.input_value("#frame") == "2E FB FE FF 00 00"
+        assert (
+            page.input_value("#frame") == "2E FB FF FF 00 00"
+            or page.input_value("#frame") == "2E FB FE FF 00 00"
+        )
         page.fill("#frame", "zz")
         assert "not hexadecimal" in page.inner_text("#verdict")
         page.fill("#value-1", "400")
@@ -158,7 +196,9 @@ def test_a_node_s_messages_are_filtered(browser, site):
         rows = page.locator("#message-table tbody tr:visible")
         everything = rows.count()
         page.fill("[name=text]", "0x92")
-        assert rows.count() == 1 and "Estimated Attitude Angles" in rows.first.inner_text()
+        assert (
+            rows.count() == 1 and "Estimated Attitude Angles" in rows.first.inner_text()
+        )
         page.fill("[name=text]", "")
         page.select_option("[name=kind]", "telecommand")
         commands = rows.count()
@@ -171,7 +211,10 @@ def test_a_node_s_messages_are_filtered(browser, site):
         page.fill("[name=mask]", "28")
         assert rows.count() == 1 < loggable < everything
         page.fill("[name=mask]", "nonsense")
-        assert rows.count() == everything and page.get_attribute("[name=mask]", "aria-invalid") == "true"
+        assert (
+            rows.count() == everything
+            and page.get_attribute("[name=mask]", "aria-invalid") == "true"
+        )
 
 
 def test_the_chosen_language_is_remembered(browser, served):
@@ -194,8 +237,12 @@ def test_axe_finds_nothing(browser, site, path, scheme):
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
 @pytest.mark.parametrize("width", measure.WIDTHS)
 def test_nothing_is_cut_and_nothing_endless(browser, site, path, width):
-    """No page is wider than the screen, or longer than 8,000 pixels before anything is unfolded."""
-    with opened(browser, site.as_uri() + "/", path, viewport={"width": width, "height": 900}) as page:
+    """No page is wider than the screen, or longer than 8,000 pixels before anything is
+    unfolded.
+    """
+    with opened(
+        browser, site.as_uri() + "/", path, viewport={"width": width, "height": 900}
+    ) as page:
         assert measure.faults(page, width) == []
 
 
@@ -208,7 +255,11 @@ def test_dark_mode_follows_the_system_and_the_button(browser, served):
     page.click("#theme")
     light = page.evaluate(background)
     page.reload()
-    assert light == "rgb(255, 255, 255)" and dark != light and page.evaluate(background) == light
+    assert (
+        light == "rgb(255, 255, 255)"
+        and dark != light
+        and page.evaluate(background) == light
+    )
     context.close()
 
 
@@ -216,13 +267,22 @@ def test_a_whole_node_prints_with_a_page_for_each_message(browser, site, shipped
     with opened(browser, site.as_uri() + "/", "bootloader/all-messages.html") as page:
         pdf = page.pdf(prefer_css_page_size=True, print_background=True)
     sheets = pdf.count(b"/Type /Page\n") or pdf.count(b"/Type /Page")
-    assert pdf.startswith(b"%PDF") and sheets >= len(shipped.node("bootloader").messages) + 1
+    assert (
+        pdf.startswith(b"%PDF")
+        and sheets >= len(shipped.node("bootloader").messages) + 1
+    )
 
 
 def test_without_javascript_everything_but_search_and_decoder_is_there(browser, site):
-    with opened(browser, site.as_uri() + "/", KINDS["message"], java_script_enabled=False) as page:
+    with opened(
+        browser, site.as_uri() + "/", KINDS["message"], java_script_enabled=False
+    ) as page:
         assert not page.is_visible("#search") and not page.is_visible("#decoder")
-        assert page.is_visible("svg.layout") and page.is_visible(".fields") and page.is_visible(".snippet.c")
+        assert (
+            page.is_visible("svg.layout")
+            and page.is_visible(".fields")
+            and page.is_visible(".snippet.c")
+        )
         page.click("label:text-is('Python')")
         assert page.is_visible(".snippet.python") and not page.is_visible(".snippet.c")
         page.click("svg.layout [data-key='5']")
@@ -236,9 +296,14 @@ def test_hostile_texts_are_shown_and_do_nothing(browser, strange):
             assert page.title() != "broken" and page.locator("img").count() == 0
     with opened(browser, top, "hostile/index_.html") as page:
         text = page.inner_text("main")
-        assert "<script>document.title" in text and "{{ 7*7 }}" in text and "&lt;" in text
+        assert (
+            "<script>document.title" in text and "{{ 7*7 }}" in text and "&lt;" in text
+        )
         page.fill("#frame", "ff" * 33)
         assert page.input_value("#raw-1") == "18446744073709551615"
-        assert page.input_value("#raw-5") == "0xFFFFFFFF" and page.input_value("#raw-6") == "FF FF"
+        assert (
+            page.input_value("#raw-5") == "0xFFFFFFFF"
+            and page.input_value("#raw-6") == "FF FF"
+        )
         page.fill("#search", "endless")
         assert len(results(page)) >= 3

@@ -1,4 +1,6 @@
-"""What is on disk: small, the same each time, with every link and anchor in its place, and valid."""
+"""What is on disk: small, the same each time, with every link and anchor in its place,
+and valid.
+"""
 
 from __future__ import annotations
 
@@ -27,32 +29,56 @@ class Page(HTMLParser):
         super().__init__()
         self.ids: list[str] = []
         self.links: list[str] = []
-        self.refers: list[str] = []  # ids that labels, aria attributes and the like name
+        self.refers: list[str] = (
+            []
+        )  # ids that labels, aria attributes and the like name
         self.feed(text)
 
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(
+        self, tag: str, attributes: list[tuple[str, str | None]]
+    ) -> None:
         for name, value in attributes:
             if name == "id":
                 self.ids.append(value or "")
             elif name in ("href", "src"):
                 self.links.append(value or "")
-            elif name in ("for", "aria-labelledby", "aria-controls", "aria-describedby"):
+            elif name in (
+                "for",
+                "aria-labelledby",
+                "aria-controls",
+                "aria-describedby",
+            ):
                 self.refers += (value or "").split()
 
 
 def broken(folder: Path) -> list[str]:
     """Every link of the site that leads nowhere, every id that is not unique."""
-    pages = {path.relative_to(folder): Page(path.read_text("utf-8")) for path in sorted(folder.rglob("*.html"))}
+    pages = {
+        path.relative_to(folder): Page(path.read_text("utf-8"))
+        for path in sorted(folder.rglob("*.html"))
+    }
     found = []
     for path, page in pages.items():
-        found += [f"{path}: id {one} stands {n} times" for one, n in Counter(page.ids).items() if n > 1]
-        found += [f"{path}: nothing has id {one}" for one in page.refers if one not in page.ids]
+        found += [
+            f"{path}: id {one} stands {n} times"
+            for one, n in Counter(page.ids).items()
+            if n > 1
+        ]
+        found += [
+            f"{path}: nothing has id {one}"
+            for one in page.refers
+            if one not in page.ids
+        ]
         for link in page.links:
             parts = urlsplit(link)
             if parts.scheme or parts.netloc or link.startswith("/"):
                 found.append(f"{path}: {link} leaves the site")
                 continue
-            target = (folder / path.parent / unquote(parts.path)).resolve() if parts.path else (folder / path).resolve()
+            target = (
+                (folder / path.parent / unquote(parts.path)).resolve()
+                if parts.path
+                else (folder / path).resolve()
+            )
             if not target.is_file():
                 found.append(f"{path}: {link} is no file")
             elif parts.fragment and not parts.fragment.startswith("try="):
@@ -63,7 +89,9 @@ def broken(folder: Path) -> list[str]:
 
 
 def test_the_site_is_small_and_has_a_page_for_everything(site, shipped):
-    assert sum(path.stat().st_size for path in site.rglob("*")) < 12_500_000  # of it 1 MB the pages of the reference
+    assert (
+        sum(path.stat().st_size for path in site.rglob("*")) < 12_500_000
+    )  # of it 1 MB the pages of the reference
     for node in shipped.nodes:
         pages = {path.name for path in (site / node.name).glob("*.html")}
         talks = bool(shipped.protocol_of(node))
@@ -96,7 +124,10 @@ def test_the_checker_notices_what_is_broken(tmp_path):
 def test_the_index_of_the_search_leads_to_pages_and_anchors(site):
     text = (site / "search-index.js").read_text("utf-8")
     entries = json.loads(text[text.index("[") : text.rindex("]") + 1])
-    pages = {str(p.relative_to(site)): set(Page(p.read_text("utf-8")).ids) for p in site.rglob("*.html")}
+    pages = {
+        str(p.relative_to(site)): set(Page(p.read_text("utf-8")).ids)
+        for p in site.rglob("*.html")
+    }
     for _, title, *_, url in entries:
         path, _, anchor = url.partition("#")
         assert not anchor or anchor in pages[path], title
@@ -113,35 +144,64 @@ def test_the_index_of_the_search_leads_to_pages_and_anchors(site):
 @pytest.mark.parametrize("which", ["site", "strange"])
 def test_the_pages_are_valid_html(which, request, tmp_path):
     folder = request.getfixturevalue(which)
-    names = KINDS.values() if which == "site" else [str(p.relative_to(folder)) for p in folder.rglob("*.html")]
+    names = (
+        KINDS.values()
+        if which == "site"
+        else [str(p.relative_to(folder)) for p in folder.rglob("*.html")]
+    )
     config = Path(__file__).parent / "npm" / ".htmlvalidate.json"
-    command = [program("node"), str(tool("html-validate/bin/html-validate.mjs")), "--config", str(config), "-f", "text"]
-    done = subprocess.run([*command, *(str(folder / name) for name in names)], capture_output=True, text=True)
+    command = [
+        program("node"),
+        str(tool("html-validate/bin/html-validate.mjs")),
+        "--config",
+        str(config),
+        "-f",
+        "text",
+    ]
+    done = subprocess.run(
+        [*command, *(str(folder / name) for name in names)],
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_everything_stands_in_one_json_and_in_llms_txt(site, shipped):
     data = json.loads((site / "icd.json").read_text("utf-8"))
-    assert [node["name"] for node in data["nodes"]] == [node.name for node in shipped.nodes]
+    assert [node["name"] for node in data["nodes"]] == [
+        node.name for node in shipped.nodes
+    ]
     text = (site / "llms.txt").read_text("utf-8")
-    assert all(message.name in text for node in shipped.nodes for message in node.messages)
+    assert all(
+        message.name in text for node in shipped.nodes for message in node.messages
+    )
     links = [part.split(")")[0] for part in text.split("](")[1:]]
     assert len(links) > 200 and all((site / link).is_file() for link in links)
 
 
 def test_a_field_keeps_its_link_when_everything_around_it_changes(tmp_path, demo):
     before = make([demo]).files["demo/estimated_roll.html"]
-    text = demo.read_text("utf-8").replace("id: 146", "id: 150").replace("at: 0,  bits: 16", "at: 8, bits: 16")
+    text = (
+        demo.read_text("utf-8")
+        .replace("id: 146", "id: 150")
+        .replace("at: 0,  bits: 16", "at: 8, bits: 16")
+    )
     demo.write_text(text.replace("at: 16, bits: 4", "at: 0, bits: 4"), "utf-8")
     after = make([demo]).files["demo/estimated_roll.html"]
-    assert "field-roll_angle" in Page(before).ids and "field-roll_angle" in Page(after).ids
+    assert (
+        "field-roll_angle" in Page(before).ids and "field-roll_angle" in Page(after).ids
+    )
 
 
 def test_pages_load_scripts_and_styles_only_from_their_folder(site):
     for name in KINDS.values():
         text = (site / name).read_text("utf-8")
-        assert "script-src 'self';" in unescape(text) and "default-src 'none'" in unescape(text)
-        assert " style=" not in text and " onclick=" not in text and "<style" not in text
+        assert "script-src 'self';" in unescape(
+            text
+        ) and "default-src 'none'" in unescape(text)
+        assert (
+            " style=" not in text and " onclick=" not in text and "<style" not in text
+        )
 
 
 def test_a_page_lists_the_frames_of_the_golden_vectors(site, shipped):
@@ -153,8 +213,13 @@ def test_a_page_lists_the_frames_of_the_golden_vectors(site, shipped):
         for message, data in zip(node.messages, vectors["messages"], strict=True):
             text = (site / links.message(message)).read_text("utf-8")
             listed = text.partition('<dl class="frames">')[2].partition("</dl>")[0]
-            shown = [bytes.fromhex(part.partition("<")[0]).hex() for part in listed.split("<dd>")[1:]]
-            assert shown == [vector["bytes"] for vector in data["vectors"] if message.length], message.name
+            shown = [
+                bytes.fromhex(part.partition("<")[0]).hex()
+                for part in listed.split("<dd>")[1:]
+            ]
+            assert shown == [
+                vector["bytes"] for vector in data["vectors"] if message.length
+            ], message.name
 
 
 def test_the_page_of_changes_draws_both_layouts_as_the_diff_does(tmp_path):
@@ -168,19 +233,36 @@ def test_the_page_of_changes_draws_both_layouts_as_the_diff_does(tmp_path):
     text = acp.read_text("utf-8")
     assert "at: 0,  bits: 16, name: X Magnetorquer Command" in text
     acp.write_text(
-        text.replace("at: 0,  bits: 16, name: X Magnetorquer Command", "at: 0,  bits: 15, name: X Magnetorquer Command")
+        text.replace(
+            "at: 0,  bits: 16, name: X Magnetorquer Command",
+            "at: 0,  bits: 15, name: X Magnetorquer Command",
+        )
     )
     page = make([ROOT / "icd"], str(old)).files["changes.html"]
-    whole = html.report(report.make(one_side(str(old), []), one_side(str(ROOT / "icd"), [])))
-    drawings = [part.partition("</svg>")[0] for part in page.split('<svg class="layouts"')[1:]]
-    assert drawings and drawings == [part.partition("</svg>")[0] for part in whole.split('<svg class="layouts"')[1:]]
+    whole = html.report(
+        report.make(one_side(str(old), []), one_side(str(ROOT / "icd"), []))
+    )
+    drawings = [
+        part.partition("</svg>")[0] for part in page.split('<svg class="layouts"')[1:]
+    ]
+    assert drawings and drawings == [
+        part.partition("</svg>")[0] for part in whole.split('<svg class="layouts"')[1:]
+    ]
 
 
 def test_a_message_that_is_gone_stands_on_the_page_of_changes_without_a_link(tmp_path):
-    gone = {"name": "Old Mode", "id": 250, "kind": "telecommand", "length": 0, "fields": []}
+    gone = {
+        "name": "Old Mode",
+        "id": 250,
+        "kind": "telecommand",
+        "length": 0,
+        "fields": [],
+    }
     (tmp_path / "old").mkdir()
     (tmp_path / "new").mkdir()
     for side, more in (("old", f"  - {json.dumps(gone)}\n"), ("new", "")):
-        (tmp_path / side / "demo.yaml").write_text(DEMO.rstrip("\n") + "\n" + more, "utf-8")
+        (tmp_path / side / "demo.yaml").write_text(
+            DEMO.rstrip("\n") + "\n" + more, "utf-8"
+        )
     made = make([tmp_path / "new"], str(tmp_path / "old"))
     assert made.ok and "<h3><del>Old Mode</del>" in made.files["changes.html"]

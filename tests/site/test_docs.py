@@ -12,7 +12,7 @@ from http.server import ThreadingHTTPServer
 import pytest
 
 from icdgen.site.serve import HOST, Source, handler
-from tests.cli.conftest import icdgen  # noqa: F401  (a fixture)
+from tests.cli.conftest import icdgen  # noqa: F401
 
 
 @pytest.fixture
@@ -32,7 +32,9 @@ def ask(demo):
     server.server_close()
 
 
-def test_docs_writes_a_site_and_touches_nothing_that_is_current(icdgen, demo):  # noqa: F811
+def test_docs_writes_a_site_and_touches_nothing_that_is_current(
+    icdgen, demo  # noqa: F811
+):
     first = icdgen("docs", demo)
     assert first.status == 0 and "Open site/index.html" in first.out
     again = icdgen("docs", demo)
@@ -42,21 +44,36 @@ def test_docs_writes_a_site_and_touches_nothing_that_is_current(icdgen, demo):  
 
 def test_docs_check_tells_that_the_site_is_old(icdgen, demo):  # noqa: F811
     icdgen("docs", demo)
-    demo.write_text(demo.read_text("utf-8").replace("Roll Angle", "Bank Angle"), "utf-8")
+    demo.write_text(
+        demo.read_text("utf-8").replace("Roll Angle", "Bank Angle"), "utf-8"
+    )
     assert icdgen("docs", "--check", demo).status == 1
     icdgen("docs", demo)
     assert icdgen("docs", "--check", demo).status == 0
 
 
-def test_docs_says_what_is_wrong_with_an_icd_and_writes_nothing(icdgen, demo, tmp_path):  # noqa: F811
+def test_docs_says_what_is_wrong_with_an_icd_and_writes_nothing(
+    icdgen, demo, tmp_path  # noqa: F811
+):
     demo.write_text(demo.read_text("utf-8").replace("bits: 16", "bits: 99"), "utf-8")
     result = icdgen("docs", demo)
-    assert result.status == 1 and "demo.yaml" in result.err and not (tmp_path / "site").exists()
+    assert (
+        result.status == 1
+        and "demo.yaml" in result.err
+        and not (tmp_path / "site").exists()
+    )
 
 
-def test_docs_of_a_release_says_what_changed_since_the_older_one(icdgen, demo, tmp_path):  # noqa: F811
+def test_docs_of_a_release_says_what_changed_since_the_older_one(
+    icdgen, demo, tmp_path  # noqa: F811
+):
     older = tmp_path / "older.yaml"
-    older.write_text(demo.read_text("utf-8").replace("Roll Angle, type: int", "Roll Angle, type: uint"), "utf-8")
+    older.write_text(
+        demo.read_text("utf-8").replace(
+            "Roll Angle, type: int", "Roll Angle, type: uint"
+        ),
+        "utf-8",
+    )
     older.write_text(demo.read_text("utf-8").replace("raw*0.01", "raw*0.1"), "utf-8")
     assert icdgen("docs", "--previous", older, demo).status == 0
     text = (tmp_path / "site" / "changes.html").read_text("utf-8")
@@ -72,7 +89,9 @@ def test_docs_serve_takes_no_folder(icdgen, demo):  # noqa: F811
 
 def test_the_server_shows_the_icds_as_they_are_now(ask, demo):
     assert "Estimated Roll" in ask("/demo/")[1]
-    demo.write_text(demo.read_text("utf-8").replace("Estimated Roll", "Measured Roll"), "utf-8")
+    demo.write_text(
+        demo.read_text("utf-8").replace("Estimated Roll", "Measured Roll"), "utf-8"
+    )
     assert "Measured Roll" in ask("/demo/index.html")[1]
     demo.write_text("nonsense: [", "utf-8")
     status, body = ask("/demo/")
@@ -83,7 +102,14 @@ def test_the_server_answers_to_this_machine_and_gives_nothing_else_away(ask):
     assert ask("/")[0] == 200
     assert ask("/demo")[0] == 301
     assert ask("/", Host="somewhere.example")[0] == 403
-    for path in ("/../etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd", "/demo.yaml", "/%00", "/no such"):
+    for path in (
+        "/../etc/passwd",
+        "/..%2f..%2fetc/passwd",
+        "//etc/passwd",
+        "/demo.yaml",
+        "/%00",
+        "/no such",
+    ):
         assert ask(path.replace(" ", "%20"))[0] == 404
 
 

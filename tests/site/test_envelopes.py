@@ -1,4 +1,6 @@
-"""Pages take messages out of their envelopes as the command line does, and say what these look like."""
+"""Pages take messages out of their envelopes as the command line does, and say what
+these look like.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,10 @@ def icd_of(name: str):
 def traffic(icd, count: int) -> list[str]:
     """Some messages, whole, damaged, and among noise."""
     source, device = random.Random(7), icd.nodes[0]
-    frames = {one.message.name: [row.frame for row in one.rows] for one in golden(icd, device).messages}
+    frames = {
+        one.message.name: [row.frame for row in one.rows]
+        for one in golden(icd, device).messages
+    }
     found = []
     for _ in range(count):
         line = bytearray()
@@ -60,9 +65,13 @@ def test_what_is_pasted_is_what_the_command_line_says_it_is(name):
     icd = icd_of(name)
     index = json.loads(json.dumps(recognition.index(Relations(icd))))
     texts = traffic(icd, 200)
-    shown = [one if not isinstance(one, dict) else None for one in on_the_page(index, texts)]
+    shown = [
+        one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
+    ]
     expected = [on_the_command_line(icd, text) for text in texts]
-    assert [row for row in zip(texts, shown, expected, strict=True) if row[1] != row[2]][:2] == []
+    assert [
+        row for row in zip(texts, shown, expected, strict=True) if row[1] != row[2]
+    ][:2] == []
     assert sum(isinstance(one, list) for one in expected) > 30
 
 
@@ -72,15 +81,25 @@ def test_no_piece_of_a_golden_frame_is_decoded_on_the_page_either(name):
     index = json.loads(json.dumps(recognition.index(Relations(icd))))
     sent_frames = [packet for _, packet in packets(icd)]
     cuts = [cut.hex() for packet in sent_frames for cut in prefixes(packet, 20)]
-    assert [row for row in zip(cuts, on_the_page(index, cuts), strict=True) if isinstance(row[1], list)] == []
+    assert [
+        row
+        for row in zip(cuts, on_the_page(index, cuts), strict=True)
+        if isinstance(row[1], list)
+    ] == []
     source = random.Random(3)
-    ends = [packet[source.randrange(1, len(packet)) :].hex() for packet in sent_frames for _ in range(6)]
+    ends = [
+        packet[source.randrange(1, len(packet)) :].hex()
+        for packet in sent_frames
+        for _ in range(6)
+    ]
     holes = []
     for packet in sent_frames:
         at = source.randrange(1, len(packet))
         holes.append((packet[:at] + packet[at + 2 :]).hex())
     texts = [*ends, *holes]
-    shown = [one if not isinstance(one, dict) else None for one in on_the_page(index, texts)]
+    shown = [
+        one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
+    ]
     assert shown == [on_the_command_line(icd, text) for text in texts]
 
 
@@ -104,15 +123,34 @@ def test_the_page_of_a_message_takes_no_piece_of_a_packet_for_its_data_in_silenc
         assert found == [] or not has_sync, message.name
 
 
-def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(tmp_path):
+def test_the_page_says_why_a_packet_cannot_be_decoded_as_the_command_line_does(
+    tmp_path,
+):
     motor = motor_of(MOTOR, tmp_path)
     index = json.loads(json.dumps(recognition.index(Relations(motor))))
-    texts = ["a55a03020186", POWER[:-2] + "0f", "a55a090009", "a55a030107 0b", "a55a03ff", "a5", "000102"]
+    texts = [
+        "a55a03020186",
+        POWER[:-2] + "0f",
+        "a55a090009",
+        "a55a030107 0b",
+        "a55a03ff",
+        "a5",
+        "000102",
+    ]
     for text, one in zip(texts, on_the_page(index, texts), strict=True):
         with pytest.raises(UserError) as wrong:
             recognize(motor, text)
-        plain = str(wrong.value).replace("`", "").replace("motor has", "it has").replace("motor", "Motor")
-        assert one["error"] == plain if plain.startswith("a packet") else "no packet of Motor" in one["error"]
+        plain = (
+            str(wrong.value)
+            .replace("`", "")
+            .replace("motor has", "it has")
+            .replace("motor", "Motor")
+        )
+        assert (
+            one["error"] == plain
+            if plain.startswith("a packet")
+            else "no packet of Motor" in one["error"]
+        )
 
 
 def test_the_page_reads_packets_of_both_directions_and_reports_the_others(tmp_path):
@@ -122,7 +160,10 @@ def test_the_page_reads_packets_of_both_directions_and_reports_the_others(tmp_pa
     (shown,) = on_the_page(index, [text])
     assert shown == on_the_command_line(motor, text) and len(shown) == 2
     script = json.dumps(str(ROOT / "templates" / "html" / "recognize.js"))
-    left = node(f"([index, text]) => require({script}).recognize(index, text)[0].leftOut", [index, text])
+    left = node(
+        f"([index, text]) => require({script}).recognize(index, text)[0].leftOut",
+        [index, text],
+    )
     assert left == [
         one.replace("`", "").replace("motor has", "it has").replace("motor", "Motor")
         for one in recognize(motor, text)[0].left_out
@@ -134,10 +175,17 @@ def test_the_page_of_a_message_takes_its_envelope_off():
     relations = Relations(icd)
     message = next(one for one in icd.nodes[0].messages if one.name == "End of Epoch")
     facts = wire.page_facts(message, relations.wire(message))
-    sent = recorded(icd, icd.nodes[0], {"End of Epoch": [bytes(4), bytes.fromhex("4AB37B0F")]})["telemetry"]
+    sent = recorded(
+        icd, icd.nodes[0], {"End of Epoch": [bytes(4), bytes.fromhex("4AB37B0F")]}
+    )["telemetry"]
     other = recorded(icd, icd.nodes[0], {"Navigation Clock": [bytes(20)]})["telemetry"]
     damaged = sent[:-1] + bytes([sent[-1] ^ 1])
-    texts = [sent.hex(), (b"noise" + other + sent[12:]).hex(), damaged[12:].hex(), other.hex()]
+    texts = [
+        sent.hex(),
+        (b"noise" + other + sent[12:]).hex(),
+        damaged[12:].hex(),
+        other.hex(),
+    ]
     found = node(
         """([wire, length, texts]) => texts.map((text) => attempt(() => {
             const { data, remarks } = given.messageIn(wire, length, text);
@@ -145,12 +193,20 @@ def test_the_page_of_a_message_takes_its_envelope_off():
         }))""",
         [facts, message.length, texts],
     )
-    assert found[0] == ["00000000", "envelope with id 01 61 removed; 1 other frame left out"]
-    assert found[1][0] == "4ab37b0f" and "33 bytes around the frame belong to none" in found[1][1]
+    assert found[0] == [
+        "00000000",
+        "envelope with id 01 61 removed; 1 other frame left out",
+    ]
+    assert (
+        found[1][0] == "4ab37b0f"
+        and "33 bytes around the frame belong to none" in found[1][1]
+    )
     assert "wrong checksum" in str(found[2]) and "another message's" in str(found[3])
 
 
-def test_the_page_takes_the_envelope_off_where_its_bytes_could_be_data_of_the_message_too(tmp_path):
+def test_the_page_takes_the_envelope_off_where_its_bytes_could_be_data_of_the_message_too(
+    tmp_path,
+):
     icd = load_pack(tmp_path)
     relations = Relations(icd)
     message = next(one for one in icd.nodes[0].messages if one.name == "Log")
@@ -160,7 +216,9 @@ def test_the_page_takes_the_envelope_off_where_its_bytes_could_be_data_of_the_me
         """([wire, length, texts]) => texts.map((text) => Buffer.from(given.messageIn(wire, length, text).data).toString("hex"))""",
         [facts, message.length, texts],
     )
-    assert found == [recognize(icd, text, "pack", "Log")[0].data.hex() for text in texts]
+    assert found == [
+        recognize(icd, text, "pack", "Log")[0].data.hex() for text in texts
+    ]
 
 
 def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):
@@ -184,7 +242,10 @@ def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):
     ):
         assert words in plain, words
     message = (tmp_path / "site" / "autopilot" / "heartbeat.html").read_text("utf-8")
-    assert 'title="header: constant, length' in message and 'title="trailer: checksum"' in message
+    assert (
+        'title="header: constant, length' in message
+        and 'title="trailer: checksum"' in message
+    )
 
 
 def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
@@ -192,12 +253,18 @@ def test_ids_of_class_and_number_are_written_as_two_bytes(tmp_path):
     page = (tmp_path / "ubx" / "receiver" / "end_of_epoch.html").read_text()
     assert '<span class="id"><b>01 61</b></span>' in page
     overview = (tmp_path / "ubx" / "receiver" / "index.html").read_text()
-    assert '<span id="telemetry-353">01 61</span>' in overview and ">Hex<" not in overview
+    assert (
+        '<span id="telemetry-353">01 61</span>' in overview and ">Hex<" not in overview
+    )
     assert "telemetry 01 61 " in (tmp_path / "ubx" / "search-index.js").read_text()
 
 
 def test_other_ids_are_written_as_number_and_in_hexadecimal(tmp_path):
     write(make([LINKS / "mavlink1.yaml"]), tmp_path / "mavlink")
     pages = [page.read_text() for page in (tmp_path / "mavlink").rglob("*.html")]
-    assert any('<span class="id"><b>11</b> <code>0x0B</code></span>' in page for page in pages)
-    assert any(">Hex<" in page and '<td class="n hex">0B</td>' in page for page in pages)
+    assert any(
+        '<span class="id"><b>11</b> <code>0x0B</code></span>' in page for page in pages
+    )
+    assert any(
+        ">Hex<" in page and '<td class="n hex">0B</td>' in page for page in pages
+    )

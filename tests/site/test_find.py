@@ -1,4 +1,6 @@
-"""What people type into the search, and the page that they mean: it comes first, or second."""
+"""What people type into the search, and the page that they mean: it comes first, or
+second.
+"""
 
 from __future__ import annotations
 
@@ -129,30 +131,48 @@ def found(site, queries: list[str]) -> list[list[str]]:
         const queries = JSON.parse(readFileSync(0, "utf8"));
         process.stdout.write(JSON.stringify(queries.map((query) => find(query).map((one) => one.url))));
     """
-    done = subprocess.run([program("node"), "-e", code], input=json.dumps(queries), capture_output=True, text=True)
+    done = subprocess.run(
+        [program("node"), "-e", code],
+        input=json.dumps(queries),
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
 def test_what_is_meant_comes_first_or_second(site):
     results = found(site, list(QUERIES))
-    wrong = [(q, r[:3]) for (q, url), r in zip(QUERIES.items(), results, strict=True) if not fits(url, r[:2])]
+    wrong = [
+        (q, r[:3])
+        for (q, url), r in zip(QUERIES.items(), results, strict=True)
+        if not fits(url, r[:2])
+    ]
     assert len(QUERIES) >= 60 and wrong == []
 
 
 def fits(url: str, best: list[str]) -> bool:
     """Whether it is among the best; of a protocol, that of any node that talks so."""
-    return url in best or ("/protocol" in url and any(one.partition("/")[2] == url.partition("/")[2] for one in best))
+    return url in best or (
+        "/protocol" in url
+        and any(one.partition("/")[2] == url.partition("/")[2] for one in best)
+    )
 
 
 def test_words_of_somebody_who_has_not_read_the_manual_lead_to_the_page_first(site):
     results = found(site, list(FIRST))
-    assert [(q, r[:2]) for (q, url), r in zip(FIRST.items(), results, strict=True) if r[:1] != [url]] == []
+    assert [
+        (q, r[:2])
+        for (q, url), r in zip(FIRST.items(), results, strict=True)
+        if r[:1] != [url]
+    ] == []
 
 
 def test_a_quantity_finds_the_fields_of_its_units(tmp_path):
     without = tmp_path / "p31u.yaml"
-    without.write_text(P31U.read_text("utf-8").replace("aliases: [Battery Voltage], ", ""))
+    without.write_text(
+        P31U.read_text("utf-8").replace("aliases: [Battery Voltage], ", "")
+    )
     write(make([without]), tmp_path / "site")
     ((first, *_),) = found(tmp_path / "site", ["battery voltage"])
     assert first == "p31u/housekeeping.html#field-power_battery"
@@ -161,10 +181,15 @@ def test_a_quantity_finds_the_fields_of_its_units(tmp_path):
 def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path):
     text = P31U.read_text("utf-8")
     text = text.replace(
-        "  - name: Housekeeping\n", "  - name: Housekeeping\n    aliases: [State of Health, Battery Mode]\n"
+        "  - name: Housekeeping\n",
+        "  - name: Housekeeping\n    aliases: [State of Health, Battery Mode]\n",
     )
-    text = text.replace("  - name: Tracking\n", "  - name: Tracking\n    aliases: [Operating Point]\n")
-    text = text.replace("name: Boot Cause, ", "name: Boot Cause, aliases: [Reason of Restart], ")
+    text = text.replace(
+        "  - name: Tracking\n", "  - name: Tracking\n    aliases: [Operating Point]\n"
+    )
+    text = text.replace(
+        "name: Boot Cause, ", "name: Boot Cause, aliases: [Reason of Restart], "
+    )
     (tmp_path / "p31u.yaml").write_text(text)
     write(make([tmp_path / "p31u.yaml"]), tmp_path / "site")
     wanted = {
@@ -177,10 +202,19 @@ def test_an_alias_leads_to_what_has_it_before_names_that_have_its_words(tmp_path
         "battery mode": "p31u/enum-battery_mode.html",  # a name comes before an alias
     }
     results = found(tmp_path / "site", list(wanted))
-    assert [(q, r[:2]) for (q, url), r in zip(wanted.items(), results, strict=True) if r[:1] != [url]] == []
+    assert [
+        (q, r[:2])
+        for (q, url), r in zip(wanted.items(), results, strict=True)
+        if r[:1] != [url]
+    ] == []
     page = (tmp_path / "site" / "p31u" / "housekeeping.html").read_text("utf-8")
-    assert "Also called State of Health, Battery Mode." in page and "Also called Reason of Restart" in page
-    assert "Also called Operating Point." in (tmp_path / "site" / "p31u" / "enum-tracking.html").read_text("utf-8")
+    assert (
+        "Also called State of Health, Battery Mode." in page
+        and "Also called Reason of Restart" in page
+    )
+    assert "Also called Operating Point." in (
+        tmp_path / "site" / "p31u" / "enum-tracking.html"
+    ).read_text("utf-8")
 
 
 def test_what_is_nothing_finds_nothing(site):
@@ -198,7 +232,9 @@ def test_generated_names_lead_to_what_they_were_made_from(site, shipped, backend
     asked = sorted(name for name, owners in names.items() if len(owners) == 1)
     assert len(asked) > 100
     every = [m for node in shipped.nodes for m in node.messages]
-    index = {m.name: m for m in every if sum(m.name == other.name for other in every) == 1}
+    index = {
+        m.name: m for m in every if sum(m.name == other.name for other in every) == 1
+    }
     links = Links(shipped)
     results = found(site, asked)
     wrong = []

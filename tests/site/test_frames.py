@@ -30,7 +30,12 @@ def node(script: str, argument: object) -> object:
         const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
         process.stdout.write(JSON.stringify(({script})(argument)));
     """
-    done = subprocess.run([program("node"), "-e", code], input=json.dumps(argument), capture_output=True, text=True)
+    done = subprocess.run(
+        [program("node"), "-e", code],
+        input=json.dumps(argument),
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -57,10 +62,13 @@ def test_hexadecimal_is_read_as_on_the_command_line():
 
     texts = spellings()
     found = node(
-        "(texts) => texts.map((t) => attempt(() => [...frames.parseHex(t)])).map((r) => (r.error ? null : r))", texts
+        "(texts) => texts.map((t) => attempt(() => [...frames.parseHex(t)])).map((r) => (r.error ? null : r))",
+        texts,
     )
     assert [t for t, f in zip(texts, found, strict=True) if f != expected(t)] == []
-    assert sum(f is not None for f in found) > 500 and sum(f is None for f in found) > 500
+    assert (
+        sum(f is not None for f in found) > 500 and sum(f is None for f in found) > 500
+    )
 
 
 def facts(seed: int) -> dict:
@@ -72,12 +80,21 @@ def facts(seed: int) -> dict:
 
 
 def test_checksums_are_those_of_the_generator():
-    cases = [[facts(seed), list(random.Random(seed).randbytes(seed % 12))] for seed in range(300)]
-    found = node("(cases) => cases.map(([facts, data]) => frames.crc(facts, data))", cases)
-    assert found == [crc.compute(declared.read(Crc, one), bytes(data)) for one, data in cases]
+    cases = [
+        [facts(seed), list(random.Random(seed).randbytes(seed % 12))]
+        for seed in range(300)
+    ]
+    found = node(
+        "(cases) => cases.map(([facts, data]) => frames.crc(facts, data))", cases
+    )
+    assert found == [
+        crc.compute(declared.read(Crc, one), bytes(data)) for one, data in cases
+    ]
 
 
-@pytest.mark.parametrize(("node_name", "key"), [("cubeacp", "crc8"), ("common", "crc16")])
+@pytest.mark.parametrize(
+    ("node_name", "key"), [("cubeacp", "crc8"), ("common", "crc16")]
+)
 def test_checksums_give_the_check_value_of_the_icd(shipped, node_name, key):
     protocol = shipped.node(node_name).protocol[key]
     assert crc.compute(declared.read(Crc, protocol), b"123456789") == protocol["check"]
@@ -87,7 +104,13 @@ CRC8 = {
     "width": 8, "polynomial": 0x12, "init": 0, "reflect_in": True, "reflect_out": True, "xor_out": 0, "empty": 255,
     "bytes": 1,
 }  # fmt: skip
-WIRE = {"ids": [0x1F, 200], "id": 0x1F, "command": True, "framing": [0x1F, 0x7F, 0xFF, 0x1F], "crc": [CRC8]}
+WIRE = {
+    "ids": [0x1F, 200],
+    "id": 0x1F,
+    "command": True,
+    "framing": [0x1F, 0x7F, 0xFF, 0x1F],
+    "crc": [CRC8],
+}
 
 
 def test_an_id_of_several_bytes_comes_off():
@@ -96,7 +119,12 @@ def test_an_id_of_several_bytes_comes_off():
         "([wire, texts]) => texts.map((text) => [...unwrap(wire, 2, frames.parseHex(text)).data])",
         [wire, ["01 35 aa bb", "aa bb", "01 36 aa bb", "35 aa bb"]],
     )
-    assert found == [[0xAA, 0xBB], [0xAA, 0xBB], [0x01, 0x36, 0xAA, 0xBB], [0x35, 0xAA, 0xBB]]
+    assert found == [
+        [0xAA, 0xBB],
+        [0xAA, 0xBB],
+        [0x01, 0x36, 0xAA, 0xBB],
+        [0x35, 0xAA, 0xBB],
+    ]
 
 
 WIDER = {  # as the catalogues have them
@@ -116,15 +144,30 @@ def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id, little, 
     form = replace(known.checksum, covers_id=covers_id, bytes=width // 8)
     if WIDER[width]:
         form = replace(form, crc=declared.read(Crc, WIDER[width]))
-    known = replace(known, framing=replace(known.framing, escapes_id=not plain_id), checksum=form, little=little)
+    known = replace(
+        known,
+        framing=replace(known.framing, escapes_id=not plain_id),
+        checksum=form,
+        little=little,
+    )
     wire = {**WIRE, "plain_id": plain_id, "crc": [crc_facts(known)]}
-    cases = [list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9)) for seed in range(100)]
+    cases = [
+        list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9))
+        for seed in range(100)
+    ]
     found = node(
         "([wire, cases]) => cases.map((data) => [false, true].map((check) => [...frames.framed(wire, data, check)]))",
         [wire, cases],
     )
     assert found == [
-        [list(uart.encode(known.framing, i2c.telecommand(known, 0x1F, bytes(data), check))) for check in (False, True)]
+        [
+            list(
+                uart.encode(
+                    known.framing, i2c.telecommand(known, 0x1F, bytes(data), check)
+                )
+            )
+            for check in (False, True)
+        ]
         for data in cases
     ]
     back = node(
@@ -138,7 +181,10 @@ def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id, little, 
 
 
 def test_framing_and_checksum_come_off_again_whatever_the_data():
-    cases = [list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9)) for seed in range(200)]
+    cases = [
+        list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9))
+        for seed in range(200)
+    ]
     found = node(
         """([wire, cases]) => cases.map((data) => [false, true].map((check) => {
             const { data: back, remarks } = unwrap(wire, data.length, frames.framed(wire, data, check));

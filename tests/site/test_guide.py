@@ -10,7 +10,10 @@ from tests.site.test_find import found
 
 
 def test_every_page_of_the_manual_is_on_the_site_with_all_its_headings(site):
-    names = sorted(path.relative_to(documents.DOCS).with_suffix("").as_posix() for path in documents.pages())
+    names = sorted(
+        path.relative_to(documents.DOCS).with_suffix("").as_posix()
+        for path in documents.pages()
+    )
     assert sorted(page.name for page in guide.pages()) == names and len(names) > 7
     for page in guide.pages():
         source = re.sub("^```.*?^```", "", documents.text(page.name), flags=re.S | re.M)
@@ -24,15 +27,25 @@ def test_html_in_markdown_is_text(tmp_path):
         "# <script>alert(1)</script>\n\n<img src=x onerror=alert(1)> [x](javascript:alert(1)) ![y](http://z/)\n"
     )
     html = guide._page(path).html
-    assert "<script" not in html and "<img" not in html and "href" not in html and "&lt;script&gt;" in html
+    assert (
+        "<script" not in html
+        and "<img" not in html
+        and "href" not in html
+        and "&lt;script&gt;" in html
+    )
 
 
 def test_links_lead_to_pages_and_what_is_not_there_is_text(tmp_path):
     (tmp_path / "b.md").write_text("# B\n")
     path = tmp_path / "a.md"
-    path.write_text("# A\n\n[to b](b.md#b) [to c](c.md) [away](https://x.org/) [up](../d.md) [here](#a)\n")
+    path.write_text(
+        "# A\n\n[to b](b.md#b) [to c](c.md) [away](https://x.org/) [up](../d.md) [here](#a)\n"
+    )
     html = guide._page(path).html
-    assert re.findall('href="([^"]*)"', html) == ["b.html#b", "#a"] and "to c away up" in html
+    assert (
+        re.findall('href="([^"]*)"', html) == ["b.html#b", "#a"]
+        and "to c away up" in html
+    )
 
 
 TASKS = {  # what somebody types -> the page for the task
@@ -80,6 +93,12 @@ TASKS = {  # what somebody types -> the page for the task
 def test_the_first_result_of_the_search_is_the_page_for_the_task(site):
     results = zip(TASKS.items(), found(site, list(TASKS)), strict=True)
     page = re.compile(r"icdgen-docs/(.*)\.html(#.*)?")
-    first = {words: page.fullmatch(urls[0]) if urls else None for (words, _), urls in results}
-    missed = {words: match and match[0] for words, match in first.items() if not match or match[1] != TASKS[words]}
+    first = {
+        words: page.fullmatch(urls[0]) if urls else None for (words, _), urls in results
+    }
+    missed = {
+        words: match and match[0]
+        for words, match in first.items()
+        if not match or match[1] != TASKS[words]
+    }
     assert missed == {}

@@ -1,4 +1,6 @@
-"""Finding one's way: the sidebar, what stays in sight, what is folded, marked and copied."""
+"""Finding one's way: the sidebar, what stays in sight, what is folded, marked and
+copied.
+"""
 
 from __future__ import annotations
 
@@ -13,27 +15,49 @@ DESK, PHONE = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
 def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
     node = shipped.node("cubeacp")
     with opened(browser, site.as_uri() + "/", KINDS["message"], viewport=DESK) as page:
-        assert page.is_visible("#sidebar") and page.inner_text("#sidebar li [aria-current]") == "Current ADCS State"
+        assert (
+            page.is_visible("#sidebar")
+            and page.inner_text("#sidebar li [aria-current]") == "Current ADCS State"
+        )
         folded = page.locator("#sidebar details:not([open]) > summary")
         while folded.count():
             folded.first.click()
-        page.wait_for_function("!document.querySelector('#sidebar').innerText.includes('All on one page')")
-        listed = {link.inner_text(): link.get_attribute("href") for link in page.locator("#sidebar li a").all()}
-        assert {one.name for one in (*shipped.messages_of(node), *node.enums)} <= set(listed)
-        assert [url for url in listed.values() if not (site / "cubeacp" / url).is_file()] == []
+        page.wait_for_function(
+            "!document.querySelector('#sidebar').innerText.includes('All on one page')"
+        )
+        listed = {
+            link.inner_text(): link.get_attribute("href")
+            for link in page.locator("#sidebar li a").all()
+        }
+        assert {one.name for one in (*shipped.messages_of(node), *node.enums)} <= set(
+            listed
+        )
+        assert [
+            url for url in listed.values() if not (site / "cubeacp" / url).is_file()
+        ] == []
         page.click("#sidebar a:text-is('Estimated Attitude Angles')")
         assert page.url.endswith("estimated_attitude_angles.html")
 
 
 def test_on_a_phone_it_is_a_drawer_which_needs_no_script(browser, site):
-    with opened(browser, site.as_uri() + "/", KINDS["message"], viewport=PHONE, java_script_enabled=False) as page:
+    with opened(
+        browser,
+        site.as_uri() + "/",
+        KINDS["message"],
+        viewport=PHONE,
+        java_script_enabled=False,
+    ) as page:
         assert not page.is_visible("#sidebar")
         page.click(".drawer")
-        assert page.is_visible("#sidebar") and page.is_visible("#sidebar .everywhere a:text-is('CubeWheel')")
+        assert page.is_visible("#sidebar") and page.is_visible(
+            "#sidebar .everywhere a:text-is('CubeWheel')"
+        )
         assert page.is_visible("#sidebar a:text-is('Estimated Attitude Angles')")
         page.click("#sidebar summary:has-text('General')")
         page.click("#sidebar details:has-text('General') a:text-is('All on one page')")
-        assert page.url.endswith("cubeacp/index.html#messages") and page.is_visible("a:text-is('ADCS Run Mode')")
+        assert page.url.endswith("cubeacp/index.html#messages") and page.is_visible(
+            "a:text-is('ADCS Run Mode')"
+        )
         page.click(".drawer")
         page.click("#sidebar a:text-is('Errata')")
         assert page.url.endswith("errata.html")
@@ -41,10 +65,17 @@ def test_on_a_phone_it_is_a_drawer_which_needs_no_script(browser, site):
 
 def test_section_links_and_heads_of_tables_stay_in_sight(browser, site):
     at = "(s) => document.querySelector(s).getBoundingClientRect().top"
-    with opened(browser, site.as_uri() + "/", KINDS["composite"], viewport=DESK) as page:
+    with opened(
+        browser, site.as_uri() + "/", KINDS["composite"], viewport=DESK
+    ) as page:
         row = page.locator(".fields tbody tr").nth(3)
-        row.evaluate("(one) => scrollTo(0, one.getBoundingClientRect().top + scrollY - 250)")
-        assert 0 <= page.evaluate(at, ".local") < 80 and 80 <= page.evaluate(at, ".fields thead th") < 140
+        row.evaluate(
+            "(one) => scrollTo(0, one.getBoundingClientRect().top + scrollY - 250)"
+        )
+        assert (
+            0 <= page.evaluate(at, ".local") < 80
+            and 80 <= page.evaluate(at, ".fields thead th") < 140
+        )
 
 
 @pytest.mark.parametrize(
@@ -63,7 +94,9 @@ def test_section_links_and_heads_of_tables_stay_in_sight(browser, site):
 )  # fmt: skip
 def test_what_a_link_leads_to_is_in_sight_and_marked(browser, site, address, marked):
     with opened(browser, site.as_uri() + "/", address, viewport=DESK) as page:
-        lit = page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()")
+        lit = page.evaluate(
+            "getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()"
+        )
         colour = page.evaluate(
             """([selector, lit]) => {
                 const probe = document.createElement("i");
@@ -96,9 +129,17 @@ def test_errata_are_filtered_by_words_node_message_and_confidence(browser, site)
 
 
 def test_flags_stand_in_a_grid_with_their_values(browser, site):
-    with opened(browser, site.as_uri() + "/", KINDS["message"] + "#try=0000ffffffff", viewport=DESK) as page:
+    with opened(
+        browser,
+        site.as_uri() + "/",
+        KINDS["message"] + "#try=0000ffffffff",
+        viewport=DESK,
+    ) as page:
         boxes = page.locator("#decoder .flag-grid input")
-        assert boxes.count() == 36 and sum(boxes.nth(n).is_checked() for n in range(36)) == 32
+        assert (
+            boxes.count() == 36
+            and sum(boxes.nth(n).is_checked() for n in range(36)) == 32
+        )
         assert page.locator("#decoder .flag-grid").bounding_box()["height"] < 500
 
 
@@ -112,7 +153,9 @@ def test_bytes_code_and_names_are_copied(browser, served):
         ".snippet.c": '#include "cubeacp.h"',
     }.items():
         frame = page.locator(selector)
-        button = (frame.locator("..") if selector == ".snippet.c" else frame).locator("button.copy")
+        button = (frame.locator("..") if selector == ".snippet.c" else frame).locator(
+            "button.copy"
+        )
         button.click()
         page.wait_for_selector(".copy.done")
         assert page.evaluate("navigator.clipboard.readText()").startswith(expected)
@@ -125,5 +168,9 @@ def test_results_of_the_search_stay_on_the_screen_of_a_phone(browser, site):
         page.fill("#search", "attitude")
         page.wait_for_selector("#results a")
         box = page.locator("#results").bounding_box()
-        assert box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["y"] + box["height"] <= 844
+        assert (
+            box["x"] >= 0
+            and box["x"] + box["width"] <= 390
+            and box["y"] + box["height"] <= 844
+        )
         assert page.evaluate("document.documentElement.scrollWidth") <= 390

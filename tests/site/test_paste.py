@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tests.cli.conftest import icdgen  # noqa: F401  (a fixture)
+from tests.cli.conftest import icdgen  # noqa: F401
 from tests.conftest import ROOT
 from tests.recognize.ways import BARE, WHOLE
 from tests.site.pages import KINDS
@@ -36,19 +36,37 @@ def test_the_box_of_the_first_page_leads_there_from_every_way(browser, site):
         assert page.input_value("#value-1") == "-12.34"
 
 
-def test_in_every_way_page_and_command_line_give_the_same_values(browser, site, icdgen):  # noqa: F811
+def test_in_every_way_page_and_command_line_give_the_same_values(
+    browser, site, icdgen  # noqa: F811
+):
     with opened(browser, site.as_uri() + "/", ANGLES.partition("#")[0]) as page:
         for way, text in {**BARE, **WHOLE}.items():
             page.fill("#frame", "")
-            told = icdgen("decode", "--icd", ROOT / "icd", "cubeacp", "146", "--format", "json", text)
+            told = icdgen(
+                "decode",
+                "--icd",
+                ROOT / "icd",
+                "cubeacp",
+                "146",
+                "--format",
+                "json",
+                text,
+            )
             fields = json.loads(told.out)["fields"]
             page.fill("#frame", text)
-            shown = [(page.input_value(f"#raw-{key}"), page.input_value(f"#value-{key}")) for key in (1, 2, 3)]
-            assert shown == [(str(one["raw"]), f"{one['value']:.2f}") for one in fields], way
+            shown = [
+                (page.input_value(f"#raw-{key}"), page.input_value(f"#value-{key}"))
+                for key in (1, 2, 3)
+            ]
+            assert shown == [
+                (str(one["raw"]), f"{one['value']:.2f}") for one in fields
+            ], way
             assert not page.locator("#verdict.wrong").count()
 
 
-def test_in_every_way_without_an_id_both_ask_which_message_it_is(browser, site, icdgen):  # noqa: F811
+def test_in_every_way_without_an_id_both_ask_which_message_it_is(
+    browser, site, icdgen  # noqa: F811
+):
     with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
         for way, text in BARE.items():
             page.fill("#paste", "")
@@ -56,7 +74,9 @@ def test_in_every_way_without_an_id_both_ask_which_message_it_is(browser, site, 
             page.fill("#paste", text)
             page.wait_for_selector("#pasted li")
             assert told.status == 2 and "6 bytes without an id can be" in told.err, way
-            assert page.inner_text("#pasted .note").startswith("6 bytes without an id can be several"), way
+            assert page.inner_text("#pasted .note").startswith(
+                "6 bytes without an id can be several"
+            ), way
 
 
 def test_where_a_frame_can_be_several_messages_they_are_listed(browser, site):
@@ -68,11 +88,19 @@ def test_where_a_frame_can_be_several_messages_they_are_listed(browser, site):
         page.fill("#paste", "1F 7F 92 2E FB")
         page.wait_for_selector("#pasted .wrong")
         assert "end of the message is missing" in page.inner_text("#pasted")
-        assert page.locator("#pasted li").count() == 0 and page.get_attribute("#paste", "aria-invalid") == "true"
+        assert (
+            page.locator("#pasted li").count() == 0
+            and page.get_attribute("#paste", "aria-invalid") == "true"
+        )
 
 
 @pytest.mark.parametrize(
-    "text", [WHOLE["UART"], WHOLE["candump"], "08BE0201#00010203040506" + "00\n05920201#2EFB0A000000"]
+    "text",
+    [
+        WHOLE["UART"],
+        WHOLE["candump"],
+        "08BE0201#00010203040506" + "00\n05920201#2EFB0A000000",
+    ],
 )
 def test_the_search_field_of_every_page_takes_a_frame(browser, site, text):
     top = site.as_uri() + "/"
@@ -98,7 +126,10 @@ def test_another_message_s_frame_leaves_nothing_and_links_to_it(browser, site):
     with opened(browser, site.as_uri() + "/", ANGLES) as page:
         assert page.input_value("#value-1") == "-12.34"
         page.fill("#frame", "1F 7F 93 10 00 20 00 30 00 1F FF")
-        assert page.input_value("#value-1") == "" and page.locator("svg.layout .lit *").count() == 0
+        assert (
+            page.input_value("#value-1") == ""
+            and page.locator("svg.layout .lit *").count() == 0
+        )
         page.wait_for_selector("#verdict a")
         assert "wrong" in page.get_attribute("#verdict", "class")
         page.click("#verdict a")
@@ -106,34 +137,50 @@ def test_another_message_s_frame_leaves_nothing_and_links_to_it(browser, site):
 
 
 def test_what_the_message_may_not_hold_is_an_error_and_not_green(browser, site):
-    with opened(browser, site.as_uri() + "/", "cubeacp/set_attitude_control_mode.html") as page:
+    with opened(
+        browser, site.as_uri() + "/", "cubeacp/set_attitude_control_mode.html"
+    ) as page:
         page.fill("#frame", "3F 0A 00")
         verdict = page.inner_text("#verdict")
-        assert "no such member" in verdict and "wrong" in page.get_attribute("#verdict", "class")
+        assert "no such member" in verdict and "wrong" in page.get_attribute(
+            "#verdict", "class"
+        )
         page.fill("#frame", "01 0A 00")
         assert "wrong" not in (page.get_attribute("#verdict", "class") or "")
     with opened(browser, site.as_uri() + "/", "common/reset.html") as page:
         page.fill("#frame", "01")
-        assert "must be 90" in page.inner_text("#verdict") and "wrong" in page.get_attribute("#verdict", "class")
+        assert "must be 90" in page.inner_text(
+            "#verdict"
+        ) and "wrong" in page.get_attribute("#verdict", "class")
 
 
 def test_the_decoder_shows_can_identifiers_and_lines_of_candump(browser, site):
     with opened(browser, site.as_uri() + "/", ANGLES) as page:
         shown = page.inner_text(".sent")
         assert "id 0x05920100" in shown and "05920100#2EFB0A000000" in shown
-    with opened(browser, site.as_uri() + "/", "cubeacp/adcs_state.html#try=" + bytes(range(54)).hex()) as page:
+    with opened(
+        browser,
+        site.as_uri() + "/",
+        "cubeacp/adcs_state.html#try=" + bytes(range(54)).hex(),
+    ) as page:
         shown = page.inner_text(".sent")
         assert "08BE0100#0001020304050607" in shown and shown.count("08BE0100#") == 8
 
 
 def test_boxes_of_the_drawing_hold_the_values(browser, site):
     with opened(browser, site.as_uri() + "/", ANGLES) as page:
-        assert page.locator("svg.layout .lit .value").all_text_contents() == ["-12.34 deg", "0.10 deg", "0.00 deg"]
+        assert page.locator("svg.layout .lit .value").all_text_contents() == [
+            "-12.34 deg",
+            "0.10 deg",
+            "0.00 deg",
+        ]
         page.click("#decoder button:text-is('Reset')")
         assert page.locator("svg.layout .lit .value").count() == 0
 
 
-def test_several_frames_are_all_listed_and_one_that_cannot_be_decoded_is_reported(browser, site):
+def test_several_frames_are_all_listed_and_one_that_cannot_be_decoded_is_reported(
+    browser, site
+):
     top = site.as_uri() + "/"
     two = "1F 7F 92 2E FB 0A 00 00 00 1F FF 1F 7F 93 10 00 20 00 30 00 1F FF"
     with opened(browser, top, KINDS["home"]) as page:
@@ -151,4 +198,7 @@ def test_several_frames_are_all_listed_and_one_that_cannot_be_decoded_is_reporte
             shown = page.inner_text("#pasted")
             assert "Estimated Attitude Angles" in shown and bad in shown
             assert ("Estimated Angular Rates" in shown) == text.startswith(two)
-        assert "Not decoded: no message of" in shown or "Not decoded: no message has the id" in shown
+        assert (
+            "Not decoded: no message of" in shown
+            or "Not decoded: no message has the id" in shown
+        )

@@ -33,7 +33,12 @@ def node(script: str, argument: object) -> object:
         const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
         process.stdout.write(JSON.stringify(({script})(argument)));
     """
-    done = subprocess.run([program("node"), "-e", code], input=json.dumps(argument), capture_output=True, text=True)
+    done = subprocess.run(
+        [program("node"), "-e", code],
+        input=json.dumps(argument),
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -44,14 +49,22 @@ def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
     for text in list(texts):  # and what a slip of the hand makes of them
         for _ in range(30):
             at = source.randrange(len(text))
-            texts.append(text[:at] + source.choice(["", " ", "x", "0", "=", "\n", "[", "#"]) + text[at + 1 :])
+            texts.append(
+                text[:at]
+                + source.choice(["", " ", "x", "0", "=", "\n", "[", "#"])
+                + text[at + 1 :]
+            )
 
     def expected(text: str) -> object:
         try:
             found = read(text)
         except BadHex:
             return None
-        return [list(found.data), [[p.id, list(p.data), p.extended, p.time] for p in found.packets], found.form]
+        return [
+            list(found.data),
+            [[p.id, list(p.data), p.extended, p.time] for p in found.packets],
+            found.form,
+        ]
 
     found = node(
         """(texts) => texts.map((text) => attempt(() => {
@@ -60,7 +73,11 @@ def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
         })).map((one) => (one.error ? null : one))""",
         texts,
     )
-    assert [(t, f, expected(t)) for t, f in zip(texts, found, strict=True) if f != expected(t)] == []
+    assert [
+        (t, f, expected(t))
+        for t, f in zip(texts, found, strict=True)
+        if f != expected(t)
+    ] == []
     assert sum(f is None for f in found) > 100
 
 
@@ -71,7 +88,10 @@ def facts(icd, id: int) -> tuple[dict, int]:
     section = {"crc8": owner.protocol["crc8"]}
     link = link_of(icd, known)
     return (
-        wire.page_facts(message, wire.Wire(known, section, link, [wire.Speaker(known, section, link)])),
+        wire.page_facts(
+            message,
+            wire.Wire(known, section, link, [wire.Speaker(known, section, link)]),
+        ),
         message.length,
     )
 
@@ -86,20 +106,30 @@ def test_the_page_of_the_message_takes_every_way(shipped):
 
 
 def around(source: random.Random, message, ids: list[int]) -> str:
-    """Frames of the message and of others, whole and damaged, with noise between them, or no framing at all."""
+    """Frames of the message and of others, whole and damaged, with noise between them,
+    or no framing at all.
+    """
     found = b""
     for _ in range(source.randint(1, 3)):
         id = source.choice([*message.ids, source.choice(ids)])
-        body = bytes([id]) + source.randbytes(source.choice([message.length, message.length, message.length + 1, 0, 2]))
+        body = bytes([id]) + source.randbytes(
+            source.choice([message.length, message.length, message.length + 1, 0, 2])
+        )
         line = b"\x1f\x7f" + body.replace(b"\x1f", b"\x1f\x1f") + b"\x1f\xff"
         at = source.randrange(len(line)) if source.random() < 0.2 else len(line)
-        found += source.choice([line, body]) if source.random() < 0.2 else line[:at] + line[at + 1 :]
+        found += (
+            source.choice([line, body])
+            if source.random() < 0.2
+            else line[:at] + line[at + 1 :]
+        )
         found += source.randbytes(source.choice([0, 0, 1, 4]))
     return found.hex(" ")
 
 
 @pytest.mark.parametrize("key", ["146", "1", "Commanded Attitude Angles"])
-def test_the_page_of_a_message_makes_of_a_stream_what_the_command_line_makes(shipped, key):
+def test_the_page_of_a_message_makes_of_a_stream_what_the_command_line_makes(
+    shipped, key
+):
     source = random.Random(key)
     message = find_message(shipped, "cubeacp", key)
     ids = [id for one in shipped.messages_of(shipped.node("cubeacp")) for id in one.ids]
@@ -110,23 +140,39 @@ def test_the_page_of_a_message_makes_of_a_stream_what_the_command_line_makes(shi
             found = recognize(shipped, text, "cubeacp", key)
         except UserError:
             return None
-        whole = [one.data for one in found if one.what in ("telecommand", "telemetry", "configuration")]
+        whole = [
+            one.data
+            for one in found
+            if one.what in ("telecommand", "telemetry", "configuration")
+        ]
         return whole[0].hex() if whole else None
 
     known = of(shipped, shipped.node("cubeacp"))
     travels = Relations(shipped).wire(message)
-    travels = travels._replace(facts=known, checked=[one for one in travels.checked if one.facts.node is known.node])
+    travels = travels._replace(
+        facts=known,
+        checked=[one for one in travels.checked if one.facts.node is known.node],
+    )
     found = node(
         """([wire, length, texts]) => texts.map((text) =>
             attempt(() => Buffer.from(given.messageIn(wire, length, text).data).toString("hex")))""",
         [wire.page_facts(message, travels), message.length, texts],
     )
-    shown = [one if isinstance(one, str) and len(one) == 2 * message.length else None for one in found]
-    assert [(t, f, expected(t)) for t, s, f in zip(texts, shown, found, strict=True) if s != expected(t)] == []
+    shown = [
+        one if isinstance(one, str) and len(one) == 2 * message.length else None
+        for one in found
+    ]
+    assert [
+        (t, f, expected(t))
+        for t, s, f in zip(texts, shown, found, strict=True)
+        if s != expected(t)
+    ] == []
     assert 50 < sum(one is not None for one in shown) < 390
 
 
-def test_the_page_of_a_message_takes_the_packet_whose_identifier_is_its_id_and_no_other(tmp_path):
+def test_the_page_of_a_message_takes_the_packet_whose_identifier_is_its_id_and_no_other(
+    tmp_path,
+):
     icd = train(tmp_path)
     relations, message = Relations(icd), find_message(icd, "train", "Brake")
     texts = [f"101#{BRAKE}", f"100#{DRIVE}\n101#{BRAKE}", f"100#{DRIVE}"]
@@ -147,7 +193,10 @@ def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
     id, message = next((i, m) for i, m in known.telemetry.items() if m.length > 21)
     data = bytes(range(message.length))
     pieces = [data[at : at + 7].ljust(7, b"\0") for at in range(0, len(data), 7)]
-    lines = [f"08{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n:02x}" for n, piece in enumerate(pieces)]
+    lines = [
+        f"08{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n:02x}"
+        for n, piece in enumerate(pieces)
+    ]
     found = node(
         """([[wire, length], lines]) => [
             [...given.messageIn(wire, length, [...lines].reverse().join("\\n")).data],
@@ -157,5 +206,9 @@ def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
         ]""",
         [facts(shipped, id), lines],
     )
-    assert found[0] == list(data) and "packets are missing" in found[1] and "another message's" in found[2]
+    assert (
+        found[0] == list(data)
+        and "packets are missing" in found[1]
+        and "another message's" in found[2]
+    )
     assert "carry no data" in found[3]

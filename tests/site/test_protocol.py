@@ -9,7 +9,7 @@ import pytest
 from icdgen.loading import load
 from icdgen.protocol import i2c, uart
 from icdgen.protocol.facts import of as facts_of
-from tests.cli.conftest import icdgen  # noqa: F401  (a fixture)
+from tests.cli.conftest import icdgen  # noqa: F401
 from tests.site.test_browser import opened
 
 PAGE = "cubeacp/protocol.html"
@@ -19,21 +19,39 @@ def test_the_calculator_computes_the_checksums_of_the_icd(browser, site, shipped
     protocol = shipped.protocol_of(shipped.node("cubeacp"))
     with opened(browser, site.as_uri() + "/", PAGE) as page:
         shown = page.inner_text("#crc-values")
-        assert f"0x{protocol['crc8']['check']:X}" in shown and f"0x{protocol['crc16']['check']:X}" in shown
+        assert (
+            f"0x{protocol['crc8']['check']:X}" in shown
+            and f"0x{protocol['crc16']['check']:X}" in shown
+        )
         page.fill("#crc-bytes", "")
         assert f"0x{protocol['crc8']['empty']:X}" in page.inner_text("#crc-values")
         page.fill("#crc-bytes", "3x")
-        assert "not hexadecimal" in page.inner_text("#crc-wrong") and page.inner_text("#crc-values") == ""
+        assert (
+            "not hexadecimal" in page.inner_text("#crc-wrong")
+            and page.inner_text("#crc-values") == ""
+        )
 
 
 def test_every_fact_and_every_assumption_stands_there(site, shipped):
     text = (site / PAGE).read_text("utf-8")
-    plain = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text)).replace("&#39;", "'").replace("&#34;", '"')
+    plain = (
+        re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text))
+        .replace("&#39;", "'")
+        .replace("&#34;", '"')
+    )
     known = facts_of(shipped, shipped.node("cubeacp"))
     assert len(known.assumptions) > 30
     for one in known.assumptions:
         assert " ".join(one.why.split()) in plain, one.key
-    for words in ("115,200", "29", "0x57", "1,000 ms", "Message Type", "28 … 24", "Incorrect Length"):
+    for words in (
+        "115,200",
+        "29",
+        "0x57",
+        "1,000 ms",
+        "Message Type",
+        "28 … 24",
+        "Incorrect Length",
+    ):
         assert words in plain
 
 
@@ -50,8 +68,13 @@ def test_a_node_of_which_nothing_is_said_has_no_such_page(site):
 
 def test_the_packets_of_a_download_are_drawn_with_their_ids(site):
     text = (site / PAGE).read_text("utf-8")
-    download = text[text.index("<figcaption>File download") : text.index("<figcaption>File erase")]
-    assert "id 119 on UART; id 241 on I²C, CAN" in download and "2 bytes of counter, 20 bytes of the file" in download
+    download = text[
+        text.index("<figcaption>File download") : text.index("<figcaption>File erase")
+    ]
+    assert (
+        "id 119 on UART; id 241 on I²C, CAN" in download
+        and "2 bytes of counter, 20 bytes of the file" in download
+    )
     assert 'href="../common/file_download_buffer_with_file_contents.html"' in download
 
 
@@ -62,13 +85,23 @@ WIDE = {  # CRC-16/IBM-3740 and CRC-32/ISO-HDLC, as the catalogues have them
 
 
 @pytest.mark.parametrize("width", WIDE)
-def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(browser, tmp_path, icdgen, width):  # noqa: F811
+def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(
+    browser, tmp_path, icdgen, width  # noqa: F811
+):
     assert icdgen("init", "battery").status == 0
     path = tmp_path / "icd" / "battery.yaml"
     polynomial, init, reflected, xor_out, check = WIDE[width]
-    values = {"width": width, "polynomial": polynomial, "init": init, "xor_out": xor_out, "check": check}
+    values = {
+        "width": width,
+        "polynomial": polynomial,
+        "init": init,
+        "xor_out": xor_out,
+        "check": check,
+    }
     values |= {"reflect_in": reflected, "reflect_out": reflected}
-    text = path.read_text("utf-8").replace("extra_bytes: 1", f"extra_bytes: {width // 8}")
+    text = path.read_text("utf-8").replace(
+        "extra_bytes: 1", f"extra_bytes: {width // 8}"
+    )
     for key, value in values.items():
         text = re.sub(rf"(\n    {key}: )\S+", rf"\g<1>{value}", text, count=1)
     path.write_text(text, "utf-8")
@@ -76,15 +109,21 @@ def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(browser, tm
     assert built.status == 0, built.err
     top = (tmp_path / "site").as_uri() + "/"
     with opened(browser, top, "battery/protocol.html") as page:
-        assert check in page.inner_text("#crc-values") and f"CRC-{width}" in page.inner_text("main")
+        assert check in page.inner_text(
+            "#crc-values"
+        ) and f"CRC-{width}" in page.inner_text("main")
     known = facts_of(loaded := load([path]).icd, loaded.node("battery"))
-    id = next(id for id, message in known.telecommands.items() if message.name == "Reset")
+    id = next(
+        id for id, message in known.telecommands.items() if message.name == "Reset"
+    )
     body = i2c.telecommand(known, id, b"\x5a", True)
     line = uart.encode(known.framing, body).hex(" ").upper()
     assert len(body) == 2 + width // 8
     with opened(browser, top, "battery/reset.html") as page:
         page.fill("#frame", line)
-        assert "CRC is right" in page.inner_text("#verdict") and line in page.inner_text(".sent")
+        assert "CRC is right" in page.inner_text(
+            "#verdict"
+        ) and line in page.inner_text(".sent")
         assert line.replace(" ", "") in re.sub(r"\s", "", page.inner_text(".buses"))
         page.fill("#frame", body[:-1].hex() + f"{body[-1] ^ 1:02x}")
         assert page.locator("#verdict.wrong").count()

@@ -1,4 +1,6 @@
-"""The page knows what a frame is wherever the command line does, and says the same of it."""
+"""The page knows what a frame is wherever the command line does, and says the same of
+it.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,10 @@ def on_the_page(index: dict, texts: list[str]) -> list[object]:
         }})));
     """
     done = subprocess.run(
-        [program("node"), "-e", code], input=json.dumps([index, texts]), capture_output=True, text=True
+        [program("node"), "-e", code],
+        input=json.dumps([index, texts]),
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -46,22 +51,33 @@ def on_the_command_line(icd, text: str) -> object:
         return "ambiguous"
     except UserError:
         return None
-    return [[one.endpoint.node.name, one.message.name, one.what, one.data.hex(), one.id] for one in found]
+    return [
+        [one.endpoint.node.name, one.message.name, one.what, one.data.hex(), one.id]
+        for one in found
+    ]
 
 
 def streams(icd) -> list[str]:
-    """Random traffic, whole and damaged: framed, bare, with and without ids, as packets of CAN."""
+    """Random traffic, whole and damaged: framed, bare, with and without ids, as packets
+    of CAN.
+    """
     source = random.Random(7)
     messages = [m for node in icd.nodes for m in icd.messages_of(node)]
     found = []
     for _ in range(700):
         message = source.choice(messages)
-        data = source.randbytes(message.length if source.random() < 0.8 else source.randrange(12))
+        data = source.randbytes(
+            message.length if source.random() < 0.8 else source.randrange(12)
+        )
         id = source.choice(message.ids)
-        body = bytes([id]) + data + (source.randbytes(1) if source.random() < 0.2 else b"")
+        body = (
+            bytes([id]) + data + (source.randbytes(1) if source.random() < 0.2 else b"")
+        )
         line = b"\x1f\x7f" + body.replace(b"\x1f", b"\x1f\x1f") + b"\x1f\xff"
         if source.random() < 0.3:
-            line = source.randbytes(source.randrange(4)) + line + b"\x1f\x7f\x92\x1f\xff"
+            line = (
+                source.randbytes(source.randrange(4)) + line + b"\x1f\x7f\x92\x1f\xff"
+            )
         at = source.randrange(len(line))
         damaged = line[:at] + source.randbytes(source.randrange(2)) + line[at + 1 :]
         found += [one.hex() for one in (line, body, data, damaged) if one]
@@ -73,7 +89,8 @@ def streams(icd) -> list[str]:
         pieces = [data[at : at + 7].ljust(7, b"\0") for at in range(0, len(data), 7)]
         kind = 7 if message.telecommand_id == id else 8
         rows = [
-            f"{kind:02X}{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n & 255:02x}" for n, piece in enumerate(pieces)
+            f"{kind:02X}{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n & 255:02x}"
+            for n, piece in enumerate(pieces)
         ]
         found.append("\n".join(rows if source.random() < 0.7 else rows[1:]))
     return found
@@ -93,11 +110,18 @@ def test_every_way_to_paste_a_frame_leads_to_the_same_message(shipped, index):
 
 def test_random_traffic_is_what_the_command_line_says_it_is(shipped, index):
     texts = streams(shipped)
-    shown = [one if not isinstance(one, dict) else None for one in on_the_page(index, texts)]
+    shown = [
+        one if not isinstance(one, dict) else None for one in on_the_page(index, texts)
+    ]
     expected = [on_the_command_line(shipped, text) for text in texts]
-    different = [(t, s, e) for t, s, e in zip(texts, shown, expected, strict=True) if s != e]
+    different = [
+        (t, s, e) for t, s, e in zip(texts, shown, expected, strict=True) if s != e
+    ]
     assert different[:3] == []
-    assert min(sum(e is None for e in expected), sum(e == "ambiguous" for e in expected)) > 100
+    assert (
+        min(sum(e is None for e in expected), sum(e == "ambiguous" for e in expected))
+        > 100
+    )
     assert sum(isinstance(e, list) for e in expected) > 1000
 
 
@@ -110,9 +134,14 @@ def test_identifiers_that_are_ids_are_read_as_the_command_line_reads_them(tmp_pa
     ]
     texts += [f"t1008{DRIVE}", "100#R", f"100#{DRIVE}\n7FF#00\n101#{BRAKE}"]
     expected = [on_the_command_line(icd, text) for text in texts]
-    shown = on_the_page(json.loads(json.dumps(recognition.index(Relations(icd)))), texts)
+    shown = on_the_page(
+        json.loads(json.dumps(recognition.index(Relations(icd)))), texts
+    )
     assert [one if not isinstance(one, dict) else None for one in shown] == expected
-    assert "no message has the CAN identifier 0x7FF" in str(shown) and "ambiguous" in expected
+    assert (
+        "no message has the CAN identifier 0x7FF" in str(shown)
+        and "ambiguous" in expected
+    )
     assert sum(isinstance(one, list) for one in expected) == 10
 
 
@@ -128,11 +157,15 @@ def test_what_is_wrong_is_said(index):
     }
     found = on_the_page(index, list(said))
     assert [
-        (text, one) for (text, says), one in zip(said.items(), found, strict=True) if says not in one["error"]
+        (text, one)
+        for (text, says), one in zip(said.items(), found, strict=True)
+        if says not in one["error"]
     ] == []
 
 
-def test_the_page_keeps_the_times_of_candump_and_reports_packets_that_no_message_has(tmp_path):
+def test_the_page_keeps_the_times_of_candump_and_reports_packets_that_no_message_has(
+    tmp_path,
+):
     icd = train(tmp_path)
     index = json.loads(json.dumps(recognition.index(Relations(icd))))
     code = f"""
@@ -141,9 +174,15 @@ def test_the_page_keeps_the_times_of_candump_and_reports_packets_that_no_message
         process.stdout.write(JSON.stringify(recognize(index, text).map((one) => [one.time, one.leftOut])));
     """
     done = subprocess.run(
-        [program("node"), "-e", code], input=json.dumps([index, CANDUMP]), capture_output=True, text=True
+        [program("node"), "-e", code],
+        input=json.dumps([index, CANDUMP]),
+        capture_output=True,
+        text=True,
     )
     assert json.loads(done.stdout) == [
-        ["1600000000.250000", ["no message has the CAN identifier 0x7FF (1 CAN packet)"]],
+        [
+            "1600000000.250000",
+            ["no message has the CAN identifier 0x7FF (1 CAN packet)"],
+        ],
         ["1600000002.000000", []],
     ]

@@ -1,4 +1,6 @@
-"""Arrays on the page of a message: one element is drawn, all can be decoded, and the page stays quick."""
+"""Arrays on the page of a message: one element is drawn, all can be decoded, and the
+page stays quick.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +54,14 @@ def ublox(tmp_path_factory) -> Path:
 def icds(tmp_path_factory):
     folder = tmp_path_factory.mktemp("nested")
     (folder / "nested.yaml").write_text(json.dumps(NESTED), encoding="utf-8")
-    return [load([path]).icd for path in (*sorted(DEVICES.rglob("*.yaml")), folder / "nested.yaml", ROOT / "icd")]
+    return [
+        load([path]).icd
+        for path in (
+            *sorted(DEVICES.rglob("*.yaml")),
+            folder / "nested.yaml",
+            ROOT / "icd",
+        )
+    ]
 
 
 def test_each_field_stands_in_the_tables_once_and_can_be_decoded(icds):
@@ -64,18 +73,32 @@ def test_each_field_stands_in_the_tables_once_and_can_be_decoded(icds):
                 rows = fields.rows(message, node, relations.links)
                 parts = sections.bands(relations, message) or sections.shares(message)
                 cells = [cell for part in parts for cell in fields.between(rows, part)]
-                keys = [one.key for cell in cells for one in getattr(cell, "flags", [cell]) if one.key]
+                keys = [
+                    one.key
+                    for cell in cells
+                    for one in getattr(cell, "flags", [cell])
+                    if one.key
+                ]
                 every = range(1, len(message.fields) + 1)
                 assert sorted(keys) == [
-                    k for k in every if repeats.is_shown(k) and not message.fields[k - 1].is_count
+                    k
+                    for k in every
+                    if repeats.is_shown(k) and not message.fields[k - 1].is_count
                 ], message.name
                 if repeats.arrays:
-                    assert [key for one in sections.panels(message, repeats) for key in one.keys] == list(every)
+                    assert [
+                        key
+                        for one in sections.panels(message, repeats)
+                        for key in one.keys
+                    ] == list(every)
 
 
 def test_what_repeats_has_one_section_with_how_often_it_is_there(icds):
     ublox = next(icd for icd in icds if icd.nodes[0].name == "ublox")
-    titles = [one.title for one in sections.bands(Relations(ublox), message_of(ublox, "NAV-SAT"))]
+    titles = [
+        one.title
+        for one in sections.bands(Relations(ublox), message_of(ublox, "NAV-SAT"))
+    ]
     assert titles == ["Bytes 0 to 7", "satellites × 0 to 64"]
     nested = next(icd for icd in icds if icd.nodes[0].name == "nested")
     relations, message = Relations(nested), message_of(nested, "State")
@@ -89,19 +112,34 @@ def test_what_repeats_has_one_section_with_how_often_it_is_there(icds):
         ("Bytes 71 to 122", 71, 123),
     ]
     names = [name for name, _ in relations.shown_fields(message)]
-    assert names[:5] == ["Before", "Channels[].Number", "Channels[].Signals[].Level", "Samples", "Few[0]"]
+    assert names[:5] == [
+        "Before",
+        "Channels[].Number",
+        "Channels[].Signals[].Level",
+        "Samples",
+        "Few[0]",
+    ]
 
 
 def message_of(icd, name: str):
-    return next(message for node in icd.nodes for message in node.messages if message.name == name)
+    return next(
+        message
+        for node in icd.nodes
+        for message in node.messages
+        if message.name == name
+    )
 
 
 def test_a_page_of_64_satellites_loads_within_a_second(browser, ublox):
     with opened(browser, ublox.as_uri() + "/", NAV_SAT) as page:
         times = []
-        for _ in range(3):  # the fastest, as other programs take their part of the machine
+        for _ in range(
+            3
+        ):  # the fastest, as other programs take their part of the machine
             page.reload()
-            times.append(page.evaluate("performance.getEntriesByType('navigation')[0].duration"))
+            times.append(
+                page.evaluate("performance.getEntriesByType('navigation')[0].duration")
+            )
         assert min(times) < 1000, times
         assert page.evaluate("document.querySelectorAll('*').length") < 3000
 
@@ -137,19 +175,28 @@ def test_all_satellites_of_a_frame_are_decoded_and_one_can_be_added(browser, ubl
         assert fold.get_by_label("satellites[1].svId, raw").input_value() == "7"
         assert fold.get_by_label("satellites[1].gnssId, value").input_value() == "2"
         fold.locator("tr:has-text('satellites[1].cno')").hover()
-        assert page.locator("svg.layout .tied").get_attribute("href") == "#field-satellites_cno"
+        assert (
+            page.locator("svg.layout .tied").get_attribute("href")
+            == "#field-satellites_cno"
+        )
         summaries.nth(3).click()
         page.get_by_label("satellites[2].svId, raw").fill("9")
         page.get_by_label("satellites[2].svId, raw").blur()
         assert (
-            page.input_value("#frame").startswith("00 00 00 00 01 03") and len(page.input_value("#frame").split()) == 44
+            page.input_value("#frame").startswith("00 00 00 00 01 03")
+            and len(page.input_value("#frame").split()) == 44
         )
         assert summaries.count() == 5
 
 
 def test_a_link_to_a_field_of_a_struct_leads_to_its_row(browser, ublox):
-    with opened(browser, ublox.as_uri() + "/", f"{NAV_SAT}#field-satellites_elev") as page:
-        assert page.locator("svg.layout .tied").get_attribute("href") == "#field-satellites_elev"
+    with opened(
+        browser, ublox.as_uri() + "/", f"{NAV_SAT}#field-satellites_elev"
+    ) as page:
+        assert (
+            page.locator("svg.layout .tied").get_attribute("href")
+            == "#field-satellites_elev"
+        )
         assert page.is_visible("tr:target")
 
 
@@ -160,7 +207,11 @@ def test_the_search_has_a_field_of_a_struct_once(ublox):
 
 @pytest.mark.parametrize("sheet", ["style.css", "print.css"])
 def test_each_type_of_field_has_a_colour(sheet):
-    types = set(json.loads(schema.PATH.read_text("utf-8"))["$defs"]["field"]["properties"]["type"]["enum"])
+    types = set(
+        json.loads(schema.PATH.read_text("utf-8"))["$defs"]["field"]["properties"][
+            "type"
+        ]["enum"]
+    )
     styles = (ROOT / "templates" / "html" / sheet).read_text("utf-8")
     assert "text" in types and types <= set(re.findall(r"--t-(\w+):", styles))
 

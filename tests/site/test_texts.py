@@ -35,14 +35,31 @@ def _typed(text: str) -> list[int] | None:
 
 def test_texts_read_and_are_typed_as_the_reference_has_them():
     source = random.Random(1)
-    raw = [bytes(source.choice((0, 65, 97, 127, 128, 255)) for _ in range(8)) for _ in range(300)]
+    raw = [
+        bytes(source.choice((0, 65, 97, 127, 128, 255)) for _ in range(8))
+        for _ in range(300)
+    ]
     letters = "aZ9 ~\x01\x7f\0\x80é位"
     texts = [
-        "".join(source.choices(letters, (9, 9, 9, 9, 9, 1, 1, 1, 1, 1, 1), k=source.randint(0, 9))) for _ in range(300)
+        "".join(
+            source.choices(
+                letters, (9, 9, 9, 9, 9, 1, 1, 1, 1, 1, 1), k=source.randint(0, 9)
+            )
+        )
+        for _ in range(300)
     ]
     request = json.dumps({"raw": [list(one) for one in raw], "texts": texts})
-    done = subprocess.run([program("node"), "-e", SCRIPT], input=request, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [program("node"), "-e", SCRIPT],
+        input=request,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    assert found == {"shown": [codec.text(one) for one in raw], "typed": [_typed(text) for text in texts]}
+    assert found == {
+        "shown": [codec.text(one) for one in raw],
+        "typed": [_typed(text) for text in texts],
+    }
     assert None in found["typed"] and any(found["typed"])

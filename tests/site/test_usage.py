@@ -1,4 +1,6 @@
-"""The code that pages show is code: it compiles, and runs, with what the backends generate."""
+"""The code that pages show is code: it compiles, and runs, with what the backends
+generate.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,11 @@ def snippets(icd, key: str) -> list[str]:
 
 def snippet(message, key: str) -> str:
     """The code of a message in a language, with the default names of packages."""
-    return next(one.text for one in usage.snippets(message, message, Packages(), RENDER) if one.key == key)
+    return next(
+        one.text
+        for one in usage.snippets(message, message, Packages(), RENDER)
+        if one.key == key
+    )
 
 
 def indented(text: str, prefix: str = "    ") -> str:
@@ -47,7 +53,11 @@ def test_the_c_of_every_message_compiles_without_a_warning(shipped, tmp_path):
     source = tmp_path / "usage.c"
     source.write_text("\n".join(parts), "utf-8")
     flags = "-std=c99 -Wall -Wextra -Werror -Wno-unused-variable -Wno-unused-but-set-variable -fsyntax-only".split()
-    done = subprocess.run([program("gcc"), *flags, "-I", GENERATED / "c", source], capture_output=True, text=True)
+    done = subprocess.run(
+        [program("gcc"), *flags, "-I", GENERATED / "c", source],
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr[:4000]
 
 
@@ -55,19 +65,34 @@ def test_the_python_of_every_message_runs(shipped, tmp_path):
     parts = ["sent = []", "def send(id, frame): sent.append((id, frame))"]
     for node in describe(shipped).nodes:
         for message in node.messages:
-            parts += [f"buffer = bytes({message.model.length})", snippet(message, "python")]
+            parts += [
+                f"buffer = bytes({message.model.length})",
+                snippet(message, "python"),
+            ]
     source = tmp_path / "usage.py"
     source.write_text("\n".join([*parts, "print(len(sent))"]), "utf-8")
-    environment = {"PYTHONPATH": str(GENERATED / "python"), "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run([sys.executable, source], capture_output=True, text=True, env=environment)
-    commands = sum(m.telecommand_id is not None for node in shipped.nodes for m in node.messages)
+    environment = {
+        "PYTHONPATH": str(GENERATED / "python"),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+    done = subprocess.run(
+        [sys.executable, source], capture_output=True, text=True, env=environment
+    )
+    commands = sum(
+        m.telecommand_id is not None for node in shipped.nodes for m in node.messages
+    )
     assert done.returncode == 0 and int(done.stdout) == commands, done.stderr
 
 
 def test_the_rust_of_every_message_compiles(shipped, tmp_path):
-    parts = ["#![allow(unused_variables, dead_code, non_snake_case)]", "fn send(_id: u8, _frame: &[u8]) {}"]
+    parts = [
+        "#![allow(unused_variables, dead_code, non_snake_case)]",
+        "fn send(_id: u8, _frame: &[u8]) {}",
+    ]
     for number, text in enumerate(snippets(shipped, "rust")):
-        parts.append(f"fn f{number}(buffer: &[u8]) -> Result<(), icd::Error> {{\n{indented(text)}\n    Ok(())\n}}")
+        parts.append(
+            f"fn f{number}(buffer: &[u8]) -> Result<(), icd::Error> {{\n{indented(text)}\n    Ok(())\n}}"
+        )
     source = tmp_path / "usage.rs"
     source.write_text("\n".join([*parts, "fn main() {}"]), "utf-8")
     library = tmp_path / "libicd.rlib"
@@ -84,7 +109,17 @@ def test_the_rust_of_every_message_compiles(shipped, tmp_path):
             library,
             GENERATED / "rust/src/lib.rs",
         ],
-        ["--extern", f"icd={library}", "--emit", "metadata", "-o", tmp_path / "usage.rmeta", source],
+        [
+            "--extern",
+            f"icd={library}",
+            "--emit",
+            "metadata",
+            "-o",
+            tmp_path / "usage.rmeta",
+            source,
+        ],
     ):
-        done = subprocess.run([rustc, "--edition", "2021", *arguments], capture_output=True, text=True)
+        done = subprocess.run(
+            [rustc, "--edition", "2021", *arguments], capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stderr[:4000]

@@ -14,7 +14,12 @@ from icdgen.runtime_objects.links import link_of
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
     message = next(m for m in icd.node(node).messages if m.name == name)
     found = wire.buses(message, Relations(icd).wire(message), data)
-    return {bus.name: [(line.label, " ".join(c.text for c in line.chunks)) for line in bus.lines] for bus in found}
+    return {
+        bus.name: [
+            (line.label, " ".join(c.text for c in line.chunks)) for line in bus.lines
+        ]
+        for bus in found
+    }
 
 
 def test_a_telecommand_on_each_bus(shipped):
@@ -26,13 +31,21 @@ def test_a_telecommand_on_each_bus(shipped):
 
 def test_an_optional_checksum_covers_the_parameters(shipped):
     found = lines(shipped, "cubeacp", "Trigger ADCS Loop", b"")
-    assert found["UART"] == [("Telecommand", "1F 7F 12 1F FF"), ("with CRC", "1F 7F 12 FF 1F FF")]
+    assert found["UART"] == [
+        ("Telecommand", "1F 7F 12 1F FF"),
+        ("with CRC", "1F 7F 12 FF 1F FF"),
+    ]
 
 
 def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
-    message = next(m for m in shipped.node("cubeacp").messages if m.name == "ASGP4 Run Mode")
+    message = next(
+        m for m in shipped.node("cubeacp").messages if m.name == "ASGP4 Run Mode"
+    )
     known, section, _, checked = Relations(shipped).wire(message)
-    covering = [replace(one.facts, checksum=replace(one.facts.checksum, covers_id=True)) for one in checked]
+    covering = [
+        replace(one.facts, checksum=replace(one.facts.checksum, covers_id=True))
+        for one in checked
+    ]
     plain = replace(known, framing=replace(known.framing, escapes_id=False))
     speakers = [wire.Speaker(one, section, link_of(shipped, one)) for one in covering]
     other = wire.Wire(plain, section, link_of(shipped, plain), speakers)
@@ -44,10 +57,21 @@ def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
 
 
 def test_a_telemetry_frame_on_each_bus(shipped):
-    found = lines(shipped, "cubeacp", "Estimated Attitude Angles", bytes.fromhex("2efb1f000000"))
-    assert found["UART"] == [("Request", "1F 7F 92 1F FF"), ("Answer", "1F 7F 92 2E FB 1F 1F 00 00 00 1F FF")]
-    assert found["I²C"][0] == ("Request and answer", "AE 92 repeated start AF 2E FB 1F 00 00 00")
-    assert found["CAN"] == [("Request", "04920001"), ("Answer", "05920100 2E FB 1F 00 00 00")]
+    found = lines(
+        shipped, "cubeacp", "Estimated Attitude Angles", bytes.fromhex("2efb1f000000")
+    )
+    assert found["UART"] == [
+        ("Request", "1F 7F 92 1F FF"),
+        ("Answer", "1F 7F 92 2E FB 1F 1F 00 00 00 1F FF"),
+    ]
+    assert found["I²C"][0] == (
+        "Request and answer",
+        "AE 92 repeated start AF 2E FB 1F 00 00 00",
+    )
+    assert found["CAN"] == [
+        ("Request", "04920001"),
+        ("Answer", "05920100 2E FB 1F 00 00 00"),
+    ]
 
 
 def test_long_frames_are_cut_into_packets_that_count_down(shipped):
@@ -63,5 +87,7 @@ def test_a_node_without_protocol_facts_has_no_bytes_on_a_wire(shipped):
 def test_the_page_says_the_same(site):
     text = (site / "cubeacp" / "asgp4_run_mode.html").read_text("utf-8")
     section = text[text.index('id="wire"') :]
-    shown = re.sub("<[^>]*>", "", section[section.index("<dd") : section.index("</dd>")])
+    shown = re.sub(
+        "<[^>]*>", "", section[section.index("<dd") : section.index("</dd>")]
+    )
     assert shown.split() == "1F 7F 1F 1F 00 1F FF".split()

@@ -29,7 +29,10 @@ def test_only_what_is_there_is_given_and_shown(icd):
     assert frame(icd, "type=1", "value=5") == "0500000000000040"
     assert frame(icd, "type=0") == "0" * 16
     (found,) = recognize(icd, "0500000000000040", "mux", "Choice")
-    assert [(row.field.name, row.raw) for row in found.frame.rows] == [("Value", 5), ("Type", 1)]
+    assert [(row.field.name, row.raw) for row in found.frame.rows] == [
+        ("Value", 5),
+        ("Type", 1),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -46,9 +49,19 @@ def test_what_is_missing_or_not_there_is_said(icd, values, said):
 
 
 def test_a_condition_is_shown_to_people_and_programs(icd):
-    assert "only there if Flag is true and Mode is 1 or 3" in to_text(icd, ["mux", "Multiplexed"])
-    assert "only there if State is Idle or Stopped" in to_text(icd, ["mux", "Multiplexed"])
+    assert "only there if Flag is true and Mode is 1 or 3" in to_text(
+        icd, ["mux", "Multiplexed"]
+    )
+    assert "only there if State is Idle or Stopped" in to_text(
+        icd, ["mux", "Multiplexed"]
+    )
     tree = to_json(icd)
-    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
-    (fast,) = (one for one in tree["nodes"][0]["messages"][0]["fields"] if one["name"] == "Is Fast")
+    jsonschema_rs.validator_for(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))
+    ).validate(tree)
+    (fast,) = (
+        one
+        for one in tree["nodes"][0]["messages"][0]["fields"]
+        if one["name"] == "Is Fast"
+    )
     assert fast["when"] == {"Flag": [1], "Mode": [1, 3]}

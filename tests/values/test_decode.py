@@ -61,7 +61,9 @@ def everything(icd, **parts):
         "rest": 0,
     }
     values |= parts
-    return decode(icd, "top", "Everything", struct.pack("<BBfd4sQqBB", *values.values()))
+    return decode(
+        icd, "top", "Everything", struct.pack("<BBfd4sQqBB", *values.values())
+    )
 
 
 def texts(frame):
@@ -96,20 +98,44 @@ def test_every_type_in_words(icd):
 
 def test_what_the_icd_does_not_know_is_shown_as_it_came(icd):
     frame = everything(icd, mode=13, ratio=float("nan"), precise=float("-inf"))
-    rows = {row["name"]: row for row in json.loads(json.dumps(frame.to_json(), allow_nan=False))["fields"]}
+    rows = {
+        row["name"]: row
+        for row in json.loads(json.dumps(frame.to_json(), allow_nan=False))["fields"]
+    }
     assert texts(frame)["Mode"] == "unknown 13"
     assert (rows["Mode"]["raw"], rows["Mode"]["value"]) == (13, None)
     assert rows["Mode"]["remarks"] == ["no member of Switch"]
     assert (rows["Ratio"]["raw"], rows["Ratio"]["value"]) == ("7fc00000", "nan")
     assert rows["Ratio"]["remarks"] == ["not a number"]
-    assert (rows["Precise"]["raw"], rows["Precise"]["value"]) == ("fff0000000000000", "-inf")
+    assert (rows["Precise"]["raw"], rows["Precise"]["value"]) == (
+        "fff0000000000000",
+        "-inf",
+    )
 
 
 def test_all_values_of_a_range_have_its_name(icd):
-    named = {value: everything(icd, mode=value).rows[2] for value in (31, 32, 40, 47, 48)}
-    assert [row.text for row in named.values()] == ["unknown 31", *["Reserved"] * 3, "unknown 48"]
-    assert [row.remarks for row in named.values()] == [("no member of Switch",), (), (), (), ("no member of Switch",)]
-    assert named[40].to_json() == {"name": "Mode", "type": "enum", "raw": 40, "value": "Reserved", "enum": "Switch"}
+    named = {
+        value: everything(icd, mode=value).rows[2] for value in (31, 32, 40, 47, 48)
+    }
+    assert [row.text for row in named.values()] == [
+        "unknown 31",
+        *["Reserved"] * 3,
+        "unknown 48",
+    ]
+    assert [row.remarks for row in named.values()] == [
+        ("no member of Switch",),
+        (),
+        (),
+        (),
+        ("no member of Switch",),
+    ]
+    assert named[40].to_json() == {
+        "name": "Mode",
+        "type": "enum",
+        "raw": 40,
+        "value": "Reserved",
+        "enum": "Switch",
+    }
 
 
 @pytest.mark.parametrize(
@@ -145,7 +171,9 @@ def test_the_bit_order_of_the_node_that_declares_the_message_holds(icd):
 
 
 def test_a_message_without_fields(icd):
-    assert to_text(decode(icd, "top", "42", b"")) == "top: 42 (telecommand 21), 0 bytes\n"
+    assert (
+        to_text(decode(icd, "top", "42", b"")) == "top: 42 (telecommand 21), 0 bytes\n"
+    )
 
 
 def test_names_cannot_write_to_the_terminal(tmp_path):

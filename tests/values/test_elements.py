@@ -1,4 +1,6 @@
-"""Elements that are given for the command line: by their index, and as many as there are."""
+"""Elements that are given for the command line: by their index, and as many as there
+are.
+"""
 
 from __future__ import annotations
 
@@ -56,11 +58,16 @@ def icd(tmp_path_factory):
     ],
 )
 def test_fewer_elements_than_there_always_are_are_refused(icd, message, given, raw):
-    with pytest.raises(BadValue, match=r"`A` has at least (1 element|2 elements), [01] given"):
+    with pytest.raises(
+        BadValue, match=r"`A` has at least (1 element|2 elements), [01] given"
+    ):
         encode(icd, "demo", message, given, raw)
 
 
-@pytest.mark.parametrize("name", ["gain[-1]", "gain[+1]", "gain[1.]", "gain[0x1]", "gain[01]", "gain[]", "gain[3]"])
+@pytest.mark.parametrize(
+    "name",
+    ["gain[-1]", "gain[+1]", "gain[1.]", "gain[0x1]", "gain[01]", "gain[]", "gain[3]"],
+)
 def test_an_index_is_taken_as_it_is_written(icd, name):
     with pytest.raises(BadValue, match="Gains has no field"):
         encode(icd, "demo", "Gains", ["gain[0]=1", f"{name}=2", "gain[2]=3"])

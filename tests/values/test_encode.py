@@ -30,7 +30,9 @@ def speed(icd, raw=False, **changes):
 
 
 def everything(icd, name: str, value: str, raw=False):
-    frame = encode(icd, "top", "Everything", given_as(EVERYTHING, **{name: value}), raw=raw)
+    frame = encode(
+        icd, "top", "Everything", given_as(EVERYTHING, **{name: value}), raw=raw
+    )
     return next(row for row in frame.rows if row.field.name.lower() == name.lower()).raw
 
 
@@ -47,11 +49,17 @@ def test_physical_values_by_words_of_the_fields_and_constants_by_themselves(icd)
 
 
 def test_raw_values(icd):
-    assert speed(icd, raw=True, x="100", y="-0x64", timeout="0xff").data.hex(" ") == "64 00 9c ff 5a ff"
+    assert (
+        speed(icd, raw=True, x="100", y="-0x64", timeout="0xff").data.hex(" ")
+        == "64 00 9c ff 5a ff"
+    )
 
 
 def test_decimals_are_taken_exactly_and_ties_go_to_even(icd):
-    assert [speed(icd, x=x).rows[0].raw for x in ("0.005", "0.015", "-0.005", "0.0050000000000000000001")] == [
+    assert [
+        speed(icd, x=x).rows[0].raw
+        for x in ("0.005", "0.015", "-0.005", "0.0050000000000000000001")
+    ] == [
         0,
         2,
         0,
@@ -74,7 +82,10 @@ def test_the_unit_may_be_written_out(icd, text):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"x": "327.68"}, "Commanded X speed: takes -327.68 to 327.67 deg/s, not 327.68"),
+        (
+            {"x": "327.68"},
+            "Commanded X speed: takes -327.68 to 327.67 deg/s, not 327.68",
+        ),
         ({"x": "1e999"}, "not 1e999"),
         ({"x": "nan"}, "Commanded X speed: `nan` is not a number (in deg/s)"),
         ({"x": "inf"}, "`inf` is not a number"),
@@ -97,8 +108,13 @@ def test_values_that_do_not_fit_are_refused(icd, changes, words):
 def test_with_raw_only_the_width_is_checked(icd):
     frame = speed(icd, raw=True, timeout="61", magic="1")
     assert frame.data[4:].hex() == "013d"
-    assert [row.remarks for row in frame.rows[2:]] == [("must be 90 (0x5A)",), ("above the maximum 60 s",)]
-    assert "takes 0 to 255, not 256" in str(refusal(speed, icd, raw=True, timeout="256"))
+    assert [row.remarks for row in frame.rows[2:]] == [
+        ("must be 90 (0x5A)",),
+        ("above the maximum 60 s",),
+    ]
+    assert "takes 0 to 255, not 256" in str(
+        refusal(speed, icd, raw=True, timeout="256")
+    )
     assert "`1.5` is not a whole number" in str(refusal(speed, icd, raw=True, x="1.5"))
 
 
@@ -107,7 +123,10 @@ def test_with_raw_only_the_width_is_checked(icd):
     [
         *(("enabled", text, 1) for text in ("true", "Yes", "ON", "1")),
         *(("enabled", text, 0) for text in ("false", "No", "OFF", "0")),
-        *(("mode", text, 7) for text in ("Auto reset", "auto_reset", "AutoReset", "reset", "7", "0x07")),
+        *(
+            ("mode", text, 7)
+            for text in ("Auto reset", "auto_reset", "AutoReset", "reset", "7", "0x07")
+        ),
         ("mode", "off", 0),
         ("ratio", "0.1", 0x3DCCCCCD),
         ("ratio", "50 %", 0x42480000),
@@ -131,19 +150,39 @@ def test_every_type(icd, name, value, raw):
     ("name", "value", "words"),
     [
         ("enabled", "maybe", "Enabled: `maybe` is neither true nor false"),
-        ("mode", "auto", "Mode: `auto` fits several members; members: 0 Off, 1 On, 7 Auto reset, 9 Auto retry"),
+        (
+            "mode",
+            "auto",
+            "Mode: `auto` fits several members; members: 0 Off, 1 On, 7 Auto reset, 9 Auto retry",
+        ),
         ("mode", "nope", "Mode: `nope` is no member of Switch; members: 0 Off"),
-        ("mode", "reserved", "Mode: `reserved` is 32 to 47: give the number; members: 0 Off, 1 On"),
+        (
+            "mode",
+            "reserved",
+            "Mode: `reserved` is 32 to 47: give the number; members: 0 Off, 1 On",
+        ),
         ("mode", "13", "Mode: 13 is not allowed: no member of Switch; members: 0 Off"),
-        ("mode", "300", "Mode: 300 is not allowed: no member of Switch; members: 0 Off"),
+        (
+            "mode",
+            "300",
+            "Mode: 300 is not allowed: no member of Switch; members: 0 Off",
+        ),
         ("ratio", "1e39", "Ratio: 1e39 is beyond what a 32-bit float can represent"),
         ("ratio", "-1e39", "Ratio: takes above 0 %, not -1e39"),
         ("ratio", "0", "Ratio: takes above 0 %, not 0"),
         ("ratio", "0x3f800000", "Ratio: `0x3f800000` is not a number"),
-        ("precise", "1e309", "Precise: 1e309 is beyond what a 64-bit float can represent"),
+        (
+            "precise",
+            "1e309",
+            "Precise: 1e309 is beyond what a 64-bit float can represent",
+        ),
         ("precise", "one", "Precise: `one` is not a number"),
         ("Key = Code", "0102", "Key = Code: 4 bytes are needed, 2 given"),
-        ("Key = Code", "010z0304", "Key = Code: character 4 of the bytes: `z` is not hexadecimal"),
+        (
+            "Key = Code",
+            "010z0304",
+            "Key = Code: character 4 of the bytes: `z` is not hexadecimal",
+        ),
     ],
 )
 def test_every_type_refuses_what_is_not_of_it(icd, name, value, words):
@@ -156,7 +195,9 @@ def test_raw_floats_are_bits_or_a_number(icd):
     assert everything(icd, "mode", "13", raw=True) == 13
     assert everything(icd, "mode", "on", raw=True) == 1
     assert everything(icd, "enabled", "on", raw=True) == 1
-    assert "takes 0 to 4294967295" in str(refusal(everything, icd, "ratio", "0x1FFFFFFFF", raw=True))
+    assert "takes 0 to 4294967295" in str(
+        refusal(everything, icd, "ratio", "0x1FFFFFFFF", raw=True)
+    )
 
 
 def test_all_missing_fields_are_named_at_once(icd):
@@ -166,7 +207,13 @@ def test_all_missing_fields_are_named_at_once(icd):
 
 
 def test_everything_wrong_is_said_at_once(icd):
-    error = refusal(encode, icd, "top", "Set Speed", ["x=1000", "speed=1", "y", "nope=1", "x=2", "timeout=a"])
+    error = refusal(
+        encode,
+        icd,
+        "top",
+        "Set Speed",
+        ["x=1000", "speed=1", "y", "nope=1", "x=2", "timeout=a"],
+    )
     assert str(error).splitlines() == [
         "`speed` fits several fields: `Commanded X speed`, `Commanded Y speed` (give more of the name)",
         "`y` is not of the form name=value (for instance `speed=100`)",
@@ -203,7 +250,9 @@ def test_what_decode_shows_raw_can_be_typed_back(icd, data):
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_a_double_is_the_nearest_to_its_decimal(value):
-    assert numbers.float_bits(repr(value), 64) == int.from_bytes(struct.pack("<d", value), "little")
+    assert numbers.float_bits(repr(value), 64) == int.from_bytes(
+        struct.pack("<d", value), "little"
+    )
 
 
 @given(st.integers(0, 2**32 - 1), st.fractions(0, 1))
@@ -211,7 +260,10 @@ def test_a_single_is_the_nearest_to_the_exact_decimal_not_to_a_double(bits, betw
     """Between any two neighbours the nearer one is taken, however close to the middle."""
     bits = bits & 0x7F7FFFFF if (bits >> 23) & 0xFF == 0xFF else bits & 0x7FFFFFFF
     bits = min(bits, 0x7F7FFFFE)
-    low, high = (Fraction(struct.unpack("<f", n.to_bytes(4, "little"))[0]) for n in (bits, bits + 1))
+    low, high = (
+        Fraction(struct.unpack("<f", n.to_bytes(4, "little"))[0])
+        for n in (bits, bits + 1)
+    )
     exact = low + (high - low) * between
     half = Fraction(1, 2)
     expected = bits + (between > half or (between == half and bits & 1))
@@ -221,7 +273,17 @@ def test_a_single_is_the_nearest_to_the_exact_decimal_not_to_a_double(bits, betw
 
 
 def test_the_shortest_text_of_a_float_is_read_back():
-    for bits in (0, 1, 0x007FFFFF, 0x00800000, 0x3DCCCCCD, 0x3F800001, 0x7F7FFFFF, 0x80000000, 0xC2F6E979):
+    for bits in (
+        0,
+        1,
+        0x007FFFFF,
+        0x00800000,
+        0x3DCCCCCD,
+        0x3F800001,
+        0x7F7FFFFF,
+        0x80000000,
+        0xC2F6E979,
+    ):
         value = struct.unpack("<f", bits.to_bytes(4, "little"))[0]
         assert numbers.float_bits(floats.text_of(value, 32), 32) == bits
     assert floats.text_of(struct.unpack("<f", struct.pack("<f", 0.1))[0], 32) == "0.1"
@@ -243,29 +305,59 @@ def test_exact_numbers_are_shown_as_decimals_where_they_end(value, text):
 
 
 def test_a_text_is_typed_as_it_is(icd):
-    sent = encode(icd, "top", "Version", ["software=u-blox 9", "hardware="], kind="telemetry")
+    sent = encode(
+        icd, "top", "Version", ["software=u-blox 9", "hardware="], kind="telemetry"
+    )
     assert sent.data == b"u-blox 9\0\0" + bytes(2)
-    bare = encode(icd, "top", "Version", ["software=" + "ff" * 10, "hardware=3100"], raw=True, kind="telemetry")
+    bare = encode(
+        icd,
+        "top",
+        "Version",
+        ["software=" + "ff" * 10, "hardware=3100"],
+        raw=True,
+        kind="telemetry",
+    )
     assert bare.data == b"\xff" * 10 + b"1\0"
 
 
 def test_a_view_says_what_the_fields_make_of_its_bits_and_is_not_set(icd):
     sent = encode(icd, "top", "Seen Twice", ["low=0x5A", "high=0x81"], kind="telemetry")
     assert sent.data == b"\x5a\x81"
-    assert [(row.field.name, row.text) for row in sent.rows] == [("Low", "90"), ("High", "129"), ("Most", "-1013.5")]
+    assert [(row.field.name, row.text) for row in sent.rows] == [
+        ("Low", "90"),
+        ("High", "129"),
+        ("Most", "-1013.5"),
+    ]
     for raw in (True, False):
-        refused = refusal(encode, icd, "top", "Seen Twice", ["low=1", "high=2", "most=3"], raw=raw, kind="telemetry")
+        refused = refusal(
+            encode,
+            icd,
+            "top",
+            "Seen Twice",
+            ["low=1", "high=2", "most=3"],
+            raw=raw,
+            kind="telemetry",
+        )
         assert str(refused) == "Most: an overlay field has no bits of its own"
 
 
 @pytest.mark.parametrize("text", ["12345678901", "\u00b5-blox"])
 def test_a_text_that_does_not_fit_is_refused(icd, text):
-    refused = refusal(encode, icd, "top", "Version", [f"software={text}", "hardware=1"], kind="telemetry")
+    refused = refusal(
+        encode,
+        icd,
+        "top",
+        "Version",
+        [f"software={text}", "hardware=1"],
+        kind="telemetry",
+    )
     assert str(refused) == f"Software: `{text}` is not of up to 10 ASCII characters"
 
 
 def test_an_array_takes_all_of_its_values_in_brackets(icd):
-    frame = encode(icd, "top", "Set Heaters", ["temperatures=[1, 2.5, -3]", "Levels=[1,4095]"])
+    frame = encode(
+        icd, "top", "Set Heaters", ["temperatures=[1, 2.5, -3]", "Levels=[1,4095]"]
+    )
     assert frame.data.hex(" ") == "64 00 fa 00 d4 fe 01 f0 ff"
     assert [row.text for row in frame.rows] == ["1", "2.5", "-3", "1", "4095"]
 
@@ -273,28 +365,51 @@ def test_an_array_takes_all_of_its_values_in_brackets(icd):
 @pytest.mark.parametrize("name", ["Temperatures", "temperatures", "temps"])
 def test_an_element_of_an_array_is_given_by_its_index(icd, name):
     values = [f"{name}[{index}]={index}" for index in range(3)]
-    assert encode(icd, "top", "Set Heaters", [*values, "levels=[0, 0]"]).data.hex(" ") == "00 00 64 00 c8 00 00 00 00"
+    assert (
+        encode(icd, "top", "Set Heaters", [*values, "levels=[0, 0]"]).data.hex(" ")
+        == "00 00 64 00 c8 00 00 00 00"
+    )
 
 
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        (["temperatures=[1, 2]", "levels=[0,0]"], "`temperatures` takes 3 values in brackets, 2 given"),
-        (["temperatures=7", "levels=[0,0]"], "`temperatures` takes 3 values in brackets, not 7"),
-        (["temperatures=[1, 2, 81]", "levels=[0,0]"], "Temperatures[2]: takes -327.68 to 80 C, not 81"),
-        (["temperatures=[1, 2, 3]", "levels=[0,4096]"], "Levels[1]: takes 0 to 4095, not 4096"),
-        (["temps=[1,2,3]", "temps[1]=1", "levels=[0,0]"], "`Temperatures[1]` is given twice: 2 and 1"),
+        (
+            ["temperatures=[1, 2]", "levels=[0,0]"],
+            "`temperatures` takes 3 values in brackets, 2 given",
+        ),
+        (
+            ["temperatures=7", "levels=[0,0]"],
+            "`temperatures` takes 3 values in brackets, not 7",
+        ),
+        (
+            ["temperatures=[1, 2, 81]", "levels=[0,0]"],
+            "Temperatures[2]: takes -327.68 to 80 C, not 81",
+        ),
+        (
+            ["temperatures=[1, 2, 3]", "levels=[0,4096]"],
+            "Levels[1]: takes 0 to 4095, not 4096",
+        ),
+        (
+            ["temps=[1,2,3]", "temps[1]=1", "levels=[0,0]"],
+            "`Temperatures[1]` is given twice: 2 and 1",
+        ),
         (["temps=[1,2,3]", "levels[0]=1"], "no value for `Levels[1]`"),
     ],
 )
-def test_what_an_array_does_not_take_is_said_of_the_array_or_of_its_element(icd, values, said):
+def test_what_an_array_does_not_take_is_said_of_the_array_or_of_its_element(
+    icd, values, said
+):
     with pytest.raises(BadValue) as caught:
         encode(icd, "top", "Set Heaters", values)
     assert said in str(caught.value)
 
 
-def test_a_value_beyond_the_limits_and_one_beyond_the_type_are_refused_with_the_same_range(icd):
+def test_a_value_beyond_the_limits_and_one_beyond_the_type_are_refused_with_the_same_range(
+    icd,
+):
     ranges = {
-        str(refusal(speed, icd, timeout=text)).rpartition(", not ")[0] for text in ("61", "254", "256", "100000", "-1")
+        str(refusal(speed, icd, timeout=text)).rpartition(", not ")[0]
+        for text in ("61", "254", "256", "100000", "-1")
     }
     assert ranges == {"Timeout: takes 0 to 60 s"}

@@ -43,7 +43,8 @@ def test_a_name_that_is_a_number_wins_over_the_id(icd):
 
 def test_an_id_of_both_directions_needs_the_kind(icd):
     with pytest.raises(
-        Ambiguous, match=r"`Everything` \(configuration 20/150\), `Everything Else` \(telecommand 150\)"
+        Ambiguous,
+        match=r"`Everything` \(configuration 20/150\), `Everything Else` \(telecommand 150\)",
     ):
         find_message(icd, "top", "150")
     assert find_message(icd, "top", "150", "telemetry").name == "Everything"
@@ -59,14 +60,36 @@ def test_an_id_of_both_directions_needs_the_kind(icd):
     [
         ("tip", "1", "there is no node `tip`", "did you mean `top`?"),
         ("xyz", "1", "there is no node `xyz`", "nodes: base, top"),
-        ("top", "Set Sped", "top has no message `Set Sped`", "did you mean `Set Speed`?"),
-        ("base", "Set Speed", "base has no message `Set Speed`", "it is a message of top"),
-        ("top", "300", "top has no message `300`", "`icdgen show top` lists what there is"),
+        (
+            "top",
+            "Set Sped",
+            "top has no message `Set Sped`",
+            "did you mean `Set Speed`?",
+        ),
+        (
+            "base",
+            "Set Speed",
+            "base has no message `Set Speed`",
+            "it is a message of top",
+        ),
+        (
+            "top",
+            "300",
+            "top has no message `300`",
+            "`icdgen show top` lists what there is",
+        ),
         ("top", "", "top has no message ``", "`icdgen show top` lists what there is"),
-        ("top", "?" * 10_000, "top has no message", "`icdgen show top` lists what there is"),
+        (
+            "top",
+            "?" * 10_000,
+            "top has no message",
+            "`icdgen show top` lists what there is",
+        ),
     ],
 )
-def test_what_is_not_there_is_answered_with_what_could_be_meant(icd, node, key, words, help):
+def test_what_is_not_there_is_answered_with_what_could_be_meant(
+    icd, node, key, words, help
+):
     with pytest.raises(NotFound) as caught:
         find_message(icd, node, key)
     assert words in str(caught.value)
@@ -90,16 +113,27 @@ def test_what_is_not_there_is_answered_with_what_could_be_meant(icd, node, key, 
 )
 def test_a_field_by_any_words_that_no_other_has(icd, message, key, name):
     found = find_message(icd, "top", message)
-    assert find_field(found, icd.longest_frame(found), key, find_node(icd, "top").vocabulary).name == name
+    assert (
+        find_field(
+            found, icd.longest_frame(found), key, find_node(icd, "top").vocabulary
+        ).name
+        == name
+    )
 
 
 def test_words_of_several_fields_are_refused(icd):
     message = find_message(icd, "top", "Set Speed")
-    with pytest.raises(Ambiguous, match="`speed` fits several fields: `Commanded X speed`, `Commanded Y speed`"):
+    with pytest.raises(
+        Ambiguous,
+        match="`speed` fits several fields: `Commanded X speed`, `Commanded Y speed`",
+    ):
         find_field(message, icd.longest_frame(message), "speed")
     with pytest.raises(NotFound) as caught:
         find_field(message, icd.longest_frame(message), "z")
-    assert caught.value.help == "fields: Commanded X speed, Commanded Y speed, Magic Number, Timeout"
+    assert (
+        caught.value.help
+        == "fields: Commanded X speed, Commanded Y speed, Magic Number, Timeout"
+    )
     with pytest.raises(NotFound) as caught:
         find_field(find_message(icd, "top", "42"), (), "z")
     assert caught.value.help == "it has no fields at all"

@@ -34,7 +34,12 @@ def frame(icd, message, *values):
         ("Turned Structs", ["inners=[]"], ""),
         (
             "Turned Structs",
-            ["inners[0].type=-2.75", "inners[0].flags=[1,0,0,1]", "inners[0].gauge=Last", "inners[0].text=x"],
+            [
+                "inners[0].type=-2.75",
+                "inners[0].flags=[1,0,0,1]",
+                "inners[0].gauge=Last",
+                "inners[0].text=x",
+            ],
             "01902c0178",
         ),
     ],
@@ -43,7 +48,13 @@ def test_what_is_given_is_counted(icd, message, values, expected):
     assert frame(icd, message, *values) == expected
 
 
-CURVE = ["between=First", "flags=[1,0,0,0,0,0,0,1]", "pair[0].v=0", "pair[1].v=0.1", "word=ab"]
+CURVE = [
+    "between=First",
+    "flags=[1,0,0,0,0,0,0,1]",
+    "pair[0].v=0",
+    "pair[1].v=0.1",
+    "word=ab",
+]
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +63,13 @@ def curves():
 
 
 def given_curves(*values):
-    """What is given for two curves: the same for each, but for the values, which have the names of their curves."""
-    return [*(f"curves[{number}].{value}" for number in (0, 1) for value in CURVE), *values]
+    """What is given for two curves: the same for each, but for the values, which have
+    the names of their curves.
+    """
+    return [
+        *(f"curves[{number}].{value}" for number in (0, 1) for value in CURVE),
+        *values,
+    ]
 
 
 def test_points_of_each_curve_are_counted_for_all(curves):
@@ -65,16 +81,35 @@ def test_points_of_each_curve_are_counted_for_all(curves):
     ]
     frame = encode.encode(curves, "curves", "Curves", given_curves(*points))
     ends = "0001" "{:06x}" "81" "0000fffe0001fffe" "616200"
-    assert frame.data.hex() == "01000002" + "00070005fffe" + ends.format(1) + "00070006fffe" + ends.format(2)
+    assert frame.data.hex() == "01000002" + "00070005fffe" + ends.format(
+        1
+    ) + "00070006fffe" + ends.format(2)
     assert {row.field.name: row.raw for row in frame.rows}["Points Count"] == 1
 
 
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        (["curves[0].points[0].v=1", "curves[0].levels[0]=0", "curves[1].levels[0]=0"], r"`Curves\[1\].Points\[0\].V`"),
-        (["curves[0].points[1].v=1", "curves[0].levels[0]=0", "curves[1].levels[0]=0"], r"`Curves\[0\].Points\[0\].V`"),
-        (["points count=1", "curves[0].points[1].v=1"], "`Points Count` is 1, so `Points` has 1 element, 2 given"),
+        (
+            [
+                "curves[0].points[0].v=1",
+                "curves[0].levels[0]=0",
+                "curves[1].levels[0]=0",
+            ],
+            r"`Curves\[1\].Points\[0\].V`",
+        ),
+        (
+            [
+                "curves[0].points[1].v=1",
+                "curves[0].levels[0]=0",
+                "curves[1].levels[0]=0",
+            ],
+            r"`Curves\[0\].Points\[0\].V`",
+        ),
+        (
+            ["points count=1", "curves[0].points[1].v=1"],
+            "`Points Count` is 1, so `Points` has 1 element, 2 given",
+        ),
         (["points count=0"], r"no value for `Curves\[0\].Levels\[0\]`"),
     ],
 )
@@ -90,9 +125,17 @@ def test_points_that_one_curve_lacks_are_said(curves, values, said):
         ("Narrow", ["number=3", "samples=[0,0,0,0,0,0]"], "up to 5 values"),
         ("Narrow", ["number=3", "samples[1]=0"], "not all elements before it"),
         ("Turned Structs", [], "no value for `Inners`"),
-        ("Turned Structs", ["inners[0].gauge=First"], r"no value for `Inners\[0\].Type`, `Inners\[0\].Flags\[0\]`"),
+        (
+            "Turned Structs",
+            ["inners[0].gauge=First"],
+            r"no value for `Inners\[0\].Type`, `Inners\[0\].Flags\[0\]`",
+        ),
         ("Turned Structs", ["inners=[1]"], "is made of structs"),
-        ("Gauges", ["gauges=[First]", "gauges count=2"], "`Gauges Count` is 2, and 1 element of `Gauges` is given"),
+        (
+            "Gauges",
+            ["gauges=[First]", "gauges count=2"],
+            "`Gauges Count` is 2, and 1 element of `Gauges` is given",
+        ),
         ("Payload", [f"data={'00' * 256}"], "up to 255 bytes"),
         ("Text", ["severity=1", f"match={'x' * 81}"], "80 ASCII characters"),
     ],
@@ -116,7 +159,9 @@ def test_only_what_is_in_a_frame_is_shown(icd):
 
 def test_a_frame_without_its_last_zeros_shows_all_fields(icd):
     (found,) = recognize(icd, "2f 60", "open", "Two")
-    assert [(row.field.name, row.raw) for row in found.frame.rows] == [("Whole", 0b011110110)]
+    assert [(row.field.name, row.raw) for row in found.frame.rows] == [
+        ("Whole", 0b011110110)
+    ]
     (found,) = recognize(icd, "2f", "open", "Two")
     assert [row.raw for row in found.frame.rows] == [0b011110000]
     (found,) = recognize(icd, "8c 00 05", "open")  # 140
@@ -129,7 +174,11 @@ def test_a_frame_without_its_last_zeros_shows_all_fields(icd):
     [
         ("Two", "00 00 00", "Two has 1 to 2 bytes, 3 given"),
         ("Narrow", "03 00", "Narrow has 1 to 16 bytes, 2 given"),
-        ("Gauges", "0300 0001", "8 are needed for as many elements as `Gauges Count` says"),
+        (
+            "Gauges",
+            "0300 0001",
+            "8 are needed for as many elements as `Gauges Count` says",
+        ),
         ("Gauges", "0000 0001", "2 are needed"),
     ],
 )

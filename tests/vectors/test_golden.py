@@ -1,4 +1,6 @@
-"""What the golden vectors promise, shown without the reference codec where that is possible."""
+"""What the golden vectors promise, shown without the reference codec where that is
+possible.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ from icdgen.vectors.write import decimal, text
 from tests.conformance import odd
 from tests.conformance.icds import icd_of, vectors_of
 
-SCHEMA = json.loads((Path(icdgen.__file__).parent / "vectors.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(icdgen.__file__).parent / "vectors.schema.json").read_text(encoding="utf-8")
+)
 
 
 @pytest.fixture(scope="module")
@@ -59,21 +63,29 @@ def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
 
 
 def test_raw_values_are_the_bits_of_the_frame(icd, files):
-    """The wire convention as the manual's readers know it: the frame is one little-endian integer."""
+    """The wire convention as the manual's readers know it: the frame is one
+    little-endian integer.
+    """
     seen = 0
     for node in icd.nodes:
-        for message, found in zip(node.messages, files[node.name]["messages"], strict=True):
+        for message, found in zip(
+            node.messages, files[node.name]["messages"], strict=True
+        ):
             for vector in found["vectors"]:
                 frame = int.from_bytes(bytes.fromhex(vector["bytes"]), "little")
                 for field, raw in zip(message.fields, vector["raw"], strict=True):
                     value = frame >> field.at & (1 << field.bits) - 1
                     if field.is_bytes:
-                        assert bytes.fromhex(raw) == value.to_bytes(field.bits // 8, "little")
+                        assert bytes.fromhex(raw) == value.to_bytes(
+                            field.bits // 8, "little"
+                        )
                     elif field.type == "float":
                         assert int(raw, 16) == value
                     else:
                         assert raw == (
-                            value - (1 << field.bits) if field.type == "int" and value >> field.bits - 1 else value
+                            value - (1 << field.bits)
+                            if field.type == "int" and value >> field.bits - 1
+                            else value
                         )
                     seen += 1
     assert seen > 40_000
@@ -81,20 +93,26 @@ def test_raw_values_are_the_bits_of_the_frame(icd, files):
 
 def test_reserved_bits_are_encoded_as_zeros(icd, files):
     for node in icd.nodes:
-        for message, found in zip(node.messages, files[node.name]["messages"], strict=True):
+        for message, found in zip(
+            node.messages, files[node.name]["messages"], strict=True
+        ):
             covered = 0
             for field in message.fields:
                 covered |= (1 << field.bits) - 1 << field.at
             for vector in found["vectors"]:
                 frame = int.from_bytes(bytes.fromhex(vector["bytes"]), "little")
-                encoded = int.from_bytes(bytes.fromhex(vector.get("encoded", vector["bytes"])), "little")
+                encoded = int.from_bytes(
+                    bytes.fromhex(vector.get("encoded", vector["bytes"])), "little"
+                )
                 assert encoded == frame & covered
 
 
 def test_any_two_bits_of_a_frame_can_be_told_apart(files):
     for message in messages(files):
         frames = [
-            int.from_bytes(bytes.fromhex(v["bytes"]), "little") for v in message["vectors"] if "position" in v["why"]
+            int.from_bytes(bytes.fromhex(v["bytes"]), "little")
+            for v in message["vectors"]
+            if "position" in v["why"]
         ]
         bits = message["length"] * 8
         codes = {tuple(frame >> bit & 1 for frame in frames) for bit in range(bits)}
@@ -114,7 +132,17 @@ def test_every_field_is_seen_at_the_ends_of_its_range_and_with_every_member(file
             elif field["type"] in ("uint", "bool", "enum"):
                 wanted = {0, (1 << bits) - 1}
             elif field["type"] == "float":
-                wanted = {32: {"7f800000", "ff800000", "7fc00000", "7f800001", "80000000", "ffa55a3c"}, 64: set()}[bits]
+                wanted = {
+                    32: {
+                        "7f800000",
+                        "ff800000",
+                        "7fc00000",
+                        "7f800001",
+                        "80000000",
+                        "ffa55a3c",
+                    },
+                    64: set(),
+                }[bits]
             if field["type"] == "enum":
                 enum = members[field["enum"]]
                 wanted |= {value for value, _ in enum["members"]}
@@ -126,13 +154,26 @@ def test_every_field_is_seen_at_the_ends_of_its_range_and_with_every_member(file
 def test_physical_values_are_exact_and_their_doubles_are_the_nearest(files):
     seen = 0
     for message in messages(files):
-        scaled = [(index, f) for index, f in enumerate(message["fields"]) if "factor" in f]
+        scaled = [
+            (index, f) for index, f in enumerate(message["fields"]) if "factor" in f
+        ]
         for vector in message["vectors"]:
-            rows = zip(scaled, vector.get("physical", ()), vector.get("doubles", ()), strict=True)
+            rows = zip(
+                scaled,
+                vector.get("physical", ()),
+                vector.get("doubles", ()),
+                strict=True,
+            )
             for (index, field), exact, bits in rows:
-                value = vector["raw"][index] * Fraction(field["factor"]) + Fraction(field["offset"])
+                value = vector["raw"][index] * Fraction(field["factor"]) + Fraction(
+                    field["offset"]
+                )
                 assert Fraction(exact) == value
-                assert struct.unpack(">d", bytes.fromhex(bits))[0] == float(Decimal(exact)) == float(exact)
+                assert (
+                    struct.unpack(">d", bytes.fromhex(bits))[0]
+                    == float(Decimal(exact))
+                    == float(exact)
+                )
                 seen += 1
     assert seen > 10_000
 
@@ -156,16 +197,33 @@ def test_settings_hold_exact_ties_both_ways_and_refusals(files):
 
 
 def test_ties_are_found_for_every_formula_that_has_them(odd_icd):
-    fields = {f.name: f for node in odd_icd.nodes for m in node.messages for f in m.fields if f.scale}
+    fields = {
+        f.name: f
+        for node in odd_icd.nodes
+        for m in node.messages
+        for f in m.fields
+        if f.scale
+    }
 
     def ties(field):
-        exact = [field.scale.raw(Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])) for bits, _ in settings(field)]
+        exact = [
+            field.scale.raw(Fraction(struct.unpack(">d", bytes.fromhex(bits))[0]))
+            for bits, _ in settings(field)
+        ]
         return sum(1 for value in exact if value.denominator == 2)
 
-    assert all(ties(fields[name]) >= 4 for name in ("Eleven", "Crossing", "Between", "A"))
-    assert ties(fields["Wide"]) >= 2  # 64 bits: near the end of the range no double lies half way
+    assert all(
+        ties(fields[name]) >= 4 for name in ("Eleven", "Crossing", "Between", "A")
+    )
+    assert (
+        ties(fields["Wide"]) >= 2
+    )  # 64 bits: near the end of the range no double lies half way
     third = Scalar(
-        name="raw + 1/3", at=0, bits=8, type="uint", scale=Scale(Fraction(1), Fraction(1, 3))
+        name="raw + 1/3",
+        at=0,
+        bits=8,
+        type="uint",
+        scale=Scale(Fraction(1), Fraction(1, 3)),
     )  # half way is never a double
     assert ties(third) == 0
 
@@ -180,7 +238,7 @@ def test_exact_decimals():
 def test_no_two_messages_share_their_vectors(files):
     """A dispatcher that confuses two messages of the same length must show."""
     for one, other in combinations(messages(files), 2):
-        if one["length"] == other["length"] > 0 and [f["type"] for f in one["fields"]] == [
-            f["type"] for f in other["fields"]
-        ]:
+        if one["length"] == other["length"] > 0 and [
+            f["type"] for f in one["fields"]
+        ] == [f["type"] for f in other["fields"]]:
             assert one["vectors"] != other["vectors"]

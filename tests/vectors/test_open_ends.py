@@ -1,4 +1,6 @@
-"""Golden vectors of messages with open ends: what notices that a field which counts is narrower than it should be."""
+"""Golden vectors of messages with open ends: what notices that a field which counts is
+narrower than it should be.
+"""
 
 from __future__ import annotations
 
@@ -20,17 +22,29 @@ messages:
       - {at: 8, bits: 8, name: Size, type: uint}
 """
 ONE = "      - {at: 16, bits: 8, name: Levels, type: uint, count: Count, up_to: 9}\n"
-TWO = ONE + "      - {at: 16, after: Levels, name: Rest, type: bytes, size: Size, up_to: 9}\n"
+TWO = (
+    ONE
+    + "      - {at: 16, after: Levels, name: Rest, type: bytes, size: Size, up_to: 9}\n"
+)
 
 
 @pytest.mark.parametrize(("parts", "counters"), [(ONE, [0]), (TWO, [0, 1])])
-def test_frames_are_refused_for_the_highest_bit_of_a_count_alone(tmp_path, parts, counters):
+def test_frames_are_refused_for_the_highest_bit_of_a_count_alone(
+    tmp_path, parts, counters
+):
     (tmp_path / "demo.yaml").write_text(ICD + parts, encoding="utf-8")
     icd = load([tmp_path / "demo.yaml"]).icd
     (message,) = make(icd, icd.node("demo")).messages
     frames = {row.frame for row in message.rows}
     for byte in counters:
         told = [frame for frame in message.miscounted if frame[byte] & 0x80]
-        without = [frame[:byte] + bytes([frame[byte] & 0x7F]) + frame[byte + 1 :] for frame in told]
+        without = [
+            frame[:byte] + bytes([frame[byte] & 0x7F]) + frame[byte + 1 :]
+            for frame in told
+        ]
         lengths = {len(frame) for frame in frames}
-        assert any(2 + sum(frame[one] for one in counters) == len(frame) and len(frame) in lengths for frame in without)
+        assert any(
+            2 + sum(frame[one] for one in counters) == len(frame)
+            and len(frame) in lengths
+            for frame in without
+        )

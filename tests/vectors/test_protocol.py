@@ -1,4 +1,6 @@
-"""The golden vectors of the protocol: as committed, in the published form, and answered by the reference."""
+"""The golden vectors of the protocol: as committed, in the published form, and answered
+by the reference.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ from tests.conformance.icds import LINKS, icd_of
 from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
 
-SCHEMA = json.loads((Path(icdgen.__file__).parent / "protocol.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads(
+    (Path(icdgen.__file__).parent / "protocol.schema.json").read_text(encoding="utf-8")
+)
 
 
 @pytest.fixture(scope="module")
@@ -41,14 +45,20 @@ def test_the_file_follows_the_published_schema(files, enveloped):
     validator.validate(files)
     validator.validate(enveloped)
     broken = json.loads(json.dumps(files))
-    case = next(c for c in broken["nodes"][0]["cases"] if c["request"]["op"] == "uart_events")
+    case = next(
+        c for c in broken["nodes"][0]["cases"] if c["request"]["op"] == "uart_events"
+    )
     case["answer"]["events"] = [{"event": "surprise"}]
     assert not validator.is_valid(broken)
 
 
-def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failure(files, enveloped):
+def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failure(
+    files, enveloped
+):
     nodes = (*files["nodes"], *enveloped["nodes"])
-    seen = Counter((c["request"]["op"], c["answer"]["ok"]) for n in nodes for c in n["cases"])
+    seen = Counter(
+        (c["request"]["op"], c["answer"]["ok"]) for n in nodes for c in n["cases"]
+    )
     assert {op for op, ok in seen if ok} == set(ops.OPS)
     assert {op for op, ok in seen if not ok} >= {
         "uart_encode", "can_split", "i2c_reply", "log_encode", "log_message_decode", "dos_time", "hole_map",
@@ -57,7 +67,13 @@ def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failur
 
 
 def test_every_kind_of_event_is_shown(files):
-    events = [e for n in files["nodes"] for c in n["cases"] for e in c["answer"].get("events", ()) if "event" in e]
+    events = [
+        e
+        for n in files["nodes"]
+        for c in n["cases"]
+        for e in c["answer"].get("events", ())
+        if "event" in e
+    ]
     assert {e["event"] for e in events} >= {
         "message", "unexpected_start", "protocol_error", "overrun", "empty", "duplicate", "incomplete", "malformed", "busy",
         "unknown_type",
@@ -102,12 +118,27 @@ def test_the_reference_answers_as_its_vectors_say(icd, files, tmp_path):
 
 def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
     ask = Reference(icd).answer
-    assert ask(b'{"op": "crc8", "bytes": "313233343536373839"}') == {"ok": True, "crc": 0x25}
-    assert ask(b'{"op": "crc16", "bytes": "313233343536373839"}') == {"ok": True, "crc": 0x31C3}
+    assert ask(b'{"op": "crc8", "bytes": "313233343536373839"}') == {
+        "ok": True,
+        "crc": 0x25,
+    }
+    assert ask(b'{"op": "crc16", "bytes": "313233343536373839"}') == {
+        "ok": True,
+        "crc": 0x31C3,
+    }
     assert ask(b'{"op": "crc8", "bytes": ""}') == {"ok": True, "crc": 0xFF}
-    assert ask(b'{"op": "uart_encode", "bytes": "1f00"}') == {"ok": True, "bytes": "1f7f1f1f001fff"}
-    assert ask(b'{"op": "uart_decode", "bytes": "551f7f1f1f001fff"}') == {"ok": True, "frames": ["1f00"]}
-    assert ask(b'{"op": "crc8", "node": "bootloader", "bytes": ""}') == {"ok": False, "error": "unsupported"}
+    assert ask(b'{"op": "uart_encode", "bytes": "1f00"}') == {
+        "ok": True,
+        "bytes": "1f7f1f1f001fff",
+    }
+    assert ask(b'{"op": "uart_decode", "bytes": "551f7f1f1f001fff"}') == {
+        "ok": True,
+        "frames": ["1f00"],
+    }
+    assert ask(b'{"op": "crc8", "node": "bootloader", "bytes": ""}') == {
+        "ok": False,
+        "error": "unsupported",
+    }
 
 
 def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_path):
@@ -132,4 +163,9 @@ def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_
                 "link_data",
             ):
                 assert answer == {"ok": False, "error": "unsupported"}, case
-            assert answer["ok"] or answer["error"] in ("unsupported", "unknown-id", "length", "request"), case
+            assert answer["ok"] or answer["error"] in (
+                "unsupported",
+                "unknown-id",
+                "length",
+                "request",
+            ), case

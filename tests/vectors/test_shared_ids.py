@@ -46,22 +46,39 @@ def demanded(icd: Icd, group, frame: bytes) -> object:
 
 
 def hold(icd: Icd, source: random.Random) -> int:
-    """Bytes that are looked at tell what the reference reads from fields; how many frames were compared."""
+    """Bytes that are looked at tell what the reference reads from fields.
+
+    How many frames were compared.
+    """
     compared = 0
     for node in icd.nodes:
         rows = make(icd, node).shared
-        for direction, known in zip(("telecommand", "telemetry"), ids_of(icd, node), strict=True):
+        for direction, known in zip(
+            ("telecommand", "telemetry"), ids_of(icd, node), strict=True
+        ):
             for id, group in known.items():
-                frames = [row.frame for row in rows if (row.direction, row.id) == (direction, id)]
+                frames = [
+                    row.frame
+                    for row in rows
+                    if (row.direction, row.id) == (direction, id)
+                ]
                 for frame in (
-                    [*frames, *(source.randbytes(one.message.length) for one in group)] if len(group) > 1 else ()
+                    [*frames, *(source.randbytes(one.message.length) for one in group)]
+                    if len(group) > 1
+                    else ()
                 ):
-                    assert told(icd, group, frame) == demanded(icd, group, frame), (direction, id, frame.hex())
+                    assert told(icd, group, frame) == demanded(icd, group, frame), (
+                        direction,
+                        id,
+                        frame.hex(),
+                    )
                     compared += 1
     return compared
 
 
-def test_the_bytes_that_code_looks_at_tell_what_the_reference_reads_from_constants(apart):
+def test_the_bytes_that_code_looks_at_tell_what_the_reference_reads_from_constants(
+    apart,
+):
     assert hold(apart, random.Random(1)) > 300
 
 
@@ -86,10 +103,24 @@ def test_every_message_of_a_shared_id_has_a_frame_and_so_has_none_of_them(apart)
 def test_a_general_message_takes_what_is_none_of_the_narrower_ones(apart):
     node = apart.node("apart")
     names = [one.message.name for one in ids_of(apart, node).telecommand[0x4C]]
-    assert names == ["Arm at once", "Reset command", "Short command", "Arm command", "Any command"]
+    assert names == [
+        "Arm at once",
+        "Reset command",
+        "Short command",
+        "Arm command",
+        "Any command",
+    ]
     known = [one.message for one in ids_of(apart, node).telecommand[0x4C]]
-    frames = {"567800000000": "Arm at once", "567800000001": "Arm command", "123456789abc": "Reset command"}
-    frames |= {"1234": "Short command", "000000000000": "Any command", "785600000000": "Any command"}
+    frames = {
+        "567800000000": "Arm at once",
+        "567800000001": "Arm command",
+        "123456789abc": "Reset command",
+    }
+    frames |= {
+        "1234": "Short command",
+        "000000000000": "Any command",
+        "785600000000": "Any command",
+    }
     for frame, name in frames.items():
         assert codec.message_of_frame(apart, known, bytes.fromhex(frame)).name == name
     assert codec.message_of_frame(apart, known, b"\x12\x35") is None

@@ -1,4 +1,6 @@
-"""Whatever messages a node has, and however few, its link has vectors that every language can be asked."""
+"""Whatever messages a node has, and however few, its link has vectors that every
+language can be asked.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ SOURCES = [
 
 
 def small(source: Path, folder: Path, chosen: random.Random, count: int) -> Path:
-    """The node of ``source`` with a few of its messages, some of which are not acknowledged."""
+    """The node of ``source`` with a few of its messages, some of which are not
+    acknowledged.
+    """
     tree = yaml.safe_load(source.read_text(encoding="utf-8"))
     messages = tree.get("messages", [])
     tree["messages"] = chosen.sample(messages, min(count, len(messages)))
@@ -37,7 +41,9 @@ def small(source: Path, folder: Path, chosen: random.Random, count: int) -> Path
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 @pytest.mark.parametrize("count", range(4))
-def test_a_node_of_a_few_messages_has_vectors_and_no_question_that_is_none(tmp_path, source, count):
+def test_a_node_of_a_few_messages_has_vectors_and_no_question_that_is_none(
+    tmp_path, source, count
+):
     chosen = random.Random(count)
     made = 0
     for _ in range(8):

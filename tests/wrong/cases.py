@@ -1,4 +1,5 @@
-"""The wrong ICDs: every ``<theme>/<case>.yaml``, beside it the exact report in ``<case>.txt``.
+"""The wrong ICDs: every ``<theme>/<case>.yaml``, beside it the exact report in
+``<case>.txt``.
 
 Files in sub-folders (``errata/``, ``parts/``) belong to the cases of their theme.
 """

@@ -35,7 +35,11 @@ def tree_of(path: Path) -> Any:
 
 def places(tree: Any, before: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
     """The keys and indexes that lead to each value."""
-    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    items = (
+        tree.items()
+        if isinstance(tree, dict)
+        else enumerate(tree) if isinstance(tree, list) else ()
+    )
     for key, value in items:
         yield (*before, key)
         yield from places(value, (*before, key))
@@ -52,7 +56,9 @@ def at(tree: Any, place: tuple[Any, ...]) -> Any:
 def test_any_value_in_any_place_ends_in_findings(tmp_path_factory, data):
     tree = copy.deepcopy(tree_of(data.draw(st.sampled_from(FILES))))
     place = data.draw(st.sampled_from([*places(tree)]))
-    others = st.sampled_from([*places(tree)]).map(lambda other: copy.deepcopy(at(tree, other)))
+    others = st.sampled_from([*places(tree)]).map(
+        lambda other: copy.deepcopy(at(tree, other))
+    )
     at(tree, place[:-1])[place[-1]] = data.draw(st.sampled_from(JUNK) | others)
     path = tmp_path_factory.mktemp("any") / "any.yaml"
     path.write_text(yaml.safe_dump(tree, sort_keys=False, allow_unicode=True), "utf-8")

@@ -1,4 +1,6 @@
-"""Corrected lines in reports: whoever writes them into the file gets rid of the finding."""
+"""Corrected lines in reports: whoever writes them into the file gets rid of the
+finding.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +60,9 @@ def _findings(case: Path) -> list[Finding]:
         return load([Path(case.name)]).findings
 
 
-WITH_FIXES = [case for case in CASES if any(one.fix is not None for one in _findings(case))]
+WITH_FIXES = [
+    case for case in CASES if any(one.fix is not None for one in _findings(case))
+]
 
 
 @pytest.mark.parametrize("case", WITH_FIXES, ids=name)
@@ -74,7 +78,9 @@ def test_a_corrected_line_ends_the_finding(case, tmp_path):
         original = path.read_bytes().decode()
         lines = original.splitlines(keepends=True)
         line = lines[place.line - 1]
-        lines[place.line - 1] = line[: place.column - 1] + text + line[place.column - 1 + place.length :]
+        lines[place.line - 1] = (
+            line[: place.column - 1] + text + line[place.column - 1 + place.length :]
+        )
         path.write_text("".join(lines))
         after = _findings(copy)
         path.write_bytes(original.encode())
@@ -86,5 +92,8 @@ def test_a_corrected_line_ends_the_finding(case, tmp_path):
 def test_values_that_span_lines_have_no_corrected_line(tmp_path):
     """Their place is their first character, so a correction would leave the rest."""
     path = tmp_path / "demo.yaml"
-    path.write_text(ICD.format("bits: 1, name: A, type: enum, enum: Mo\n          de X") + "    # Mode\n")
+    path.write_text(
+        ICD.format("bits: 1, name: A, type: enum, enum: Mo\n          de X")
+        + "    # Mode\n"
+    )
     assert [one.fix for one in load([path]).findings if one.code == "ICD040"] == [None]

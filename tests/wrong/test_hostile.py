@@ -1,4 +1,7 @@
-"""Files made to hurt end in a finding, quickly; those that are too large to keep are made here."""
+"""Files made to hurt end in a finding, quickly.
+
+Those that are too large to keep are made here.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,18 @@ from icdgen import reports
 from icdgen.icd.source import MAX_BYTES
 from icdgen.loading import load
 
-HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+HEAD = (
+    "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+)
 
 
 @pytest.fixture
 def check(tmp_path, monkeypatch):
-    """Writes a file, loads it, and gives ``(code, message)`` of each finding; all of it within two seconds of
-    processor time, as a bound of what hostile files may cost."""
+    """Writes a file, loads it, and gives ``(code, message)`` of each finding.
+
+    All of it within two seconds of processor time, as a bound of what hostile files may
+    cost.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(text: str, longest: int = 20_000) -> list[tuple[str, str]]:
@@ -57,7 +65,12 @@ def test_ten_thousand_levels_of_indentation(check):
 
 def test_a_formula_of_nothing_but_parentheses(check):
     field = "{at: 0, bits: 8, name: Angle, type: uint, formula: %s}"
-    message = HEAD + "messages: [{name: Status, id: 130, kind: telemetry, length: 1, fields: [" + field + "]}]\n"
+    message = (
+        HEAD
+        + "messages: [{name: Status, id: 130, kind: telemetry, length: 1, fields: ["
+        + field
+        + "]}]\n"
+    )
     (found,) = check(message % ("(" * 900 + "raw" + ")" * 90))
     assert found[0] == "ICD060"
     (found,) = check(message % ("(" * 199 + "5"))
@@ -71,7 +84,11 @@ def test_names_of_ten_thousand_characters_are_cut_in_reports(check):
 
 
 def test_a_name_that_is_one_vocabulary_word_thousands_of_times(check):
-    message = "messages: [{name: " + "Cube" * 2_000 + ", id: 1, kind: telecommand, length: 3}]\n"
+    message = (
+        "messages: [{name: "
+        + "Cube" * 2_000
+        + ", id: 1, kind: telecommand, length: 3}]\n"
+    )
     codes = {code for code, _ in check(HEAD + "vocabulary: [Cube]\n" + message)}
     assert codes == {"ICD024"}
 
@@ -83,7 +100,9 @@ def test_an_empty_vocabulary_word(check):
 
 
 def test_thousands_of_fields_over_one_another(check):
-    fields = "".join(f"      - {{at: 0, bits: 8, name: F{n}, type: uint}}\n" for n in range(3_000))
+    fields = "".join(
+        f"      - {{at: 0, bits: 8, name: F{n}, type: uint}}\n" for n in range(3_000)
+    )
     head = "messages:\n  - name: Status\n    id: 130\n    kind: telemetry\n    length: 1\n    fields:\n"
     found = check(HEAD + head + fields, longest=1_200_000)
     assert {code for code, _ in found} == {"ICD021"}
@@ -92,7 +111,10 @@ def test_thousands_of_fields_over_one_another(check):
 
 def test_a_file_that_is_not_there(tmp_path):
     (found,) = load([tmp_path / "nothing.yaml"]).findings
-    assert (found.code, found.message) == ("ICD001", "cannot read the file: No such file or directory")
+    assert (found.code, found.message) == (
+        "ICD001",
+        "cannot read the file: No such file or directory",
+    )
 
 
 def test_a_nul_written_as_an_escape(check):

@@ -1,4 +1,7 @@
-"""Every wrong ICD gives exactly the report that stands beside it; every rule has a wrong ICD."""
+"""Every wrong ICD gives exactly the report that stands beside it.
+
+Every rule has a wrong ICD.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +21,21 @@ def test_the_report_is_exactly_the_expected_one(case):
 def test_there_is_a_wrong_icd_for_every_rule():
     found = set()
     for case in CASES:
-        found.update(re.findall(r"\[(ICD[0-9]{3})\]", case.with_suffix(".txt").read_text(encoding="utf-8")))
+        found.update(
+            re.findall(
+                r"\[(ICD[0-9]{3})\]",
+                case.with_suffix(".txt").read_text(encoding="utf-8"),
+            )
+        )
     assert found == set(rules.ALL)
 
 
 def test_every_wrong_icd_has_findings():
-    assert [name(c) for c in CASES if "ICD" not in c.with_suffix(".txt").read_text(encoding="utf-8")] == []
+    assert [
+        name(c)
+        for c in CASES
+        if "ICD" not in c.with_suffix(".txt").read_text(encoding="utf-8")
+    ] == []
 
 
 def test_every_expected_report_belongs_to_a_wrong_icd():

@@ -1,4 +1,7 @@
-"""``python -m tests.xtce [ICD ...]``: XTCE of ICDs read back and compared; without arguments of many, see `sets`."""
+"""``python -m tests.xtce [ICD ...]``: XTCE of ICDs read back and compared.
+
+Without arguments of many, see `sets`.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,9 @@ from tests.xtce.sets import sets
 def main(arguments: list[str]) -> int:
     whole = Compared()
     with tempfile.TemporaryDirectory() as folder:
-        made = {"given": list(map(Path, arguments))} if arguments else sets(Path(folder))
+        made = (
+            {"given": list(map(Path, arguments))} if arguments else sets(Path(folder))
+        )
         for number, (name, icds) in enumerate(made.items()):
             found = Compared()
             (out := Path(folder, f"out{number}")).mkdir()

@@ -1,4 +1,6 @@
-"""Random frames decoded by space-packet-parser, as the file that is generated tells it, and by the reference codec."""
+"""Random frames decoded by space-packet-parser, as the file that is generated tells it,
+and by the reference codec.
+"""
 
 from __future__ import annotations
 
@@ -16,23 +18,40 @@ from icdgen.icd.places import raw_fields_in
 from tests.xtce.readback import SPACE
 
 
-def differences(icd: Icd, node: Node, file: Path, frames: int, seed: int) -> Iterator[tuple[int, str]]:
-    """Of each frame how many values were compared, and what is not alike of them; nothing if all is."""
+def differences(
+    icd: Icd, node: Node, file: Path, frames: int, seed: int
+) -> Iterator[tuple[int, str]]:
+    """Of each frame how many values were compared, and what is not alike of them.
+
+    Nothing if all is.
+    """
     from space_packet_parser.xtce.definitions import XtcePacketDefinition
 
     judge, chance = XtcePacketDefinition.from_xtce(file), random.Random(seed)
     for type_ in judge.parameter_types.values():
         if hasattr(type_, "enumeration"):
             type_.enumeration = _Any(type_.enumeration)
-    names = {one.get("name"): alias(one) for one in ElementTree.parse(file).iterfind(f".//{SPACE}Parameter")}
-    width = next(one for one in judge.parameters.values() if one.name == "Id").parameter_type.encoding.size_in_bits // 8
+    names = {
+        one.get("name"): alias(one)
+        for one in ElementTree.parse(file).iterfind(f".//{SPACE}Parameter")
+    }
+    width = (
+        next(
+            one for one in judge.parameters.values() if one.name == "Id"
+        ).parameter_type.encoding.size_in_bits
+        // 8
+    )
     for message in icd.messages_of(node):
         if message.telemetry_id is None:
             continue
         declared = icd.node(message.node)
         for _ in range(frames):
             frame = chance.randbytes(message.length)
-            fixed = {one: one.const for one in frame_fields(message.layout, declared.orders) if one.const is not None}
+            fixed = {
+                one: one.const
+                for one in frame_fields(message.layout, declared.orders)
+                if one.const is not None
+            }
             frame = codec.frame_of(frame, fixed)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -54,7 +73,9 @@ def alias(parameter: ElementTree.Element) -> str:
     return parameter.get("name", "") if found is None else found.get("alias", "")
 
 
-def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[int, str]:
+def _compare(
+    node: Node, message: Message, frame: bytes, theirs: dict
+) -> tuple[int, str]:
     raw = codec.decode(node, message, frame)
     for field in raw_fields_in(message.layout):
         ours, its = raw[field.name], theirs[field.name].raw_value
@@ -65,7 +86,11 @@ def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[
         if its != ours and not (its != its and ours != ours):
             return 0, f"{message.name}: {field.name} is {ours!r}, theirs {its!r}"
         if field.has_formula and not isinstance(ours, bytes):
-            exact, read = codec.physical_double(field, int(raw[field.name])), float(theirs[field.name])
-            if exact == exact and not math.isclose(exact or 0.0, read, rel_tol=1e-9, abs_tol=1e-12):
+            exact, read = codec.physical_double(field, int(raw[field.name])), float(
+                theirs[field.name]
+            )
+            if exact == exact and not math.isclose(
+                exact or 0.0, read, rel_tol=1e-9, abs_tol=1e-12
+            ):
                 return 0, f"{message.name}: {field.name} is {exact}, theirs {read}"
     return len(raw_fields_in(message.layout)), ""

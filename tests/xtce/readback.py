@@ -1,4 +1,6 @@
-"""ICDs as XTCE and back: what `icdgen import` reads of the file that is generated is compared with the ICD that it was made of."""
+"""ICDs as XTCE and back: what `icdgen import` reads of the file that is generated is
+compared with the ICD that it was made of.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,10 @@ SPACE = "{http://www.omg.org/spec/XTCE/20180204}"
 
 @dataclass
 class Compared:
-    """``differences`` are lines for people; ``notes`` what files say that XTCE has no word for."""
+    """``differences`` are lines for people.
+
+    ``notes`` what files say that XTCE has no word for.
+    """
 
     nodes: int = 0
     messages: int = 0
@@ -45,11 +50,16 @@ def compare(icds: list[Path], out: Path, into: Compared) -> None:
     for name, file in write(loaded.icd, out).items():
         node = loaded.icd.node(name)
         into.nodes += 1
-        into.notes += [f"{name}: {one.text}" for one in ElementTree.parse(file).iterfind(f".//{SPACE}Note")]
+        into.notes += [
+            f"{name}: {one.text}"
+            for one in ElementTree.parse(file).iterfind(f".//{SPACE}Note")
+        ]
         ours = messages(loaded.icd, node)
         into.messages += len({name for _, name in ours})
         into.fields += sum(len(one["fields"]) for one in ours.values())
-        into.differences += [f"{name}: {one}" for one in _differences(ours, read_back(file, out))]
+        into.differences += [
+            f"{name}: {one}" for one in _differences(ours, read_back(file, out))
+        ]
 
 
 def read_back(file: Path, out: Path) -> dict[tuple[str, str], dict]:
@@ -69,7 +79,10 @@ def read_back(file: Path, out: Path) -> dict[tuple[str, str], dict]:
 
 
 def _differences(ours: dict, theirs: dict) -> list[str]:
-    found = [f"{' '.join(key)} is {'new' if key in theirs else 'gone'}" for key in ours.keys() ^ theirs.keys()]
+    found = [
+        f"{' '.join(key)} is {'new' if key in theirs else 'gone'}"
+        for key in ours.keys() ^ theirs.keys()
+    ]
     for key in ours.keys() & theirs.keys():
         found += _unlike(" ".join(key), ours[key], theirs[key])
     return sorted(found)

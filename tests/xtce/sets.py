@@ -1,4 +1,6 @@
-"""ICDs of which XTCE is made and read back: the shipped ones, those of other devices and links, the documented, and odd ones."""
+"""ICDs of which XTCE is made and read back: the shipped ones, those of other devices
+and links, the documented, and odd ones.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +23,13 @@ def sets(folder: Path) -> dict[str, list[Path]]:
     (inner := folder / "odd").mkdir()
     found["odd"] = sorted(odd.write(inner).glob("*.yaml"))
     (inner := folder / "hostile").mkdir()
-    found["hostile"] = [path for path in of_c.write(inner) if path.stem in ("hostile", "silent")]
+    found["hostile"] = [
+        path for path in of_c.write(inner) if path.stem in ("hostile", "silent")
+    ]
     for number, text in enumerate(
-        text for page in documents.pages() for text in documents.icds(page.read_text("utf-8"))
+        text
+        for page in documents.pages()
+        for text in documents.icds(page.read_text("utf-8"))
     ):
         path = folder / f"example{number}.yaml"
         path.write_text(text, encoding="utf-8")

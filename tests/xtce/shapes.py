@@ -1,7 +1,9 @@
-"""``YAMCS_LIB=FOLDER python -m tests.xtce.shapes [FRAMES]``: Yamcs judges what `icdgen import` makes of the shapes of public files.
+"""``YAMCS_LIB=FOLDER python -m tests.xtce.shapes [FRAMES]``: Yamcs judges what `icdgen
+import` makes of the shapes of public files.
 
-Random packets of telemetry are decoded by Yamcs from the files of XTCE, and by the reference codec from the imported ICD; commands
-are encoded by both. The folder has the jars of Yamcs, as for `tests.xtce.yamcs`.
+Random packets of telemetry are decoded by Yamcs from the files of XTCE, and by the
+reference codec from the imported ICD; commands are encoded by both. The folder has the
+jars of Yamcs, as for `tests.xtce.yamcs`.
 """
 
 from __future__ import annotations
@@ -40,7 +42,9 @@ def main(arguments: list[str]) -> int:
         for root, files in DATABASES.items():
             icd = _imported(files, Path(folder, root))
             values, unlike = _compared(icd, root, files, [jars, folder], frames)
-            print(f"{root:<12} {values:6} values {len(unlike):4} differences", flush=True)
+            print(
+                f"{root:<12} {values:6} values {len(unlike):4} differences", flush=True
+            )
             print("".join(f"    {one}\n" for one in unlike[:20]), end="", flush=True)
             found += unlike
     return 1 if found else 0
@@ -56,20 +60,30 @@ def _imported(files: list[Path], folder: Path) -> Icd:
     return load(paths).icd
 
 
-def _compared(icd: Icd, root: str, files: list[Path], classes: list[str], frames: int) -> tuple[int, list[str]]:
+def _compared(
+    icd: Icd, root: str, files: list[Path], classes: list[str], frames: int
+) -> tuple[int, list[str]]:
     """How many values are alike, and what is not."""
     (node,) = icd.nodes
     chance, asked = random.Random(1), []
     telemetry = [one for one in icd.messages_of(node) if one.telemetry_id is not None]
     for message in telemetry:
-        fixed = {one: one.const for one in frame_fields(message.layout, node.orders) if one.const is not None}
+        fixed = {
+            one: one.const
+            for one in frame_fields(message.layout, node.orders)
+            if one.const is not None
+        }
         for count in range(frames):
             frame = codec.frame_of(chance.randbytes(message.length), fixed)
-            head = struct.pack(">HHH", message.telemetry_id, 0xC000 | count, len(frame) - 1)
+            head = struct.pack(
+                ">HHH", message.telemetry_id, 0xC000 | count, len(frame) - 1
+            )
             asked.append((message, frame, head + frame))
     text = "".join(f"{packet.hex()}\n" for _, _, packet in asked)
     command = ["java", "-cp", ":".join(classes), "Shapes", root, *map(str, files)]
-    said = subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout.splitlines()
+    said = subprocess.run(
+        command, input=text, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     commands = (one.split("\t") for one in said if one.startswith("command"))
     packets = {name: bytes.fromhex(data) for _, name, data in commands}
     printed = [one.split("\t")[1:] for one in said if one.startswith("telemetry")]
@@ -80,20 +94,36 @@ def _compared(icd: Icd, root: str, files: list[Path], classes: list[str], frames
         for field in message.fields:
             values += 1
             if not _is_same(field, raw[field.name], theirs.get(field.name, "")):
-                unlike.append(f"{message.name}: {field.name} is {raw[field.name]}, theirs {theirs.get(field.name)}")
+                unlike.append(
+                    f"{message.name}: {field.name} is {raw[field.name]}, theirs {theirs.get(field.name)}"
+                )
     for message in (one for one in icd.messages_of(node) if one not in telemetry):
-        given = {one.name: _FREE if one.const is None else one.const for one in message.fields}
+        given = {
+            one.name: _FREE if one.const is None else one.const
+            for one in message.fields
+        }
         values += 1
-        ours, packet = codec.encode(node, message, given), packets.get(message.name, b"")
-        if (ours, message.telecommand_id) != (packet[6:], struct.unpack(">H", packet[:2])[0] & 0x7FF):
+        ours, packet = codec.encode(node, message, given), packets.get(
+            message.name, b""
+        )
+        if (ours, message.telecommand_id) != (
+            packet[6:],
+            struct.unpack(">H", packet[:2])[0] & 0x7FF,
+        ):
             unlike.append(f"{message.name} is {ours.hex()}, theirs {packet.hex()}")
     return values, unlike
 
 
 def _is_same(field: NodePlace, ours: object, theirs: str) -> bool:
-    if field.type == "float":  # of 32 bits, printed with as many digits as tell it from others
+    if (
+        field.type == "float"
+    ):  # of 32 bits, printed with as many digits as tell it from others
         value = codec.float_value(field, int(ours))
-        return theirs == "NaN" if value != value else struct.pack(">f", float(theirs)) == struct.pack(">f", value)
+        return (
+            theirs == "NaN"
+            if value != value
+            else struct.pack(">f", float(theirs)) == struct.pack(">f", value)
+        )
     return theirs.isdecimal() and int(theirs) == int(ours)
 
 

@@ -1,4 +1,5 @@
-"""`icdgen --lang xtce`: files that keep to the standard, mean what the ICD means, and are decoded so by another program.
+"""`icdgen --lang xtce`: files that keep to the standard, mean what the ICD means, and
+are decoded so by another program.
 
 `python -m tests.xtce` compares more of them.
 """
@@ -24,7 +25,11 @@ SHIPPED = sorted((ROOT / "icd").glob("*.yaml"))
 @pytest.fixture(scope="module")
 def others(tmp_path_factory):
     found = sets(tmp_path_factory.mktemp("icds"))
-    return [paths for name, paths in found.items() if name in OTHERS or "derived:" in paths[0].read_text("utf-8")]
+    return [
+        paths
+        for name, paths in found.items()
+        if name in OTHERS or "derived:" in paths[0].read_text("utf-8")
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +41,9 @@ def test_all_shipped_messages_come_back_as_they_are(tmp_path):
     found = Compared()
     compare(SHIPPED, tmp_path, found)
     assert (found.nodes, found.differences, found.notes) == (5, [], [])
-    assert found.messages > 171 and found.fields > 1251  # those of included nodes are in each file
+    assert (
+        found.messages > 171 and found.fields > 1251
+    )  # those of included nodes are in each file
 
 
 def test_everything_else_comes_back_but_for_what_has_a_name(others, tmp_path):
@@ -47,7 +54,10 @@ def test_everything_else_comes_back_but_for_what_has_a_name(others, tmp_path):
     assert found.differences == [] and found.nodes > 25
     assert any("has no fixed size" in note for note in found.notes)
     assert any("no word for the order of its bits" in note for note in found.notes)
-    assert any("`Longitude` is left out: it is derived by `Lon + Lon HP`" in note for note in found.notes)
+    assert any(
+        "`Longitude` is left out: it is derived by `Lon + Lon HP`" in note
+        for note in found.notes
+    )
 
 
 def test_files_are_those_of_the_standard(shipped, others, tmp_path):
@@ -56,14 +66,18 @@ def test_files_are_those_of_the_standard(shipped, others, tmp_path):
         (out := tmp_path / f"{number}").mkdir()
         write(load(icds, check=False).icd, out)
     for file in tmp_path.rglob("*.xml"):
-        found = validate_xtce(file, level="schema", raise_on_error=False, print_results=False)
+        found = validate_xtce(
+            file, level="schema", raise_on_error=False, print_results=False
+        )
         assert found.valid, (file, [one.message for one in found.errors][:3])
 
 
 def test_another_program_decodes_frames_as_the_reference_does(shipped, tmp_path):
     values = 0
     for name, file in write(shipped, tmp_path).items():
-        for count, unlike in differences(shipped, shipped.node(name), file, frames=2, seed=1):
+        for count, unlike in differences(
+            shipped, shipped.node(name), file, frames=2, seed=1
+        ):
             assert not unlike
             values += count
     assert values > 2000
@@ -72,10 +86,17 @@ def test_another_program_decodes_frames_as_the_reference_does(shipped, tmp_path)
 def test_a_wrong_place_is_noticed_by_both(shipped, tmp_path):
     file = write(shipped, tmp_path)["cubemag"]
     text = file.read_text("utf-8")
-    wrong = re.sub(r'(?<=byteOrder=")least(?=SignificantByteFirst")', "most", text, count=1)
+    wrong = re.sub(
+        r'(?<=byteOrder=")least(?=SignificantByteFirst")', "most", text, count=1
+    )
     assert wrong != text
     file.write_text(wrong, "utf-8")
-    assert any(unlike for _, unlike in differences(shipped, shipped.node("cubemag"), file, frames=4, seed=1))
+    assert any(
+        unlike
+        for _, unlike in differences(
+            shipped, shipped.node("cubemag"), file, frames=4, seed=1
+        )
+    )
 
 
 def test_texts_of_an_icd_are_only_texts(tmp_path):
@@ -91,7 +112,9 @@ def test_texts_of_an_icd_are_only_texts(tmp_path):
     root = ElementTree.parse(write(loaded.icd, tmp_path)["odd"]).getroot()
     aliases = [one.get("alias") for one in root.iter(f"{SPACE}Alias")]
     said = 'a "b" <c/> & {{ 7*7 }} ]]> --> é'
-    assert aliases == ["<&>", said] and [one.text for one in root.iter(f"{SPACE}LongDescription")] == [said]
+    assert aliases == ["<&>", said] and [
+        one.text for one in root.iter(f"{SPACE}LongDescription")
+    ] == [said]
 
 
 def test_what_a_command_lacks_keeps_it_out_and_is_said(tmp_path):
@@ -104,10 +127,16 @@ def test_what_a_command_lacks_keeps_it_out_and_is_said(tmp_path):
     loaded = load([tmp_path / "radio.yaml"])
     assert loaded.ok
     root = ElementTree.parse(write(loaded.icd, tmp_path)["radio"]).getroot()
-    assert [one.get("name") for one in root.iter(f"{SPACE}MetaCommand")] == ["TelecommandFrame", "Reset"]
+    assert [one.get("name") for one in root.iter(f"{SPACE}MetaCommand")] == [
+        "TelecommandFrame",
+        "Reset",
+    ]
     assert [one.text for one in root.iter(f"{SPACE}Note")] == [
         "telecommand `Write`: `Data`, which has no fixed size, is left out",
         "telecommand `Write` is left out",
     ]
     (hazard,) = root.iter(f"{SPACE}DefaultSignificance")
-    assert hazard.attrib == {"consequenceLevel": "critical", "reasonForWarning": "It restarts."}
+    assert hazard.attrib == {
+        "consequenceLevel": "critical",
+        "reasonForWarning": "It restarts.",
+    }

@@ -1,7 +1,9 @@
-"""``YAMCS_LIB=FOLDER python -m tests.xtce.yamcs [FRAMES]``: random frames decoded by Yamcs from the generated files.
+"""``YAMCS_LIB=FOLDER python -m tests.xtce.yamcs [FRAMES]``: random frames decoded by
+Yamcs from the generated files.
 
-The folder has the jars of Yamcs, from Maven or of the package `fprime-yamcs-bundle`; `java` and `javac` must be there. All values
-are compared with those of the reference codec.
+The folder has the jars of Yamcs, from Maven or of the package `fprime-yamcs-bundle`;
+`java` and `javac` must be there. All values are compared with those of the reference
+codec.
 """
 
 from __future__ import annotations
@@ -42,16 +44,26 @@ def main(arguments: list[str]) -> int:
             (out := Path(folder, f"out{number}")).mkdir()
             values, unlike = 0, []
             for node, file in write(icd, out).items():
-                for count, text in _compared(icd, icd.node(node), file, [jars, folder], frames):
+                for count, text in _compared(
+                    icd, icd.node(node), file, [jars, folder], frames
+                ):
                     values += count
                     unlike += [f"{node}: {text}"] if text else []
-            print(f"{name:<12} {values:7} values {len(unlike):4} differences", flush=True)
-            print("".join(f"    {one}\n" for one in sorted(set(unlike))[:20]), end="", flush=True)
+            print(
+                f"{name:<12} {values:7} values {len(unlike):4} differences", flush=True
+            )
+            print(
+                "".join(f"    {one}\n" for one in sorted(set(unlike))[:20]),
+                end="",
+                flush=True,
+            )
             found += unlike
     return 1 if found else 0
 
 
-def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int) -> list[tuple[int, str]]:
+def _compared(
+    icd: Icd, node: Node, file: Path, classes: list[str], frames: int
+) -> list[tuple[int, str]]:
     """Of each frame how many values are alike, and what is not."""
     chance, asked = random.Random(1), []
     messages = [one for one in icd.messages_of(node) if one.telemetry_id is not None]
@@ -63,23 +75,50 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
             owner = icd.node(message.node)
             fields = frame_fields(message.layout, owner.orders)
             frame = chance.randbytes(message.length)
-            frame = codec.frame_of(frame, {one: one.const for one in fields if one.const is not None})
+            frame = codec.frame_of(
+                frame, {one: one.const for one in fields if one.const is not None}
+            )
             if message.layout.parts and not message.layout.has_gaps:
                 (part,) = message.layout.parts
                 has_more = has_open_end(message) and not part.is_rest
-                more = chance.randint(0, min(MOST, part.high - part.low)) if has_more else 0
+                more = (
+                    chance.randint(0, min(MOST, part.high - part.low))
+                    if has_more
+                    else 0
+                )
                 frame = patterns.cut(message, owner, frame, part.fewest + more)
             elif message.layout.parts:
-                frame = codec.encode(owner, message, codec.initial_values(owner, message))
-            asked.append((message, frame, (message.telemetry_id << head).to_bytes(width, "big") + frame))
+                frame = codec.encode(
+                    owner, message, codec.initial_values(owner, message)
+                )
+            asked.append(
+                (
+                    message,
+                    frame,
+                    (message.telemetry_id << head).to_bytes(width, "big") + frame,
+                )
+            )
     root = ElementTree.parse(file).getroot()
-    names = {one.get("name", ""): line(alias(one)) for one in root.iterfind(f".//{SPACE}Parameter")}
-    containers = {line(alias(one)): f"{one.get('name')}_" for one in root.iterfind(f".//{SPACE}SequenceContainer")}
+    names = {
+        one.get("name", ""): line(alias(one))
+        for one in root.iterfind(f".//{SPACE}Parameter")
+    }
+    containers = {
+        line(alias(one)): f"{one.get('name')}_"
+        for one in root.iterfind(f".//{SPACE}SequenceContainer")
+    }
     text = "".join(f"{data.hex()}\n" for _, _, data in asked)
     command = ["java", "-cp", ":".join(classes), "Decode", file]
-    said = subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout.splitlines()
+    said = subprocess.run(
+        command, input=text, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     return [
-        _unlike(icd.node(message.node), message, frame, _read(printed, names, containers[line(message.name)]))
+        _unlike(
+            icd.node(message.node),
+            message,
+            frame,
+            _read(printed, names, containers[line(message.name)]),
+        )
         for (message, frame, _), printed in zip(asked, said, strict=True)
     ]
 
@@ -92,7 +131,9 @@ def _head(file: Path) -> tuple[int, int]:
     names = [one.get("parameterRef") for one in entries]
     if "Apid" in names:
         return 32, 6
-    encoding = ElementTree.parse(file).find(f".//{SPACE}IntegerParameterType/{SPACE}IntegerDataEncoding")
+    encoding = ElementTree.parse(file).find(
+        f".//{SPACE}IntegerParameterType/{SPACE}IntegerDataEncoding"
+    )
     assert encoding is not None
     return 0, int(encoding.get("sizeInBits", "8")) // 8
 
@@ -100,7 +141,11 @@ def _head(file: Path) -> tuple[int, int]:
 def _read(said: str, names: dict[str, str], container: str) -> Values:
     """The parameters of a container: a frame may be of others, too, that share its id."""
     parts = (one.partition("=") for one in said.split("\t") if one)
-    return {names[name]: _pair(value) for name, _, value in parts if name.startswith(container)}
+    return {
+        names[name]: _pair(value)
+        for name, _, value in parts
+        if name.startswith(container)
+    }
 
 
 def _pair(text: str) -> tuple[str, str]:
@@ -108,15 +153,27 @@ def _pair(text: str) -> tuple[str, str]:
     return raw, physical
 
 
-def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple[int, str]:
+def _unlike(
+    node: Node, message: Message, frame: bytes, theirs: Values
+) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
     end = 8 * (len(frame) if has_open_end(message) else message.layout.length)
     for field in message.fields:
-        is_left_out = field.is_count or field.derived or field.at >= end or not is_ordered(field, node)
+        is_left_out = (
+            field.is_count
+            or field.derived
+            or field.at >= end
+            or not is_ordered(field, node)
+        )
         if (
             is_left_out
             or field.is_bytes
-            or (field.is_read_only and not all(is_ordered(one, node) for one in raw_fields_in(message.layout)))
+            or (
+                field.is_read_only
+                and not all(
+                    is_ordered(one, node) for one in raw_fields_in(message.layout)
+                )
+            )
         ):
             continue
         name, index = line(field.name), None
@@ -124,11 +181,18 @@ def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple
             name, index = name.rpartition("[")[0], field.index
         if field.name not in raw:
             if name in theirs:
-                return count, f"{message.name}: {field.name} is not there, theirs {theirs[name][0]}"
+                return (
+                    count,
+                    f"{message.name}: {field.name} is not there, theirs {theirs[name][0]}",
+                )
             continue
         if name not in theirs:
             return count, f"{message.name}: {field.name} is missing"
-        said = theirs[name] if index is None else tuple(_element(one, index) for one in theirs[name])
+        said = (
+            theirs[name]
+            if index is None
+            else tuple(_element(one, index) for one in theirs[name])
+        )
         if text := _one(field, int(raw[field.name]), *said):
             return count, f"{message.name}: {text}"
         count += 1
@@ -152,13 +216,22 @@ def _one(field: NodePlace, raw: int, theirs: str, physical: str) -> str:
         return f"{field.name} is {ours}, theirs {theirs}"
     if field.has_formula:
         exact = codec.physical_double(field, raw)
-        if exact is not None and exact == exact and not _close(exact, float(physical), 1e-9):
+        if (
+            exact is not None
+            and exact == exact
+            and not _close(exact, float(physical), 1e-9)
+        ):
             return f"{field.name} is {exact}, theirs {physical} of {theirs}"
     return ""
 
 
 def _close(one: float, other: float, part: float) -> bool:
-    return one == other or one != one or math.isclose(one, other, rel_tol=part, abs_tol=1e-12) or _single(one) == other
+    return (
+        one == other
+        or one != one
+        or math.isclose(one, other, rel_tol=part, abs_tol=1e-12)
+        or _single(one) == other
+    )
 
 
 def _single(value: float) -> float:

@@ -49,11 +49,14 @@ class Backend(Language, Protocol):
     Its ``name`` is the value of ``--lang`` and the name of its template folder.
     """
 
-    # Optional: `named_in`, the languages whose declared names its output contains (default: its own language).
-    # Plug-ins only: `templates` and `runtime`, the folders (`Path`) of its templates and of files to copy.
-    # Files of `--templates` have precedence over both.
+    # Optional: `named_in`, the languages whose declared names its output contains
+    # (default: its own language). Plug-ins only: `templates` and `runtime`, the folders
+    # (`Path`) of its templates and of files to copy. Files of `--templates` have
+    # precedence over both.
 
-    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str | bytes]]:
+    def files(
+        self, icd: Icd, render: Renderer
+    ) -> Iterator[tuple[PurePosixPath, str | bytes]]:
         """Yield each file as relative path and content (text or bytes), in a fixed
         order.
         """
@@ -87,8 +90,12 @@ def plug_ins() -> dict[str, list[EntryPoint]]:
     from importlib.metadata import entry_points
 
     points_by_name: dict[str, list[EntryPoint]] = {}
-    for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
-        if point.name not in _BUILT_IN and point not in points_by_name.setdefault(point.name, []):
+    for point in sorted(
+        entry_points(group=GROUP), key=lambda point: (point.name, point.value)
+    ):
+        if point.name not in _BUILT_IN and point not in points_by_name.setdefault(
+            point.name, []
+        ):
             points_by_name[point.name].append(point)
     return points_by_name
 
@@ -127,8 +134,14 @@ def not_ours(languages: Iterable[str]) -> list[Backend]:
 
 
 def named_in(chosen: Iterable[Backend]) -> tuple[str, ...]:
-    """Return the built-in languages whose declared names the output of these backends contains."""
-    languages = (name for backend in chosen for name in getattr(backend, "named_in", (backend.name,)))
+    """Return the built-in languages whose declared names the output of these backends
+    contains.
+    """
+    languages = (
+        name
+        for backend in chosen
+        for name in getattr(backend, "named_in", (backend.name,))
+    )
     return tuple(name for name in dict.fromkeys(languages) if name in _BUILT_IN)
 
 

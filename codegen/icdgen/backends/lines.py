@@ -16,7 +16,14 @@ STEP = "    "
 _BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")
 
 
-def bracketed(head: str, items: Sequence[str], tail: str, width: int, indent: str = "", last: str = ",") -> str:
+def bracketed(
+    head: str,
+    items: Sequence[str],
+    tail: str,
+    width: int,
+    indent: str = "",
+    last: str = ",",
+) -> str:
     """Return ``head`` (with an opening bracket), ``items`` and ``tail`` (with the
     closing bracket), on one line if they fit.
 
@@ -24,15 +31,23 @@ def bracketed(head: str, items: Sequence[str], tail: str, width: int, indent: st
     the line; the first line is returned without it.
     """
     line = f"{head}{', '.join(items)}{tail}"
-    return line if len(indent) + len(line) <= width and "\n" not in line else exploded(head, items, tail, indent, last)
+    return (
+        line
+        if len(indent) + len(line) <= width and "\n" not in line
+        else exploded(head, items, tail, indent, last)
+    )
 
 
-def exploded(head: str, items: Sequence[str], tail: str, indent: str = "", last: str = ",") -> str:
+def exploded(
+    head: str, items: Sequence[str], tail: str, indent: str = "", last: str = ","
+) -> str:
     """Return the items with one line each."""
     if not items:
         return f"{head}{tail}"
     rows = f",\n{indent}{STEP}".join(items)
-    return f"{head}\n{indent}{STEP}{rows}{last}" + (f"\n{indent}{tail}" if last else tail)
+    return f"{head}\n{indent}{STEP}{rows}{last}" + (
+        f"\n{indent}{tail}" if last else tail
+    )
 
 
 def wrapped(text: str, width: int) -> list[str]:
@@ -58,10 +73,16 @@ def plain(text: str) -> str:
     """
     # Bidirectional control characters can disguise code in comments (CVE-2021-42574).
     text = one_line(text)
-    return text if text.isprintable() else "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
+    return (
+        text
+        if text.isprintable()
+        else "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
+    )
 
 
-def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool = False) -> list[str]:
+def commented(
+    paragraphs: Iterable[str], width: int, start: str, is_spaced: bool = False
+) -> list[str]:
     """Return the lines of a comment, each after ``start``.
 
     ``is_spaced``: separate paragraphs by an empty line.
@@ -69,7 +90,9 @@ def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool
     lines: list[str] = []
     for paragraph in filter(None, paragraphs):
         lines += [start.rstrip()] if lines and is_spaced else []
-        lines += [start + tamed(line) for line in wrapped(paragraph, width - len(start))]
+        lines += [
+            start + tamed(line) for line in wrapped(paragraph, width - len(start))
+        ]
     return lines
 
 
@@ -80,10 +103,17 @@ def tamed(line: str) -> str:
     if line[:1].isalpha():
         return line
     word, space, following = line.partition(" ")
-    return _BLOCK.sub(r"\1\\\2", word, count=1) + space + following if _BLOCK.match(word) else line
+    return (
+        _BLOCK.sub(r"\1\\\2", word, count=1) + space + following
+        if _BLOCK.match(word)
+        else line
+    )
 
 
 def in_rows(items: Iterable[str], count: int) -> list[str]:
     """Return rows of ``count`` items, each item with a trailing comma."""
     items_with_commas = [f"{item}," for item in items]
-    return [" ".join(items_with_commas[first : first + count]) for first in range(0, len(items_with_commas), count)]
+    return [
+        " ".join(items_with_commas[first : first + count])
+        for first in range(0, len(items_with_commas), count)
+    ]

@@ -27,7 +27,9 @@ class Brackets:
 
     def within(self, before: str, after: str) -> Brackets:
         """Return the brackets with additional text before and after."""
-        return replace(self, opening=before + self.opening, closing=self.closing + after)
+        return replace(
+            self, opening=before + self.opening, closing=self.closing + after
+        )
 
 
 class Item(NamedTuple):
@@ -38,7 +40,9 @@ class Item(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def written(value: str | Brackets, note: Callable[[str, str], str], indent: str = "") -> str:
+def written(
+    value: str | Brackets, note: Callable[[str, str], str], indent: str = ""
+) -> str:
     """Return the text of a literal whose first line has the indentation ``indent``.
 
     ``note``: function that returns a comment for a text and its indentation.

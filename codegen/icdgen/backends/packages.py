@@ -59,11 +59,16 @@ def of_project(config: Config) -> Packages:
     return Packages(**names)
 
 
-def _refused(config: Config, section: str, key: str, name: str, problem: str) -> UserError:
+def _refused(
+    config: Config, section: str, key: str, name: str, problem: str
+) -> UserError:
     place = config.place_of_key(section, key)
     shown = name[:60]
     help = f'for instance {key} = "battery_icd"'
-    return UserError(f"{place.file}:{place.line}:{place.column}: `{key}` cannot be `{shown}`: it {problem}", help)
+    return UserError(
+        f"{place.file}:{place.line}:{place.column}: `{key}` cannot be `{shown}`: it {problem}",
+        help,
+    )
 
 
 def _problem(section: str, name: str) -> str:
@@ -87,5 +92,9 @@ def _problem(section: str, name: str) -> str:
         if name in _CRATES:
             return "is a crate that comes with the compiler"
     if section == "c" and (name == "icd" or name.endswith("_")):
-        return "is the beginning of the names of the support layer" if name == "icd" else "ends with _, which is added"
+        return (
+            "is the beginning of the names of the support layer"
+            if name == "icd"
+            else "ends with _, which is added"
+        )
     return ""

@@ -45,16 +45,23 @@ class PlugIn:
         """
         if len(points) > 1:
             each = " and ".join(f"`{point.value}`{_package(point)}" for point in points)
-            raise UserError(f"there are {len(points)} backends `{points[0].name}`: {each}", "uninstall all but one")
+            raise UserError(
+                f"there are {len(points)} backends `{points[0].name}`: {each}",
+                "uninstall all but one",
+            )
         return cls(points[0])
 
-    def files(self, icd: Icd, render: Any) -> Iterator[tuple[PurePosixPath, str | bytes]]:
+    def files(
+        self, icd: Icd, render: Any
+    ) -> Iterator[tuple[PurePosixPath, str | bytes]]:
         """Yield the files of the backend."""
         with self._named("failed"):
             for file in self._files(icd, render):
                 path, text = file
                 if not (isinstance(path, PurePath) and isinstance(text, (str, bytes))):
-                    raise TypeError(f"`files` gives pairs of path and text or bytes, not {file!r:.100}")
+                    raise TypeError(
+                        f"`files` gives pairs of path and text or bytes, not {file!r:.100}"
+                    )
                 yield PurePosixPath(path), text
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

@@ -40,6 +40,13 @@ class VectorsBackend:
         JSON strings can contain any name, so only file names can conflict.
         """
         if any(icd.protocol_of(node) for node in icd.nodes):
-            yield Identifier("the files of the vectors", FILE, "vectors of the protocol", None)
+            yield Identifier(
+                "the files of the vectors", FILE, "vectors of the protocol", None
+            )
         for node in icd.nodes:
-            yield Identifier("the files of the vectors", node.name, f"node `{node.name}`", node.source)
+            yield Identifier(
+                "the files of the vectors",
+                node.name,
+                f"node `{node.name}`",
+                node.source,
+            )

@@ -29,7 +29,9 @@ class _Path(click.Path):
     folder.
     """
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         if value == "":
             self.fail("the path is empty", param, ctx)
         return super().convert(value, param, ctx)
@@ -48,7 +50,9 @@ class _Seconds(click.FloatRange):
 
     name = "seconds"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
         seconds: float = click.FLOAT.convert(value, param, ctx)
         if not 0 <= seconds <= 86400:
             self.fail(f"{value} is not in the range 0<=x<=86400.", param, ctx)
@@ -69,7 +73,11 @@ def known_languages() -> str:
     for name, points in backends.plug_ins().items():
         packages = dict.fromkeys(point.dist.name for point in points if point.dist)
         plug_in_names.append(f"{name} ({', '.join(packages)})")
-    return f"{named}, and of other packages {', '.join(plug_in_names)}" if plug_in_names else named
+    return (
+        f"{named}, and of other packages {', '.join(plug_in_names)}"
+        if plug_in_names
+        else named
+    )
 
 
 def say(text: str, err: bool = False) -> None:
@@ -95,12 +103,20 @@ def icd_option(command: Command) -> Command:
 def kind_option(command: Command) -> Command:
     """Option ``--kind`` of commands that take the id of a message."""
     kinds = click.Choice(["telecommand", "telemetry", "configuration"])
-    return click.option("--kind", type=kinds, help="Kind of the message, if an id is ambiguous.")(command)
+    return click.option(
+        "--kind", type=kinds, help="Kind of the message, if an id is ambiguous."
+    )(command)
 
 
 def format_option(*forms: str) -> Callable[[Command], Command]:
     """Option ``--format``; the first format is the default."""
-    return click.option("--format", "form", type=click.Choice(forms), default=forms[0], show_default=True)
+    return click.option(
+        "--format",
+        "form",
+        type=click.Choice(forms),
+        default=forms[0],
+        show_default=True,
+    )
 
 
 def print_frame(frame: Frame) -> None:
@@ -118,7 +134,9 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
     try:
         configuration = config.find(Path.cwd())
     except FileNotFoundError:
-        raise UserError("the current folder is no longer there", "change to another one") from None
+        raise UserError(
+            "the current folder is no longer there", "change to another one"
+        ) from None
     paths = list(icds) or configuration.icds or [shipped.icds()]
     # Functions of this module also run outside of a command, in tests.
     context = click.get_current_context(silent=True)
@@ -137,7 +155,10 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
     if not configuration.icds:
         if not error.help.startswith("nodes: "):
             return error
-        return NotFound(str(error), f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml")
+        return NotFound(
+            str(error),
+            f"{error.help}, which come with icdgen; name yours with --icd, or in icdgen.toml",
+        )
     path = configuration.path
     for file in sorted(shipped.icds().glob("*.yaml")):
         # The message of the error names the missing node.
@@ -151,7 +172,11 @@ def beside_shipped(error: UserError, context: click.Context) -> UserError:
 
 def _short(path: Path) -> Path:
     here = Path.cwd()
-    return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
+    return (
+        path.relative_to(here)
+        if path.is_absolute() and path.is_relative_to(here)
+        else path
+    )
 
 
 def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
@@ -197,7 +222,9 @@ def write_file(path: Path, text: str, help: str) -> None:
         raise UserError(f"cannot write {path}: {error.strerror}", help) from None
 
 
-def print_findings(findings: list[Finding], texts: dict[str, str], form: str, err: bool = False) -> None:
+def print_findings(
+    findings: list[Finding], texts: dict[str, str], form: str, err: bool = False
+) -> None:
     """Print findings in one of ``reports.FORMATS``."""
     from icdgen import reports
 
@@ -207,26 +234,37 @@ def print_findings(findings: list[Finding], texts: dict[str, str], form: str, er
     findings, texts = _where_named(findings, texts)
     report = reports.get(form)
     text = report(findings, texts, colour=True) if colour else report(findings, texts)
-    click.echo(text, err=err, nl=bool(text) and not text.endswith("\n"), color=colour or None)
+    click.echo(
+        text, err=err, nl=bool(text) and not text.endswith("\n"), color=colour or None
+    )
 
 
-def _where_named(findings: list[Finding], texts: dict[str, str]) -> tuple[list[Finding], dict[str, str]]:
+def _where_named(
+    findings: list[Finding], texts: dict[str, str]
+) -> tuple[list[Finding], dict[str, str]]:
     """Return findings and texts.
 
     For an unreadable ICD that ``icdgen.toml`` names, the place is the entry in
     ``icdgen.toml``.
     """
     context = click.get_current_context(silent=True)
-    configuration: config.Config | None = context.meta.get(_CONFIG_KEY) if context is not None else None
+    configuration: config.Config | None = (
+        context.meta.get(_CONFIG_KEY) if context is not None else None
+    )
     if configuration is None or configuration.path is None:
         return findings, texts
     file = str(_short(configuration.path))
-    places = {str(_short(icd)): configuration.place_of(icd)._replace(file=file) for icd in configuration.icds}
+    places = {
+        str(_short(icd)): configuration.place_of(icd)._replace(file=file)
+        for icd in configuration.icds
+    }
     placed_findings = []
     for finding in findings:
         name = finding.place.file
         if name in places and name not in texts:
-            finding = finding._replace(message=f"`{name}`: {finding.message}", place=places[name])
+            finding = finding._replace(
+                message=f"`{name}`: {finding.message}", place=places[name]
+            )
             texts = {**texts, file: configuration.text}
         placed_findings.append(finding)
     return placed_findings, texts

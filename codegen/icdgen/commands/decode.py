@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
-from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit, print_frame, say
+from icdgen.commands.common import (
+    format_option,
+    icd_option,
+    kind_option,
+    load_or_exit,
+    print_frame,
+    say,
+)
 from icdgen.errors import UserError, unreadable
 
 if TYPE_CHECKING:
@@ -22,21 +29,40 @@ if TYPE_CHECKING:
 # Digits of a 32-bit id, and of a byte in hexadecimal or decimal notation
 _LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)
 _MOST = 1_000_000  # maximum size of an input in bytes
-_CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks", "time")
+_CSV = (
+    "frame",
+    "node",
+    "message",
+    "direction",
+    "id",
+    "field",
+    "raw",
+    "value",
+    "unit",
+    "remarks",
+    "time",
+)
 
 
 @click.command(epilog='Example: icdgen decode wheels 146 "2efb 0a00 0000"')
-@click.argument("arguments", nargs=-1, required=True, metavar="[NODE [MESSAGE]] FRAME...")
+@click.argument(
+    "arguments", nargs=-1, required=True, metavar="[NODE [MESSAGE]] FRAME..."
+)
 @icd_option
 @kind_option
 @format_option("text", "json", "csv")
-def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str) -> None:
-    """Decode frames: hex in any spelling, base64, C arrays, dumps, candump and slcan lines.
+def decode(
+    arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str
+) -> None:
+    """Decode frames: hex in any spelling, base64, C arrays, dumps, candump and slcan
+    lines.
 
-    FRAME can include its framing, id and checksum. It can also be - for standard input, @FILE, or the name of a file with text
-    or received bytes, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are only needed if the frame does
-    not identify them; ambiguous frames are reported. JSON output is an object, or an array for several frames. Exit status: 1
-    if a constant field has another value or if a packet between the frames cannot be decoded, 2 if no frame can be decoded.
+    FRAME can include its framing, id and checksum. It can also be - for standard input,
+    @FILE, or the name of a file with text or received bytes, with any number of frames.
+    NODE (a name) and MESSAGE (an id or a name) are only needed if the frame does not
+    identify them; ambiguous frames are reported. JSON output is an object, or an array
+    for several frames. Exit status: 1 if a constant field has another value or if a
+    packet between the frames cannot be decoded, 2 if no frame can be decoded.
     """
     from icdgen import recognize
 
@@ -44,18 +70,30 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     node, message, frame = _split_arguments(icd, list(arguments), kind)
     readings = recognize.recognize(icd, frame, node, message, kind)
     # The user may have meant an id that the node does not have.
-    if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
+    if (
+        node is not None
+        and message is None
+        and arguments[0].lower() == node
+        and arguments[1].isdecimal()
+    ):
         note = f"{node} has no message {arguments[1]}: it is taken for the first byte of the frame"
-        readings = [reading if reading.id is not None else reading.with_remarks(note) for reading in readings]
+        readings = [
+            reading if reading.id is not None else reading.with_remarks(note)
+            for reading in readings
+        ]
     {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](readings)
     left_out = [text for reading in readings for text in reading.left_out]
     if form == "csv":  # the other forms have it among the remarks
         for text in left_out:
             say(f"left out: {text}", err=True)
-    sys.exit(1 if left_out or any(reading.has_wrong_constant for reading in readings) else 0)
+    sys.exit(
+        1 if left_out or any(reading.has_wrong_constant for reading in readings) else 0
+    )
 
 
-def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
+def _split_arguments(
+    icd: Icd, words: list[str], kind: str | None
+) -> tuple[str | None, str | None, str | bytes]:
     """Return node, message and frame.
 
     A word is a node or a message if one of that name exists.
@@ -67,7 +105,10 @@ def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str 
     # With a single node, its name may be omitted.
     only = only_node(icd)
     if len(words) == 1 and words[0].lower() in {n.name for n in icd.nodes}:
-        raise UserError(f"there is no frame for {words[0]}", "give it after the node, or - for standard input")
+        raise UserError(
+            f"there is no frame for {words[0]}",
+            "give it after the node, or - for standard input",
+        )
     # The first word is a node, a message of the only node, or the start of the frame.
     if len(words) > 1:
         if words[0].lower() in {n.name for n in icd.nodes}:
@@ -87,7 +128,10 @@ def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str 
             # A hexadecimal word such as 146 can be an unknown id or the first byte of
             # the frame.
             if _is_id(words):
-                raise NotFound(str(error), f"{error.help}; a frame that begins so is given as one word") from None
+                raise NotFound(
+                    str(error),
+                    f"{error.help}; a frame that begins so is given as one word",
+                ) from None
         # Several messages share the id; the frame decides which one it is.
         except Ambiguous:
             if not find_sharing(icd, node, words[0], kind):
@@ -98,7 +142,9 @@ def _split_arguments(icd: Icd, words: list[str], kind: str | None) -> tuple[str 
     return node, message, _content(words)
 
 
-def _is_message(messages: Sequence[Message], words: list[str], vocabulary: tuple[str, ...]) -> bool:
+def _is_message(
+    messages: Sequence[Message], words: list[str], vocabulary: tuple[str, ...]
+) -> bool:
     """Return whether the first word is the name or id of a message, and not part of the
     frame.
     """
@@ -132,7 +178,9 @@ def _is_id(words: list[str]) -> bool:
     """
     first, *following_words = words
     may_be_id = first.isdecimal() and len(first) <= _LONGEST_ID
-    return may_be_id and any(len(word) not in (len(first), *_OF_BYTE) for word in following_words)
+    return may_be_id and any(
+        len(word) not in (len(first), *_OF_BYTE) for word in following_words
+    )
 
 
 def _is_frame(words: list[str]) -> bool:
@@ -152,11 +200,18 @@ def _content(words: list[str]) -> str | bytes:
     """Return the frame itself, or the content of the named file."""
     name = words[0]
     # A file named like hex digits needs the prefix @.
-    if len(words) > 1 or (name != "-" and not name.startswith("@") and (_is_bytes(name) or not _is_file(name))):
+    if len(words) > 1 or (
+        name != "-"
+        and not name.startswith("@")
+        and (_is_bytes(name) or not _is_file(name))
+    ):
         return " ".join(words)
     if name == "-":
         if sys.stdin is None:
-            raise UserError("standard input is closed", "pipe the frame in, or give it as an argument")
+            raise UserError(
+                "standard input is closed",
+                "pipe the frame in, or give it as an argument",
+            )
         return _frames_in(sys.stdin.buffer, "standard input")
     path = name.removeprefix("@")
     try:
@@ -227,10 +282,20 @@ def _print_csv(readings: Sequence[Reading]) -> None:
             "" if reading.id is None else reading.id,
         )
         if reading.frame is None or not reading.frame.rows:
-            writer.writerow((*start, "", "", "", "", "; ".join(reading.remarks), reading.time))
+            writer.writerow(
+                (*start, "", "", "", "", "; ".join(reading.remarks), reading.time)
+            )
         for row in reading.frame.rows if reading.frame else ():
             unit = row.field.unit_symbol
             writer.writerow(
-                (*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks), reading.time)
+                (
+                    *start,
+                    row.field.name,
+                    row.raw_text,
+                    row.text,
+                    unit,
+                    "; ".join(row.remarks),
+                    reading.time,
+                )
             )
     click.echo(out.getvalue(), nl=False)

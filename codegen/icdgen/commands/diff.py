@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import PATH, chosen, format_option, in_colour, print_findings, write_file
+from icdgen.commands.common import (
+    PATH,
+    chosen,
+    format_option,
+    in_colour,
+    print_findings,
+    write_file,
+)
 from icdgen.diagnostics import Findings
 from icdgen.diff import reports
 from icdgen.errors import UserError
@@ -22,18 +29,29 @@ if TYPE_CHECKING:
 _LAYERS = ("wire", "meaning", "source", "text", "additions")
 
 
-def _layers(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
-    words = tuple(word.strip() for item in value for word in item.split(",") if word.strip())
+def _layers(
+    ctx: click.Context, param: click.Parameter, value: tuple[str, ...]
+) -> tuple[str, ...]:
+    words = tuple(
+        word.strip() for item in value for word in item.split(",") if word.strip()
+    )
     for word in words:
         if word not in _LAYERS:
-            raise click.BadParameter(f"'{word}' is not one of {', '.join(_LAYERS)}", ctx, param)
+            raise click.BadParameter(
+                f"'{word}' is not one of {', '.join(_LAYERS)}", ctx, param
+            )
     return words
 
 
 @click.command(epilog="Example: icdgen diff HEAD~1..HEAD icd/ --fail-on wire,meaning")
 @click.argument("sides", nargs=-1, required=True, metavar="OLD [NEW]")
 @format_option(*reports.FORMATS)
-@click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")
+@click.option(
+    "--out",
+    "-o",
+    type=PATH,
+    help="File to write the report to (default: standard output).",
+)
 @click.option(
     "--fail-on",
     "layers",
@@ -42,7 +60,11 @@ def _layers(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) 
     metavar="LAYERS",
     help="Exit with 1 for changes of these layers: wire, meaning, source, text. Additions count only with `additions`.",
 )
-@click.option("--accepted", type=PATH, help="List of accepted changes (default: the nearest .icdgen-accepted.yaml).")
+@click.option(
+    "--accepted",
+    type=PATH,
+    help="List of accepted changes (default: the nearest .icdgen-accepted.yaml).",
+)
 @click.option(
     "--uses",
     "sources",
@@ -50,8 +72,14 @@ def _layers(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) 
     type=PATH,
     help="Also list the lines of these C, Python or Rust sources that use changed names.",
 )
-@click.option("--unchecked", is_flag=True, help="Compare ICDs even if `icdgen check` reports errors.")
-@click.option("--all", "everything", is_flag=True, help="Do not shorten the text report.")
+@click.option(
+    "--unchecked",
+    is_flag=True,
+    help="Compare ICDs even if `icdgen check` reports errors.",
+)
+@click.option(
+    "--all", "everything", is_flag=True, help="Do not shorten the text report."
+)
 def diff(
     sides: tuple[str, ...],
     form: str,
@@ -62,12 +90,15 @@ def diff(
     unchecked: bool,
     everything: bool,
 ) -> None:
-    """Report changes from OLD to NEW: on the wire, in meaning, in generated names, in text.
+    """Report changes from OLD to NEW: on the wire, in meaning, in generated names, in
+    text.
 
-    A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format
-    json` (a file, or - for standard input). A..B compares two revisions; a revision alone is compared with the working tree.
+    A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or
+    the output of `icdgen show --format json` (a file, or - for standard input). A..B
+    compares two revisions; a revision alone is compared with the working tree.
 
-    Exit status: 0 no change in a layer of --fail-on, 1 changes, 2 wrong usage or an ICD that cannot be compared.
+    Exit status: 0 no change in a layer of --fail-on, 1 changes, 2 wrong usage or an ICD
+    that cannot be compared.
     """
     from icdgen.diff import inputs, report, uses
 
@@ -85,7 +116,9 @@ def diff(
         raise UserError("ICDs with errors are not compared", help)
     comparison_report = report.make(old, new, _acceptances(accepted))
     if sources:
-        comparison_report.uses = uses.uses(comparison_report.comparison, comparison_report.changes, sources)
+        comparison_report.uses = uses.uses(
+            comparison_report.comparison, comparison_report.changes, sources
+        )
     _write(comparison_report, form, out, everything)
     sys.exit(1 if comparison_report.fails(layers) else 0)
 
@@ -107,13 +140,17 @@ def _acceptances(path: Path | None) -> list[Acceptance]:
         sys.exit(2)
 
 
-def _write(comparison_report: Report, form: str, out: Path | None, everything: bool) -> None:
+def _write(
+    comparison_report: Report, form: str, out: Path | None, everything: bool
+) -> None:
     from icdgen import tables
 
     # A file has neither colors nor a width.
     stream = sys.stdout if out is None else None
     colour = form == "text" and in_colour(stream)
-    text = reports.get(form)(comparison_report, colour, tables.width_of(stream), everything)
+    text = reports.get(form)(
+        comparison_report, colour, tables.width_of(stream), everything
+    )
     if out is None:
         click.echo(text, nl=False, color=colour or None)
     else:

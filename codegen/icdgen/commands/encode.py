@@ -7,16 +7,32 @@ from pathlib import Path
 
 import click
 
-from icdgen.commands.common import format_option, icd_option, kind_option, load_or_exit, print_frame
+from icdgen.commands.common import (
+    format_option,
+    icd_option,
+    kind_option,
+    load_or_exit,
+    print_frame,
+)
 
 
 @click.command(epilog='Example: icdgen encode wheels "Set Speed" x=100 y=-100 z=0')
-@click.argument("words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]...")
+@click.argument(
+    "words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]..."
+)
 @icd_option
 @kind_option
 @format_option("text", "json")
-@click.option("--raw", is_flag=True, help="Values are raw values; limits are not checked.")
-def encode(words: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str, raw: bool) -> None:
+@click.option(
+    "--raw", is_flag=True, help="Values are raw values; limits are not checked."
+)
+def encode(
+    words: tuple[str, ...],
+    icds: tuple[Path, ...],
+    kind: str | None,
+    form: str,
+    raw: bool,
+) -> None:
     """Encode a message from physical values.
 
     NODE can be omitted if there is only one.

@@ -8,7 +8,13 @@ from pathlib import Path
 
 import click
 
-from icdgen.commands.common import chosen, icd_arguments, print_findings, say, write_file
+from icdgen.commands.common import (
+    chosen,
+    icd_arguments,
+    print_findings,
+    say,
+    write_file,
+)
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
@@ -16,7 +22,9 @@ from icdgen.errors import UserError
 @click.command(epilog="Example: icdgen fmt icd/")
 @icd_arguments
 @click.option(
-    "--check", is_flag=True, help="Write nothing; name the files that are not in the canonical layout and exit with 1."
+    "--check",
+    is_flag=True,
+    help="Write nothing; name the files that are not in the canonical layout and exit with 1.",
 )
 def fmt(icds: tuple[Path, ...], check: bool) -> None:
     """Write ICDs and errata files in the canonical layout; comments are preserved."""
@@ -35,7 +43,9 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
                 source.parse(data, str(path))
             formatted = format_text(text, str(path))
         except Findings as error:
-            print_findings(error.findings, {str(path): text} if text else {}, "text", err=True)
+            print_findings(
+                error.findings, {str(path): text} if text else {}, "text", err=True
+            )
             status = 1
             continue
         if formatted == text:
@@ -55,8 +65,15 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
 
 def _summary(changed: int, unchanged: int, check: bool) -> str:
     """Count of files per outcome: ``1 file formatted, 2 files unchanged``."""
-    outcomes = {"not in the canonical layout" if check else "formatted": changed, "unchanged": unchanged}
-    parts = [f"{n} {'file' if n == 1 else 'files'} {outcome}" for outcome, n in outcomes.items() if n]
+    outcomes = {
+        "not in the canonical layout" if check else "formatted": changed,
+        "unchanged": unchanged,
+    }
+    parts = [
+        f"{n} {'file' if n == 1 else 'files'} {outcome}"
+        for outcome, n in outcomes.items()
+        if n
+    ]
     return ", ".join(parts)
 
 

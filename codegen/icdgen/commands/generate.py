@@ -9,7 +9,14 @@ import click
 
 from icdgen.backends.packages import of_project
 from icdgen.commands import progress
-from icdgen.commands.common import PATH, chosen, icd_arguments, known_languages, print_findings, say
+from icdgen.commands.common import (
+    PATH,
+    chosen,
+    icd_arguments,
+    known_languages,
+    print_findings,
+    say,
+)
 from icdgen.errors import UserError
 from icdgen.generation.generate import Job, Outcome, remember, run
 
@@ -23,14 +30,30 @@ class _Languages(click.Option):
         return super().get_help_record(ctx)
 
 
-@click.command(epilog="Example: icdgen --lang c --lang python --out generated icd/wheels.yaml")
+@click.command(
+    epilog="Example: icdgen --lang c --lang python --out generated icd/wheels.yaml"
+)
 @icd_arguments
 @click.option("--lang", "-l", "languages", multiple=True, cls=_Languages)
-@click.option("--out", "-o", type=PATH, help="Folder to write to (default: generated/LANG).")
-@click.option("--check", is_flag=True, help="Write nothing; exit 1 with a short diff if the output is not current.")
+@click.option(
+    "--out", "-o", type=PATH, help="Folder to write to (default: generated/LANG)."
+)
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Write nothing; exit 1 with a short diff if the output is not current.",
+)
 @click.option("--depfile", type=PATH, help="Also write a Make/Ninja dependency file.")
-@click.option("--templates", type=PATH, help="Folder of templates that replace shipped ones of the same name.")
-@click.option("--measured", type=PATH, help="Folder of measurements that go into the pack of `--lang assurance`.")
+@click.option(
+    "--templates",
+    type=PATH,
+    help="Folder of templates that replace shipped ones of the same name.",
+)
+@click.option(
+    "--measured",
+    type=PATH,
+    help="Folder of measurements that go into the pack of `--lang assurance`.",
+)
 @click.option("--quiet", "-q", is_flag=True, help="Print nothing on success.")
 @click.pass_obj
 def generate(
@@ -44,18 +67,29 @@ def generate(
     measured: Path | None,
     quiet: bool,
 ) -> None:
-    """Generate code from ICDs: files or folders (default: the ICDs in icdgen.toml, or the shipped ones)."""
+    """Generate code from ICDs: files or folders (default: the ICDs in icdgen.toml, or
+    the shipped ones).
+    """
     paths, config = chosen(icds)
     packages = of_project(config)
     languages_to_generate = list(languages) or config.lang
     if not languages_to_generate:
-        raise UserError("no language to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
+        raise UserError(
+            "no language to generate",
+            "for instance `icdgen --lang c`; or set `lang` in icdgen.toml",
+        )
     if out is None:
         base = config.out or Path("generated")
         # A single language has its own folder; several languages get subfolders of
         # `base`.
-        out = base / languages_to_generate[0] if len(set(languages_to_generate)) == 1 else base
-    with progress.items(", ".join(dict.fromkeys(languages_to_generate)), "files") as watch:
+        out = (
+            base / languages_to_generate[0]
+            if len(set(languages_to_generate)) == 1
+            else base
+        )
+    with progress.items(
+        ", ".join(dict.fromkeys(languages_to_generate)), "files"
+    ) as watch:
         job = Job(
             languages_to_generate,
             out,
@@ -79,12 +113,20 @@ def generate(
         say(short_diff(outcome.plans).rstrip("\n"))
         sys.exit(1)
     for name in (plan.out / name for plan in outcome.plans for name in plan.edited):
-        say(f"icdgen: warning: {name} is no longer generated, but was edited: kept", err=True)
+        say(
+            f"icdgen: warning: {name} is no longer generated, but was edited: kept",
+            err=True,
+        )
     note = "" if quiet else _summary(job, outcome)
     if note:
         say(note)
     if not check or not outcome.changes:
-        remember((obj or {}).get("run", ""), "" if quiet else _current(job, outcome), job, outcome)
+        remember(
+            (obj or {}).get("run", ""),
+            "" if quiet else _current(job, outcome),
+            job,
+            outcome,
+        )
 
 
 def _summary(job: Job, outcome: Outcome) -> str:
@@ -93,7 +135,9 @@ def _summary(job: Job, outcome: Outcome) -> str:
     if not written and not removed:
         return _current(job, outcome)
     total = sum(len(plan.files) for plan in outcome.plans)
-    parts = [f"{written} of {total} files written"] + ([f"{removed} removed"] if removed else [])
+    parts = [f"{written} of {total} files written"] + (
+        [f"{removed} removed"] if removed else []
+    )
     return f"{job.out}: {', '.join(parts)} ({', '.join(plan.language for plan in outcome.plans)})"
 
 

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING
 import click
 
 from icdgen.commands import progress
-from icdgen.commands.common import PATH, format_option, in_colour, print_findings, say, write_file
+from icdgen.commands.common import (
+    PATH,
+    format_option,
+    in_colour,
+    print_findings,
+    say,
+    write_file,
+)
 from icdgen.diagnostics import Finding, Findings, has_errors
 from icdgen.errors import UserError
 
@@ -28,7 +35,9 @@ class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of cl
 
     name = "pages"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int]:
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
         match = re.fullmatch(r"([0-9]{1,6})(?:-([0-9]{1,6}))?", str(value))
         first, last = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
         if not 0 < first <= last:
@@ -42,8 +51,17 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 
 @click.command("import", epilog="Example: icdgen import network.dbc --out icd")
 @click.argument("files", metavar="FILE|FOLDER...", type=PATH, nargs=-1, required=True)
-@click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
-@click.option("--kind", help="Kind of a definition that is not recognized by its beginning: xtce, dbc, ksy ...")
+@click.option(
+    "--out",
+    type=PATH,
+    default=Path("icd"),
+    show_default=True,
+    help="Folder for the ICDs, one file a node.",
+)
+@click.option(
+    "--kind",
+    help="Kind of a definition that is not recognized by its beginning: xtce, dbc, ksy ...",
+)
 @click.option(
     "--profile",
     "words",
@@ -55,16 +73,26 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     is_flag=True,
     help="Update existing ICDs; errata, identifiers, summaries and comments are kept.",
 )
-@click.option("--dry-run", is_flag=True, help="Write no ICD; print what would be written or changed.")
+@click.option(
+    "--dry-run",
+    is_flag=True,
+    help="Write no ICD; print what would be written or changed.",
+)
 @click.option(
     "--report",
     "page",
     type=PATH,
     help="Write a page (HTML) with a picture of each doubtful table and its result.",
 )
-@click.option("--descriptions", is_flag=True, help="Import the manual's descriptions as summaries.")
 @click.option(
-    "--explore", is_flag=True, help="Print the kinds of tables, and for each a rule to be completed; import nothing."
+    "--descriptions",
+    is_flag=True,
+    help="Import the manual's descriptions as summaries.",
+)
+@click.option(
+    "--explore",
+    is_flag=True,
+    help="Print the kinds of tables, and for each a rule to be completed; import nothing.",
 )
 @click.option(
     "--tables",
@@ -74,12 +102,26 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
     help="Write each table as a YAML file that can be corrected and imported.",
 )
 @click.option(
-    "--explain", "table", type=int, metavar="TABLE", help="Print which rule read a table and why others did not."
+    "--explain",
+    "table",
+    type=int,
+    metavar="TABLE",
+    help="Print which rule read a table and why others did not.",
 )
-@click.option("--workbench", is_flag=True, help="Serve a local page for writing the rules of --profile.")
-@click.option("--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35.")
+@click.option(
+    "--workbench",
+    is_flag=True,
+    help="Serve a local page for writing the rules of --profile.",
+)
+@click.option(
+    "--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35."
+)
 @format_option("text", "json")
-@click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
+@click.option(
+    "--jobs",
+    type=click.IntRange(1, 64),
+    help="Processes that read pages (default: one a core).",
+)
 def import_(
     files: tuple[Path, ...],
     out: Path,
@@ -97,11 +139,13 @@ def import_(
     form: str,
     jobs: int | None,
 ) -> None:
-    """Read a manual (PDF, text with tab-separated tables, folder of table files) or definitions into reviewable ICDs.
+    """Read a manual (PDF, text with tab-separated tables, folder of table files) or
+    definitions into reviewable ICDs.
 
-    Definitions are CAN databases (dbc, kcd, sym, arxml), MAVLink dialects (mavlink, mavlink1), XTCE (xtce), electronic
-    data sheets of CCSDS SOIS (eds), Kaitai Struct (ksy) and models of SunSpec (sunspec). Files that refer to each
-    other are given together, or as the folder that contains them:
+    Definitions are CAN databases (dbc, kcd, sym, arxml), MAVLink dialects (mavlink,
+    mavlink1), XTCE (xtce), electronic data sheets of CCSDS SOIS (eds), Kaitai Struct
+    (ksy) and models of SunSpec (sunspec). Files that refer to each other are given
+    together, or as the folder that contains them:
 
     \b
       icdgen import mdb/pus.xml mdb/types.xml
@@ -109,7 +153,8 @@ def import_(
 
     --profile, --report, --descriptions, --explore, --tables, --explain, --pages and --jobs are for manuals.
 
-    Exit status: 0 if the ICDs contain everything that was found and `icdgen check` has no errors for them, else 1.
+    Exit status: 0 if the ICDs contain everything that was found and `icdgen check` has
+    no errors for them, else 1.
     """
     from icdgen.import_results import targets
     from icdgen.importer import console, profile, run, table_files
@@ -165,7 +210,9 @@ def import_(
     sys.exit(1 if (result.failed and not explore) or invalid else 0)
 
 
-def _definitions(files: tuple[Path, ...], kind: str | None) -> list[tuple[Path, Reader]]:
+def _definitions(
+    files: tuple[Path, ...], kind: str | None
+) -> list[tuple[Path, Reader]]:
     """Return the definitions in files and folders with their readers; empty for a
     manual.
 
@@ -185,27 +232,38 @@ def _definitions(files: tuple[Path, ...], kind: str | None) -> list[tuple[Path, 
             if not inside:
                 of_kind = f" of the kind {requested.name}" if requested else ""
                 help = f"kinds are {', '.join(kinds.names())}; import a manual, or a file that --kind names, by its own name"
-                raise UserError(f"there is no definition{of_kind} in the folder {path}", help)
+                raise UserError(
+                    f"there is no definition{of_kind} in the folder {path}", help
+                )
         else:
             reader = requested or kinds.of(path)
             if reader is None and len(files) == 1:
                 return []
             if reader is None:
-                reason = "is not a known definition" if path.exists() else "does not exist"
-                raise UserError(f"{path} {reason}", "import manuals one by one; --kind names the kind of definitions")
+                reason = (
+                    "is not a known definition" if path.exists() else "does not exist"
+                )
+                raise UserError(
+                    f"{path} {reason}",
+                    "import manuals one by one; --kind names the kind of definitions",
+                )
             inside = [(path, reader)]
         for definition in inside:
             definitions.setdefault(definition[0].resolve(), definition)
     return list(definitions.values())
 
 
-def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: bool, form: str) -> None:
+def _define(
+    files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: bool, form: str
+) -> None:
     """Import one definition, or several that may refer to each other."""
     from icdgen.definitions import console, run
     from icdgen.import_results import targets
 
     try:
-        with progress.working(f"reading {files[0][0] if len(files) == 1 else f'{len(files)} definitions'}"):
+        with progress.working(
+            f"reading {files[0][0] if len(files) == 1 else f'{len(files)} definitions'}"
+        ):
             reads = [run.read(*files[0])] if len(files) == 1 else run.read_set(files)
         trees = {name: tree for read in reads for name, tree in read.trees.items()}
         aimed = targets.prepare(trees, out, update, dry_run, run.TOLD)
@@ -223,11 +281,20 @@ def _define(files: list[tuple[Path, Reader]], out: Path, update: bool, dry_run: 
         _say_files(aimed, checked, dry_run)
         if not trees:
             say("no ICD is written: no message can be imported")
-    sys.exit(1 if not trees or any(read.failed for read in reads) or has_errors(checked) else 0)
+    sys.exit(
+        1
+        if not trees or any(read.failed for read in reads) or has_errors(checked)
+        else 0
+    )
 
 
 def _workbench(
-    manual: Path, words: str | None, out: Path, pages: tuple[int, int] | None, jobs: int | None, form: str
+    manual: Path,
+    words: str | None,
+    out: Path,
+    pages: tuple[int, int] | None,
+    jobs: int | None,
+    form: str,
 ) -> None:
     """Serve the workbench until it is interrupted.
 
@@ -250,7 +317,9 @@ def _workbench(
         return sources.read(manual, words, None, jobs, pages)
 
     with server.serve(Session(document, tables, path, out, reader)) as running:
-        say(f"{manual}: {len(tables)} tables; open http://{server.HOST}:{running.server_port}/ (Ctrl-C ends it)")
+        say(
+            f"{manual}: {len(tables)} tables; open http://{server.HOST}:{running.server_port}/ (Ctrl-C ends it)"
+        )
         with suppress(KeyboardInterrupt):
             running.serve_forever()
 
@@ -264,7 +333,8 @@ def _explanation(result: Result, number: int) -> str:
 
     if not 1 <= number <= len(result.tables):
         raise UserError(
-            f"there is no table {number}", f"tables are numbered from 1 to {len(result.tables)}, see --tables"
+            f"there is no table {number}",
+            f"tables are numbered from 1 to {len(result.tables)}, see --tables",
         )
     return explain.explain(result.interpretation, number)
 
@@ -305,10 +375,16 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
 
         click.echo(console.refused_as_json(str(manual), error.findings))
         return
-    about_lines = [finding for finding in error.findings if finding.code not in ABOUT_FILES]
+    about_lines = [
+        finding for finding in error.findings if finding.code not in ABOUT_FILES
+    ]
     for finding in error.findings:
         if finding.code in ABOUT_FILES:
-            place = f"{finding.place.file}:{finding.place.line}" if finding.place.line > 1 else finding.place.file
+            place = (
+                f"{finding.place.file}:{finding.place.line}"
+                if finding.place.line > 1
+                else finding.place.file
+            )
             remedy = f"\n  = help: {finding.help}" if finding.help else ""
             say(f"{place}: error[{finding.code}]: {finding.message}{remedy}", err=True)
     if about_lines:
@@ -326,7 +402,10 @@ def _next_step(targets: list[Target], checked: list[Finding], dry_run: bool) -> 
     """
     command = f"`icdgen check {' '.join(str(target.path) for target in targets)}`"
     counts = Counter(finding.severity for finding in checked)
-    shown = " and ".join(f"{n} {severity}{'s' if n != 1 else ''}" for severity, n in sorted(counts.items()))
+    shown = " and ".join(
+        f"{n} {severity}{'s' if n != 1 else ''}"
+        for severity, n in sorted(counts.items())
+    )
     if dry_run:
         return f"{command} would have {shown or 'no findings'}"
     return f"next: {command} has {shown}" if shown else f"{command}: no findings"

@@ -16,15 +16,21 @@ if TYPE_CHECKING:
 @click.command(epilog="Example: icdgen init battery")
 @click.argument("name")
 @click.option(
-    "--from", "origin", metavar="NODE", help="Copy the protocol section, the byte order and the bit order of this node."
+    "--from",
+    "origin",
+    metavar="NODE",
+    help="Copy the protocol section, the byte order and the bit order of this node.",
 )
 @icd_option
 def init(name: str, origin: str | None, icds: tuple[Path, ...]) -> None:
-    """Write a commented first ICD of a device NAME: icd/NAME.yaml, its errata file, icdgen.toml.
+    """Write a commented first ICD of a device NAME: icd/NAME.yaml, its errata file,
+    icdgen.toml.
 
-    The ICD has UART framing, a checksum, acknowledges, telemetry, telecommands and a configuration message. It is ready for
-    icdgen check, icdgen --lang c, icdgen docs and icdgen sim. --from copies the protocol of a node of your ICDs or of the
-    shipped ones. Editors use the schema next to the ICD to complete and check it. Existing files are not changed.
+    The ICD has UART framing, a checksum, acknowledges, telemetry, telecommands and a
+    configuration message. It is ready for icdgen check, icdgen --lang c, icdgen docs
+    and icdgen sim. --from copies the protocol of a node of your ICDs or of the shipped
+    ones. Editors use the schema next to the ICD to complete and check it. Existing
+    files are not changed.
     """
     from icdgen import starter
 

@@ -18,17 +18,34 @@ if TYPE_CHECKING:
     from icdgen.icd.model import Icd, Message, Node
     from icdgen.logfile.log import Log
 
-_SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet", ".pq": "parquet"}
+_SUFFIXES = {
+    ".csv": "csv",
+    ".jsonl": "jsonl",
+    ".ndjson": "jsonl",
+    ".parquet": "parquet",
+    ".pq": "parquet",
+}
 
 
 @click.command(epilog="Example: icdgen log wheels telemetry.bin --out telemetry.csv")
 @click.argument("words", nargs=-1, required=True, metavar="[NODE] FILE [MESSAGE]...")
 @click.option("--node", "name", help="Node, instead of the argument NODE.")
 @click.option(
-    "--out", "-o", type=PATH, metavar="FILE", help="Convert to this file; its extension determines the format."
+    "--out",
+    "-o",
+    type=PATH,
+    metavar="FILE",
+    help="Convert to this file; its extension determines the format.",
 )
-@click.option("--format", "form", type=click.Choice(["csv", "jsonl", "parquet"]), help="Convert to this format.")
-@click.option("--head", type=click.IntRange(0), metavar="N", help="Only the first N rows.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["csv", "jsonl", "parquet"]),
+    help="Convert to this format.",
+)
+@click.option(
+    "--head", type=click.IntRange(0), metavar="N", help="Only the first N rows."
+)
 @click.option(
     "--direction",
     type=click.Choice(["telemetry", "telecommand"]),
@@ -46,15 +63,19 @@ def log(
     direction: Literal["telemetry", "telecommand"],
     icds: tuple[Path, ...],
 ) -> None:
-    """List the contents of a telemetry log or a recorded link, or convert it to CSV, JSON lines or Parquet.
+    """List the contents of a telemetry log or a recorded link, or convert it to CSV,
+    JSON lines or Parquet.
 
-    FILE is a log file of NODE, or, for a framed stream, a recording of the received bytes. A row is an entry of the log or a
-    message of the recording. A column is a field, `frame__field_unit`, with physical values and names of members. MESSAGEs, by
-    id or name, limit the output to these. Without --out the conversion goes to standard output (except Parquet). Truncated,
-    damaged and unknown entries are omitted and reported.
+    FILE is a log file of NODE, or, for a framed stream, a recording of the received
+    bytes. A row is an entry of the log or a message of the recording. A column is a
+    field, `frame__field_unit`, with physical values and names of members. MESSAGEs, by
+    id or name, limit the output to these. Without --out the conversion goes to standard
+    output (except Parquet). Truncated, damaged and unknown entries are omitted and
+    reported.
 
-    Times of the entries show damage: damaged ranges are omitted with the entry before them. Time jumps, such as a restart of
-    the device, remain. Exit status: 0 converted or listed, 1 also, but part of a log is damaged, 2 wrong usage.
+    Times of the entries show damage: damaged ranges are omitted with the entry before
+    them. Time jumps, such as a restart of the device, remain. Exit status: 0 converted
+    or listed, 1 also, but part of a log is damaged, 2 wrong usage.
     """
     from icdgen.logfile.log import open_log
 
@@ -79,7 +100,9 @@ def log(
     sys.exit(recording.is_damaged(head))
 
 
-def _split_arguments(icd: Icd, words: Sequence[str], name: str | None) -> tuple[Node, Path, list[Message]]:
+def _split_arguments(
+    icd: Icd, words: Sequence[str], name: str | None
+) -> tuple[Node, Path, list[Message]]:
     """Return node, file and messages."""
     from icdgen.logfile.source import node_of
     from icdgen.values.find import find_message
@@ -90,23 +113,38 @@ def _split_arguments(icd: Icd, words: Sequence[str], name: str | None) -> tuple[
     if first in names:
         name, words = first, words[1:]
     node = node_of(icd, name)
-    return node, Path(words[0]), [find_message(icd, node.name, word) for word in words[1:]]
+    return (
+        node,
+        Path(words[0]),
+        [find_message(icd, node.name, word) for word in words[1:]],
+    )
 
 
 def _form_of(out: Path | None) -> str | None:
     if out is None:
         return None
     if out.suffix.lower() not in _SUFFIXES:
-        raise UserError(f"the extension of {out} is not a known format", f"{', '.join(_SUFFIXES)}, or --format")
+        raise UserError(
+            f"the extension of {out} is not a known format",
+            f"{', '.join(_SUFFIXES)}, or --format",
+        )
     return _SUFFIXES[out.suffix.lower()]
 
 
-def _convert(recording: Log, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
+def _convert(
+    recording: Log,
+    form: str,
+    out: Path | None,
+    head: int | None,
+    done: Callable[[int], None],
+) -> None:
     from icdgen.logfile import text
 
     if form == "parquet":
         if out is None:
-            raise UserError("Parquet does not go to standard output", "--out FILE.parquet")
+            raise UserError(
+                "Parquet does not go to standard output", "--out FILE.parquet"
+            )
         with _written_completely(out) as partial:
             recording.to_parquet(partial, head, done)
         return
@@ -133,7 +171,10 @@ def _written_completely(out: Path) -> Iterator[Path]:
         yield partial
         partial.replace(out)
     except OSError as error:
-        raise UserError(f"cannot write {out}: {error.strerror or error}", "check the path, or the disk") from None
+        raise UserError(
+            f"cannot write {out}: {error.strerror or error}",
+            "check the path, or the disk",
+        ) from None
     finally:
         with suppress(OSError):
             partial.unlink(missing_ok=True)

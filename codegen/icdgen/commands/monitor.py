@@ -27,8 +27,16 @@ _SHORTEST_PAUSE = 0.1  # seconds between two attempts to reopen a lost connectio
 @click.argument("words", nargs=-1, metavar="[NODE] [MESSAGE]...")
 @session_options
 @icd_option
-@click.option("--every", type=SECONDS, default=1.0, show_default=True, help="Seconds between two rounds.")
-@click.option("--count", type=click.IntRange(1), metavar="N", help="End after N rounds.")
+@click.option(
+    "--every",
+    type=SECONDS,
+    default=1.0,
+    show_default=True,
+    help="Seconds between two rounds.",
+)
+@click.option(
+    "--count", type=click.IntRange(1), metavar="N", help="End after N rounds."
+)
 @click.option("--once", is_flag=True, help="Short for --count 1.")
 @format_option("text", "json")
 def monitor(
@@ -40,13 +48,17 @@ def monitor(
     form: str,
     **options: Any,
 ) -> None:
-    """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
+    """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the
+    identification.
 
-    NODE can be omitted if there is only one. Frames that the device sends without a request (logs) are shown as well. On a
-    framed stream, all received messages or the given MESSAGEs are shown, and only responses to telecommands are requested. A
-    message without a response keeps its last values and shows their age. On a terminal the table stays in place and scrolls if
-    it is longer (arrows, PgUp, PgDn, Home, End). In a pipe each round is printed; --format json prints an object per frame. A
-    lost connection is opened again when possible. Exit status: 1 if a frame had no response in the last round.
+    NODE can be omitted if there is only one. Frames that the device sends without a
+    request (logs) are shown as well. On a framed stream, all received messages or the
+    given MESSAGEs are shown, and only responses to telecommands are requested. A
+    message without a response keeps its last values and shows their age. On a terminal
+    the table stays in place and scrolls if it is longer (arrows, PgUp, PgDn, Home,
+    End). In a pipe each round is printed; --format json prints an object per frame. A
+    lost connection is opened again when possible. Exit status: 1 if a frame had no
+    response in the last round.
     """
     from icdgen.link.live import Monitor
     from icdgen.link.options import identity_problem, open_session
@@ -58,12 +70,19 @@ def monitor(
     node, messages = find_named(icd, words)
     watched = Monitor(icd, node.name, messages)
     rounds = _Rounds(watched, 1 if once else count, every, form)
-    live = form == "text" and sys.stdout is not None and sys.stdout.isatty() and rounds.last != 1
+    live = (
+        form == "text"
+        and sys.stdout is not None
+        and sys.stdout.isatty()
+        and rounds.last != 1
+    )
     reached = lost = False
     with Screen(watched, live) as screen:
         while not rounds.over:
             try:
-                with open_session(icd, watched.facts, **options, on_event=watched.event) as session:
+                with open_session(
+                    icd, watched.facts, **options, on_event=watched.event
+                ) as session:
                     reached = True
                     if problem := identity_problem(session, watched.faults):
                         say(f"icdgen: {problem}", err=True)
@@ -86,7 +105,9 @@ def monitor(
 class _Rounds:
     """Rounds of a monitor. Each round is printed at its end."""
 
-    def __init__(self, watched: Monitor, last: int | None, every: float, form: str) -> None:
+    def __init__(
+        self, watched: Monitor, last: int | None, every: float, form: str
+    ) -> None:
         self.watched, self.last, self.every, self.form = watched, last, every, form
         self.number = 0
 
@@ -106,7 +127,9 @@ class _Rounds:
         self.watched.begin()
         for message in self.watched.requested():
             assert message.telemetry_id is not None
-            self.watched.record(message, session.start(Request("telemetry", message.telemetry_id)))
+            self.watched.record(
+                message, session.start(Request("telemetry", message.telemetry_id))
+            )
             screen.show()
         if not self.watched.listens:
             self._print(screen)

@@ -44,10 +44,17 @@ def working(name: str) -> Iterator[None]:
 
 @contextmanager
 def pages(name: str) -> Iterator[Callable[[int, int, int], None]]:
-    """Count the pages of a document and the tables on them. Yields a function of pages, all pages, and tables."""
-    with _bar(name, "bar", "count", "pages, {task.fields[tables]} tables", "remaining") as bar:
+    """Count the pages of a document and the tables on them.
+
+    Yields a function of pages, all pages, and tables.
+    """
+    with _bar(
+        name, "bar", "count", "pages, {task.fields[tables]} tables", "remaining"
+    ) as bar:
         bar.update(tables=0)
-        yield lambda done, total, tables: bar.update(completed=done, total=total, tables=tables)
+        yield lambda done, total, tables: bar.update(
+            completed=done, total=total, tables=tables
+        )
 
 
 @contextmanager
@@ -56,7 +63,9 @@ def bytes_of(name: str, total: int) -> Iterator[Callable[[int], None]]:
 
     Yields a function that adds a number of processed bytes.
     """
-    with _bar(name, "bar", "download", "speed", "remaining", is_shown=total >= LEAST_BYTES) as bar:
+    with _bar(
+        name, "bar", "download", "speed", "remaining", is_shown=total >= LEAST_BYTES
+    ) as bar:
         bar.update(total=total)
         yield lambda size: bar.update(completed=bar.values.get("completed", 0) + size)
 
@@ -71,7 +80,9 @@ class _Bar:
         self._progress: Progress | None = None
 
     def update(self, **values: Any) -> None:
-        """Change values of the task: ``completed``, ``total``, or values that a column shows."""
+        """Change values of the task: ``completed``, ``total``, or values that a column
+        shows.
+        """
         self.values |= values
         if self._progress is not None:
             self._progress.update(self._progress.task_ids[0], **self.values)
@@ -89,9 +100,14 @@ class _Bar:
             "elapsed": progress.TimeElapsedColumn,
             "remaining": progress.TimeRemainingColumn,
         }
-        columns = [kinds[column]() if column in kinds else progress.TextColumn(column) for column in self._columns]
+        columns = [
+            kinds[column]() if column in kinds else progress.TextColumn(column)
+            for column in self._columns
+        ]
         name = progress.TextColumn("{task.description}", markup=False)
-        shown = progress.Progress(name, *columns, console=Console(stderr=True), transient=True)
+        shown = progress.Progress(
+            name, *columns, console=Console(stderr=True), transient=True
+        )
         shown.add_task(self._name, **{"total": None} | self.values)
         shown.start()
         self._progress = shown

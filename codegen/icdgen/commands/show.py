@@ -17,8 +17,15 @@ from icdgen.commands.common import format_option, icd_option, kind_option, load_
 @icd_option
 @kind_option
 @format_option("text", "json")
-def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
-    """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, a struct, an erratum.
+def show(
+    node: str | None,
+    item: str | None,
+    icds: tuple[Path, ...],
+    kind: str | None,
+    form: str,
+) -> None:
+    """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name,
+    an enumeration, a struct, an erratum.
 
     NODE can be omitted if there is only one.
 

@@ -38,12 +38,34 @@ class _Sim(click.Command):
 
 
 @click.command(cls=_Sim, epilog="Example: icdgen sim --node wheels --tcp 4000")
-@click.option("--node", "name", help="Node to simulate; a boot program starts the next program after the boot time.")
-@click.option("--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed.")
-@click.option("--tcp", type=_PORT, metavar="PORT", help="Serve on a TCP port; 0 takes a free one, which is printed.")
-@click.option("--udp", type=_PORT, metavar="PORT", help="Serve on a UDP port: each datagram is a part of the stream.")
-@click.option("--connect", metavar="PORT", help="Connect to tcp://HOST:PORT or udp://HOST:PORT as a client.")
-@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
+@click.option(
+    "--node",
+    "name",
+    help="Node to simulate; a boot program starts the next program after the boot time.",
+)
+@click.option(
+    "--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed."
+)
+@click.option(
+    "--tcp",
+    type=_PORT,
+    metavar="PORT",
+    help="Serve on a TCP port; 0 takes a free one, which is printed.",
+)
+@click.option(
+    "--udp",
+    type=_PORT,
+    metavar="PORT",
+    help="Serve on a UDP port: each datagram is a part of the stream.",
+)
+@click.option(
+    "--connect",
+    metavar="PORT",
+    help="Connect to tcp://HOST:PORT or udp://HOST:PORT as a client.",
+)
+@click.option(
+    "--host", default="127.0.0.1", show_default=True, help="Address to listen on."
+)
 @click.option(
     "--set",
     "values",
@@ -52,15 +74,43 @@ class _Sim(click.Command):
     metavar="MESSAGE FIELD=VALUE...",
     help="Values of a frame, as encode takes them. Repeatable.",
 )
-@click.option("--script", type=PATH, metavar="FILE", help="Values, waves, faults and logs over time, as YAML.")
-@click.option("--file", "files", multiple=True, metavar="TYPE:COUNTER=PATH", help="A file of the device. Repeatable.")
-@click.option("--uploads", type=PATH, metavar="FOLDER", help="Folder for uploaded programs, DESTINATION.bin.")
 @click.option(
-    "--fault", "faults", multiple=True, metavar="KIND=SHARE[@WHAT]", help="A fault, e.g. drop=10%@acknowledge."
+    "--script",
+    type=PATH,
+    metavar="FILE",
+    help="Values, waves, faults and logs over time, as YAML.",
 )
-@click.option("--loss", metavar="SHARE", help="Short for --fault drop=SHARE@packet,upload: packets of files are lost.")
 @click.option(
-    "--late", type=click.IntRange(1), default=1500, show_default=True, help="Largest delay of the fault late, in ms."
+    "--file",
+    "files",
+    multiple=True,
+    metavar="TYPE:COUNTER=PATH",
+    help="A file of the device. Repeatable.",
+)
+@click.option(
+    "--uploads",
+    type=PATH,
+    metavar="FOLDER",
+    help="Folder for uploaded programs, DESTINATION.bin.",
+)
+@click.option(
+    "--fault",
+    "faults",
+    multiple=True,
+    metavar="KIND=SHARE[@WHAT]",
+    help="A fault, e.g. drop=10%@acknowledge.",
+)
+@click.option(
+    "--loss",
+    metavar="SHARE",
+    help="Short for --fault drop=SHARE@packet,upload: packets of files are lost.",
+)
+@click.option(
+    "--late",
+    type=click.IntRange(1),
+    default=1500,
+    show_default=True,
+    help="Largest delay of the fault late, in ms.",
 )
 @click.option(
     "--seed",
@@ -69,7 +119,9 @@ class _Sim(click.Command):
     show_default=True,
     help="Seed of the random faults; the same seed gives the same faults.",
 )
-@click.option("--boot", type=click.IntRange(0), help="Boot time in ms (default: the ICD's).")
+@click.option(
+    "--boot", type=click.IntRange(0), help="Boot time in ms (default: the ICD's)."
+)
 @click.option(
     "--busy",
     type=click.IntRange(0),
@@ -84,7 +136,11 @@ class _Sim(click.Command):
     show_default=True,
     help="Processing time of a telecommand, in ms.",
 )
-@click.option("--strict", is_flag=True, help="Also reject unknown enumeration values and values out of range.")
+@click.option(
+    "--strict",
+    is_flag=True,
+    help="Also reject unknown enumeration values and values out of range.",
+)
 @click.option(
     "--every",
     type=SECONDS,
@@ -93,21 +149,40 @@ class _Sim(click.Command):
     help="Period of telemetry on framed streams, in s; 0: none.",
 )
 @click.option(
-    "--envelope", "chosen", multiple=True, metavar="ROLE=NUMBER", help="Value of a header field, e.g. source=3."
+    "--envelope",
+    "chosen",
+    multiple=True,
+    metavar="ROLE=NUMBER",
+    help="Value of a header field, e.g. source=3.",
 )
-@click.option("--orders", is_flag=True, help="Read orders from standard input: set, fault, log, restart.")
+@click.option(
+    "--orders",
+    is_flag=True,
+    help="Read orders from standard input: set, fault, log, restart.",
+)
 @icd_option
 def sim(
-    name: str, pty: bool, tcp: int | None, udp: int | None, host: str, icds: tuple[Path, ...], **options: Any
+    name: str,
+    pty: bool,
+    tcp: int | None,
+    udp: int | None,
+    host: str,
+    icds: tuple[Path, ...],
+    **options: Any,
 ) -> None:
     """Simulate a device on a pseudo-terminal (the default), a TCP or a UDP port.
 
-    Prints the address of each port, and runs until it is interrupted or, with --orders, until its input ends.
+    Prints the address of each port, and runs until it is interrupted or, with --orders,
+    until its input ends.
     """
     from icdgen.sim import run
 
     ways: list[tuple[Any, ...]] = [("pty",)] if pty else []
-    ways += [(way, host, port) for way, port in (("tcp", tcp), ("udp", udp)) if port is not None]
+    ways += [
+        (way, host, port)
+        for way, port in (("tcp", tcp), ("udp", udp))
+        if port is not None
+    ]
     if (to := options.pop("connect")) is not None:
         ways.append(("connect", *_place(to)))
     # Windows has no pseudo-terminals.
@@ -130,7 +205,10 @@ def _place(text: str) -> tuple[str, str, int]:
 
     kind = text.partition("://")[0]
     if kind not in ("tcp", "udp"):
-        raise UserError(f"`{text}` is nothing to connect to", "--connect tcp://HOST:PORT or udp://HOST:PORT")
+        raise UserError(
+            f"`{text}` is nothing to connect to",
+            "--connect tcp://HOST:PORT or udp://HOST:PORT",
+        )
     return kind, *address(text)
 
 

@@ -17,6 +17,11 @@ def units() -> None:
     spellings: dict[str, list[str]] = {}
     for spelling, symbol in SPELLINGS.items():
         spellings.setdefault(symbol, []).append(spelling)
-    columns = [tables.Column(title) for title in ("unit", "in names", "quantity", "not")]
-    rows = [(u.symbol, u.identifier, u.quantity, ", ".join(spellings.get(u.symbol, []))) for u in STANDARD.values()]
+    columns = [
+        tables.Column(title) for title in ("unit", "in names", "quantity", "not")
+    ]
+    rows = [
+        (u.symbol, u.identifier, u.quantity, ", ".join(spellings.get(u.symbol, [])))
+        for u in STANDARD.values()
+    ]
     click.echo(tables.render(columns, rows, tables.width_of(sys.stdout)), nl=False)

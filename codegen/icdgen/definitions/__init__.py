@@ -1,1 +1,4 @@
-"""Import of existing message definitions, such as DBC or XTCE, as ICDs. The module `kinds` lists the readers."""
+"""Import of existing message definitions, such as DBC or XTCE, as ICDs.
+
+The module `kinds` lists the readers.
+"""

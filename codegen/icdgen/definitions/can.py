@@ -11,15 +11,30 @@ from typing import Any
 from icdgen.definitions import can_accounting, dbc, frames, safe_xml
 from icdgen.definitions.accounting import Account, AccountedObject
 from icdgen.definitions.enumerations import Enumerations
-from icdgen.definitions.model import Definitions, Item, Network, NotSupported, unreadable
-from icdgen.definitions.wording import formula, limits, line, node_name, printed, summary, unit
+from icdgen.definitions.model import (
+    Definitions,
+    Item,
+    Network,
+    NotSupported,
+    unreadable,
+)
+from icdgen.definitions.wording import (
+    formula,
+    limits,
+    line,
+    node_name,
+    printed,
+    summary,
+    unit,
+)
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.layout import integer_range
 from icdgen.icd.wire_ids import CAN_BOTH, CAN_EXTENDED, CAN_EXTENDED_FLAG, CAN_STANDARD
 
 BEYOND_FRAME = "IMP072"
 _DISCARDING = logging.NullHandler()
-# Attributes of cantools objects without meaning for an ICD, and attributes that are used under another name.
+# Attributes of cantools objects without meaning for an ICD, and attributes that are
+# used under another name.
 _WITHOUT_MEANING = frozenset(
     {
         "conversion", "is_multiplexer", "minimum", "maximum", "initial", "invalid", "comments", "signal_tree", "codecs",
@@ -33,7 +48,8 @@ _UNKNOWN_SENDERS = ("", "Vector__XXX")  # placeholder of DBC files for an unknow
 class _Database:
     """Reader shared by the four database formats.
 
-    ``name`` is the format name of cantools; ``begins`` is a pattern that recognizes a file of the format.
+    ``name`` is the format name of cantools; ``begins`` is a pattern that recognizes a
+    file of the format.
     """
 
     needs: tuple[str, ...] = ("cantools",)
@@ -49,28 +65,42 @@ class _Database:
         for bus, messages in _buses(self.database(file, data, to)).items():
             stem = PurePath(file).stem
             to.networks.append(_network(f"{stem} {bus}".strip(), messages, account, to))
-        self.account_for(file, data, account, {finding.spot.line for finding in to.import_findings})
+        self.account_for(
+            file, data, account, {finding.spot.line for finding in to.import_findings}
+        )
         account.report(to)
         return to
 
-    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
-        """Count unused parts of the file, except in lines of ``reported``, which have a finding."""
+    def account_for(
+        self, file: str, data: bytes, account: Account, reported: set[int | None]
+    ) -> None:
+        """Count unused parts of the file, except in lines of ``reported``, which have a
+        finding.
+        """
         raise NotImplementedError
 
     def database(self, file: str, data: bytes, to: Definitions) -> Any:
-        """Return the database that cantools parses. Raises `Findings` if cantools raises an exception."""
+        """Return the database that cantools parses.
+
+        Raises `Findings` if cantools raises an exception.
+        """
         try:
             return self.load(_text(data), to)
-        except Exception as error:  # the parsers of cantools raise exceptions of many classes
+        except (
+            Exception
+        ) as error:  # the parsers of cantools raise exceptions of many classes
             match = re.search(r"at line (\d+)", str(error))
             reason = line(str(error), 300) or type(error).__name__
-            raise unreadable(file, f"not {self.title}: {reason}", "", int(match[1]) if match else 1) from None
+            raise unreadable(
+                file, f"not {self.title}: {reason}", "", int(match[1]) if match else 1
+            ) from None
 
     def load(self, text: str, to: Definitions) -> Any:
         """Parse the text with cantools."""
         from cantools import database
 
-        # Warnings of cantools are suppressed, because the import reports the same faults as findings.
+        # Warnings of cantools are suppressed, because the import reports the same
+        # faults as findings.
         logging.getLogger("cantools").addHandler(_DISCARDING)
         return database.load_string(text, self.name, strict=False)
 
@@ -84,11 +114,15 @@ class Dbc(_Database):
 
     def load(self, text: str, to: Definitions) -> Any:
         plain = dbc.with_short_names(text.replace("\r\n", "\n"))
-        database = dbc.mended(plain, lambda mended: super(Dbc, self).load(mended, to), to)
+        database = dbc.mended(
+            plain, lambda mended: super(Dbc, self).load(mended, to), to
+        )
         dbc.give_long_names(database.messages)
         return database
 
-    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+    def account_for(
+        self, file: str, data: bytes, account: Account, reported: set[int | None]
+    ) -> None:
         dbc.account_for(_text(data).replace("\r\n", "\n"), account, reported)
 
 
@@ -99,7 +133,9 @@ class Sym(_Database):
     title = "a symbol file (SYM)"
     begins = r"\A\s*FormatVersion\s*="
 
-    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
+    def account_for(
+        self, file: str, data: bytes, account: Account, reported: set[int | None]
+    ) -> None:
         can_accounting.account_for_sym(_text(data), account)
 
 
@@ -121,8 +157,12 @@ class Kcd(_Xml):
     name, root = "kcd", "NetworkDefinition"
     title = "a CAN definition (KCD)"
 
-    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
-        can_accounting.account_for_kcd(safe_xml.parse(file, data, account=Account()), account)
+    def account_for(
+        self, file: str, data: bytes, account: Account, reported: set[int | None]
+    ) -> None:
+        can_accounting.account_for_kcd(
+            safe_xml.parse(file, data, account=Account()), account
+        )
 
 
 class Arxml(_Xml):
@@ -130,10 +170,16 @@ class Arxml(_Xml):
 
     name, root = "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
-    most_bytes = 64_000_000  # larger than for other kinds, because the format is verbose
+    most_bytes = (
+        64_000_000  # larger than for other kinds, because the format is verbose
+    )
 
-    def account_for(self, file: str, data: bytes, account: Account, reported: set[int | None]) -> None:
-        can_accounting.account_for_arxml(safe_xml.parse(file, data, account=Account()), account)
+    def account_for(
+        self, file: str, data: bytes, account: Account, reported: set[int | None]
+    ) -> None:
+        can_accounting.account_for_arxml(
+            safe_xml.parse(file, data, account=Account()), account
+        )
 
 
 def _text(data: bytes) -> str:
@@ -148,20 +194,38 @@ def _buses(database: Any) -> dict[str, list[Any]]:
     buses: dict[str, list[Any]] = {}
     for message in getattr(database, "messages", ()):
         buses.setdefault(message.bus_name or "", []).append(message)
-    return buses if len(buses) > 1 else {"": [message for messages in buses.values() for message in messages]}
+    return (
+        buses
+        if len(buses) > 1
+        else {"": [message for messages in buses.values() for message in messages]}
+    )
 
 
-def _network(title: str, messages: list[Any], account: Account, to: Definitions) -> Network:
+def _network(
+    title: str, messages: list[Any], account: Account, to: Definitions
+) -> Network:
     # With both frame formats on a bus, bit 31 of the id marks extended frames.
     formats = {bool(message.is_extended_frame) for message in messages}
-    id_bits = CAN_BOTH if len(formats) > 1 else CAN_EXTENDED if True in formats else CAN_STANDARD
-    order = frames.usual(signal_place(signal) for message in messages for signal in message.signals)
+    id_bits = (
+        CAN_BOTH
+        if len(formats) > 1
+        else CAN_EXTENDED if True in formats else CAN_STANDARD
+    )
+    order = frames.usual(
+        signal_place(signal) for message in messages for signal in message.signals
+    )
     head = {**frames.ORDERS[order], "id_bits": id_bits}
     network, enums = Network(node_name(title + ".can"), title, head), Enumerations()
     for message in messages:
         to.total += 1
-        id = message.frame_id | (CAN_EXTENDED_FLAG if id_bits == CAN_BOTH and message.is_extended_frame else 0)
-        of, signals = AccountedObject(message), [AccountedObject(signal) for signal in message.signals]
+        id = message.frame_id | (
+            CAN_EXTENDED_FLAG
+            if id_bits == CAN_BOTH and message.is_extended_frame
+            else 0
+        )
+        of, signals = AccountedObject(message), [
+            AccountedObject(signal) for signal in message.signals
+        ]
         try:
             network.messages.append(_message(of, signals, id, order, enums, to))
         except NotSupported as why:
@@ -169,15 +233,26 @@ def _network(title: str, messages: list[Any], account: Account, to: Definitions)
             continue
         account.attributes(of, "message", f"`{message.name}`")
         for signal in signals:
-            account.attributes(signal, "signal", f"message `{message.name}`, `{signal.name}`")
+            account.attributes(
+                signal, "signal", f"message `{message.name}`, `{signal.name}`"
+            )
     network.name_messages_apart(to)
     network.declare(enums.declared())
     return network
 
 
-def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enumerations, to: Definitions) -> Item:
+def _message(
+    message: Any,
+    signals: list[Any],
+    id: int,
+    order: str,
+    enums: Enumerations,
+    to: Definitions,
+) -> Item:
     if message.is_container:
-        raise NotSupported("it contains other messages in an order that differs from frame to frame")
+        raise NotSupported(
+            "it contains other messages in an order that differs from frame to frame"
+        )
     item: Item = {"name": message.name, "id": Spelled(f"{id:#05X}".replace("X", "x"))}
     item |= {"kind": "telemetry", "length": message.length}
     senders = [sender for sender in message.senders if sender not in _UNKNOWN_SENDERS]
@@ -206,7 +281,8 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
             to.without_field(message.name, signal.name, why)
             signal.settle()
             continue
-        # SYM declares a signal of several multiplexer values several times. These become one field.
+        # SYM declares a signal of several multiplexer values several times. These
+        # become one field.
         same = next(
             (
                 candidate
@@ -219,25 +295,53 @@ def _message(message: Any, signals: list[Any], id: int, order: str, enums: Enume
             placed.append((field, place))
         else:
             (by,) = field["when"]
-            same["when"] = {by: [*frames.listed(same["when"][by]), *frames.listed(field["when"][by])]}
+            same["when"] = {
+                by: [
+                    *frames.listed(same["when"][by]),
+                    *frames.listed(field["when"][by]),
+                ]
+            }
     # A multiplexer that was left out takes the signals that depend on it along.
-    missing = {name for field, _ in placed for name in field.get("when", ())} - {field["name"] for field, _ in placed}
+    missing = {name for field, _ in placed for name in field.get("when", ())} - {
+        field["name"] for field, _ in placed
+    }
     for field, _ in placed:
         if missing & set(field.get("when", ())):
-            to.without_field(message.name, field["name"], "the multiplexer that it depends on is left out")
-    return frames.laid_out(item, [pair for pair in placed if not missing & set(pair[0].get("when", ()))], order, to)
+            to.without_field(
+                message.name,
+                field["name"],
+                "the multiplexer that it depends on is left out",
+            )
+    return frames.laid_out(
+        item,
+        [pair for pair in placed if not missing & set(pair[0].get("when", ()))],
+        order,
+        to,
+    )
 
 
 def _sentences(*texts: str | None) -> str:
     """Join texts to sentences, each with a full stop."""
     plain = [text for each in texts if (text := line(each))]
-    return " ".join(text if text.endswith((".", "!", "?")) or len(plain) == 1 else f"{text}." for text in plain)
+    return " ".join(
+        text if text.endswith((".", "!", "?")) or len(plain) == 1 else f"{text}."
+        for text in plain
+    )
 
 
 def _is_alternative(field: Item, other: Item) -> bool:
-    """Return whether two fields are the same signal, declared for several values of a multiplexer (SYM)."""
-    plain = [{key: value for key, value in item.items() if key not in ("when", "enum")} for item in (field, other)]
-    return plain[0] == plain[1] and "when" in field and field["when"].keys() == other.get("when", {}).keys()
+    """Return whether two fields are the same signal, declared for several values of a
+    multiplexer (SYM).
+    """
+    plain = [
+        {key: value for key, value in item.items() if key not in ("when", "enum")}
+        for item in (field, other)
+    ]
+    return (
+        plain[0] == plain[1]
+        and "when" in field
+        and field["when"].keys() == other.get("when", {}).keys()
+    )
 
 
 def signal_place(signal: Any) -> frames.Place:
@@ -247,28 +351,51 @@ def signal_place(signal: Any) -> frames.Place:
     """
     if signal.byte_order == "little_endian":
         return frames.Place(signal.start, signal.length, frames.LITTLE)
-    return frames.Place(signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG)
+    return frames.Place(
+        signal.start // 8 * 8 + 7 - signal.start % 8, signal.length, frames.BIG
+    )
 
 
-def _field(message: Any, signal: Any, signals: list[Any], enums: Enumerations, to: Definitions) -> Item:
+def _field(
+    message: Any, signal: Any, signals: list[Any], enums: Enumerations, to: Definitions
+) -> Item:
     kind = "float" if signal.is_float else "int" if signal.is_signed else "uint"
-    start = "" if signal.raw_initial is None else f"Start value: {printed(signal.raw_initial)} (raw)."
-    field: Item = {"name": signal.name, "type": kind, **unit(signal.unit), **summary(_sentences(signal.comment, start))}
+    start = (
+        ""
+        if signal.raw_initial is None
+        else f"Start value: {printed(signal.raw_initial)} (raw)."
+    )
+    field: Item = {
+        "name": signal.name,
+        "type": kind,
+        **unit(signal.unit),
+        **summary(_sentences(signal.comment, start)),
+    }
     factor, offset = printed(signal.scale), printed(signal.offset)
     first, last = _range(signal)
     # A negative factor swaps the ends.
-    ends = sorted(Fraction(factor) * value + Fraction(offset) for value in (first, last))
-    low, high = (None if end is None else Fraction(printed(end)) for end in (signal.minimum, signal.maximum))
+    ends = sorted(
+        Fraction(factor) * value + Fraction(offset) for value in (first, last)
+    )
+    low, high = (
+        None if end is None else Fraction(printed(end))
+        for end in (signal.minimum, signal.maximum)
+    )
     field |= formula(factor, offset) | limits(low, high, ends[0], ends[1])
     where = f"message `{message.name}`, `{signal.name}`"
-    if choices := {int(value): str(name) for value, name in (signal.choices or {}).items()}:
+    if choices := {
+        int(value): str(name) for value, name in (signal.choices or {}).items()
+    }:
         enums.hold(field, signal.length, choices, signal.name, message.name, where, to)
     elif _is_flag(signal):
         field["type"] = "bool"
         field.pop("unit", None)
     if (invalid := signal.raw_invalid) is not None and field["type"] in ("uint", "int"):
         if first <= invalid <= last and invalid not in choices:
-            field["special"] = [*field.get("special", ()), {"value": int(invalid), "meaning": "invalid"}]
+            field["special"] = [
+                *field.get("special", ()),
+                {"value": int(invalid), "meaning": "invalid"},
+            ]
     if when := _condition(signal, signals):
         field["when"] = when
     return field
@@ -292,9 +419,13 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
     if signal.multiplexer_ids is None:
         return {}
     name = signal.multiplexer_signal
-    multiplexer = next((candidate for candidate in signals if candidate.name == name), None)
+    multiplexer = next(
+        (candidate for candidate in signals if candidate.name == name), None
+    )
     if multiplexer is None:
-        raise NotSupported(f"it depends on `{name}`, which is not a signal of the message")
+        raise NotSupported(
+            f"it depends on `{name}`, which is not a signal of the message"
+        )
     if multiplexer.multiplexer_ids is not None:
         raise NotSupported(f"it depends on `{name}`, which is optional itself")
     if multiplexer.is_float or (multiplexer.scale, multiplexer.offset) != (1, 0):
@@ -304,5 +435,7 @@ def _condition(signal: Any, signals: list[Any]) -> Item:
     within = [value for value in values if first <= value <= last]
     if not within:
         raise NotSupported(f"it depends on values of `{name}` that it cannot have")
-    condition: list[Any] = [bool(value) for value in within] if _is_flag(multiplexer) else within
+    condition: list[Any] = (
+        [bool(value) for value in within] if _is_flag(multiplexer) else within
+    )
     return {name: condition[0] if len(condition) == 1 else condition}

@@ -1,7 +1,8 @@
-"""Account for the parts of SYM, KCD and ARXML files that cantools ignores without a warning.
+"""Account for the parts of SYM, KCD and ARXML files that cantools ignores without a
+warning.
 
-The tables list the parts that cantools reads and `can` uses, and parts without meaning for an ICD. All other parts
-are counted.
+The tables list the parts that cantools reads and `can` uses, and parts without meaning
+for an ICD. All other parts are counted.
 """
 
 from __future__ import annotations
@@ -15,21 +16,55 @@ from icdgen.definitions.accounting import Account, AccountedElement
 
 # KCD: the attributes and child elements of each element.
 _KCD: Mapping[str, frozenset[str]] = {
-    "NetworkDefinition": frozenset({"Bus", "Node", "Document", "schemaLocation", "noNamespaceSchemaLocation"}),
+    "NetworkDefinition": frozenset(
+        {"Bus", "Node", "Document", "schemaLocation", "noNamespaceSchemaLocation"}
+    ),
     "Document": frozenset({"name", "author", "company", "date", "version", "text"}),
     "Node": frozenset({"id", "name"}),
     "Bus": frozenset({"name", "Message"}),
     "Message": frozenset(
-        {"name", "id", "format", "length", "interval", "triggered", "Notes", "Producer", "Multiplex", "Signal"}
+        {
+            "name",
+            "id",
+            "format",
+            "length",
+            "interval",
+            "triggered",
+            "Notes",
+            "Producer",
+            "Multiplex",
+            "Signal",
+        }
     ),
     "Producer": frozenset({"NodeRef"}),
     "Consumer": frozenset({"NodeRef"}),
     "NodeRef": frozenset({"id"}),
     "Multiplex": frozenset(
-        {"name", "offset", "length", "endianess", "MuxGroup", "Value", "Notes", "LabelSet", "Consumer"}
+        {
+            "name",
+            "offset",
+            "length",
+            "endianess",
+            "MuxGroup",
+            "Value",
+            "Notes",
+            "LabelSet",
+            "Consumer",
+        }
     ),
     "MuxGroup": frozenset({"count", "Signal"}),
-    "Signal": frozenset({"name", "offset", "length", "endianess", "Value", "Notes", "LabelSet", "Consumer"}),
+    "Signal": frozenset(
+        {
+            "name",
+            "offset",
+            "length",
+            "endianess",
+            "Value",
+            "Notes",
+            "LabelSet",
+            "Consumer",
+        }
+    ),
     "Value": frozenset({"min", "max", "slope", "intercept", "unit", "type"}),
     "LabelSet": frozenset({"Label"}),
     "Label": frozenset({"name", "value", "type"}),
@@ -37,14 +72,19 @@ _KCD: Mapping[str, frozenset[str]] = {
 }
 
 # SYM: keys of the head and of symbols, and attributes of signals.
-_SYM_KEYS = frozenset({"FormatVersion", "Enum", "Sig", "Var", "Mux", "ID", "Len", "CycleTime", "Type"})
-_SYM_WITHOUT_MEANING = frozenset({"Title", "UniqueVariables", "FloatDecimalPlaces", "BRS", "Color"})
+_SYM_KEYS = frozenset(
+    {"FormatVersion", "Enum", "Sig", "Var", "Mux", "ID", "Len", "CycleTime", "Type"}
+)
+_SYM_WITHOUT_MEANING = frozenset(
+    {"Title", "UniqueVariables", "FloatDecimalPlaces", "BRS", "Color"}
+)
 _SYM_ATTRIBUTES = frozenset({"u", "f", "o", "min", "max", "e", "spn"})
 _SYM_LINE = re.compile(r"\s*(\w+)\s*=")
 _SYM_TOKEN = re.compile(r'"(?:\\"|[^"])*"|//.*|/(\w+):')
 _SYM_NUMBERED = re.compile(r'(?:Sig|Var)\s*=\s*(?:"[^"]*"|\w+)\s+(string|raw|char)\b')
 
-# ARXML: the elements of packages that cantools reads, that these refer to by name, or that have no meaning for an ICD.
+# ARXML: the elements of packages that cantools reads, that these refer to by name, or
+# that have no meaning for an ICD.
 _ARXML = frozenset(
     {
         "BASE-TYPE", "SW-BASE-TYPE", "CAN-CLUSTER", "CAN-FRAME", "COMPU-METHOD", "CONSTANT-SPECIFICATION", "ECU-INSTANCE",
@@ -65,18 +105,24 @@ def account_for_kcd(root: Element, account: Account) -> None:
         place = f"`{element.get('name')}`" if element.get("name") else ""
         for key in element.attrib:
             if _local(key) not in used:
-                account.add(owner, _local(key), place, cast(AccountedElement, element).line)
+                account.add(
+                    owner, _local(key), place, cast(AccountedElement, element).line
+                )
         for child in reversed(element):
             if not isinstance(child.tag, str):
                 continue  # a comment
             if _local(child.tag) in used:
                 stack.append(child)
             else:
-                account.add(owner, _local(child.tag), place, cast(AccountedElement, child).line)
+                account.add(
+                    owner, _local(child.tag), place, cast(AccountedElement, child).line
+                )
 
 
 def account_for_sym(text: str, account: Account) -> None:
-    """Count unused keys and attributes of a symbol file, and types that are imported as numbers."""
+    """Count unused keys and attributes of a symbol file, and types that are imported as
+    numbers.
+    """
     symbol = ""
     for number, line in enumerate(text.splitlines(), 1):
         if begin := re.match(r'\s*\["?([^"\]]*)"?\]', line):
@@ -94,13 +140,30 @@ def account_for_sym(text: str, account: Account) -> None:
 
 
 def account_for_arxml(root: Element, account: Account) -> None:
-    """Count package elements of ARXML kinds that do not describe frames, PDUs or signals on CAN."""
+    """Count package elements of ARXML kinds that do not describe frames, PDUs or
+    signals on CAN.
+    """
     for element in root.iter():
         if isinstance(element.tag, str) and _local(element.tag) == "ELEMENTS":
             for child in element:
-                if isinstance(child.tag, str) and (kind := _local(child.tag)) not in _ARXML:
-                    name = next((inner.text for inner in child if _local(inner.tag) == "SHORT-NAME"), None)
-                    account.add("ELEMENTS", kind, f"`{name}`" if name else "", cast(AccountedElement, child).line)
+                if (
+                    isinstance(child.tag, str)
+                    and (kind := _local(child.tag)) not in _ARXML
+                ):
+                    name = next(
+                        (
+                            inner.text
+                            for inner in child
+                            if _local(inner.tag) == "SHORT-NAME"
+                        ),
+                        None,
+                    )
+                    account.add(
+                        "ELEMENTS",
+                        kind,
+                        f"`{name}`" if name else "",
+                        cast(AccountedElement, child).line,
+                    )
 
 
 def _local(name: str) -> str:

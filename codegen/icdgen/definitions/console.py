@@ -16,22 +16,36 @@ _LISTED = 20  # identifiers that are shown; all are in the JSON, and in the ICD
 
 
 def report(reads: Sequence[Read], colour: bool = False) -> str:
-    """Return the findings of each definition, followed by its statistics and the renamed identifiers."""
+    """Return the findings of each definition, followed by its statistics and the
+    renamed identifiers.
+    """
     shown = [
         read
         for read in reads
-        if len(reads) == 1 or read.trees or read.definitions.total or read.definitions.import_findings
+        if len(reads) == 1
+        or read.trees
+        or read.definitions.total
+        or read.definitions.import_findings
     ]
     blocks = ["\n".join(_lines(read, colour)) for read in shown]
-    if unshown := [printable(read.definitions.file) for read in reads if read not in shown]:
-        names = ", ".join(unshown[:_LISTED]) + (f" and {len(unshown) - _LISTED} more" if len(unshown) > _LISTED else "")
-        blocks.append(f"without messages of {'its' if len(unshown) == 1 else 'their'} own: {names}")
+    if unshown := [
+        printable(read.definitions.file) for read in reads if read not in shown
+    ]:
+        names = ", ".join(unshown[:_LISTED]) + (
+            f" and {len(unshown) - _LISTED} more" if len(unshown) > _LISTED else ""
+        )
+        blocks.append(
+            f"without messages of {'its' if len(unshown) == 1 else 'their'} own: {names}"
+        )
     return "\n\n".join(blocks)
 
 
 def _lines(read: Read, colour: bool) -> list[str]:
     definitions = read.definitions
-    return [*shared.findings(definitions.import_findings, definitions.file, colour), *map(printable, _summary(read))]
+    return [
+        *shared.findings(definitions.import_findings, definitions.file, colour),
+        *map(printable, _summary(read)),
+    ]
 
 
 def _summary(read: Read) -> list[str]:
@@ -42,21 +56,30 @@ def _summary(read: Read) -> list[str]:
     ]
     if names:
         many = f"{len(names)} names that are not valid identifiers got one"
-        what = many if len(names) > 1 else "1 name that is not a valid identifier got one"
+        what = (
+            many if len(names) > 1 else "1 name that is not a valid identifier got one"
+        )
         lines += [f"{what}:", *(f"  {name}" for name in names[:_LISTED])]
         lines += [f"  and {len(names) - _LISTED} more"] if len(names) > _LISTED else []
     return lines
 
 
-def as_json(reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[Finding]) -> str:
-    """Return the report as JSON. ``checked`` are the findings of `icdgen check` for the generated files.
+def as_json(
+    reads: Sequence[Read], targets: Sequence[Target], checked: Sequence[Finding]
+) -> str:
+    """Return the report as JSON.
 
-    The keys of a single definition are at the top level. Several definitions form a list under the key
-    `definitions`.
+    ``checked`` are the findings of `icdgen check` for the generated files.
+
+    The keys of a single definition are at the top level. Several definitions form a
+    list under the key `definitions`.
     """
     listed = [_as_item(read) for read in reads]
     head = listed[0] if len(listed) == 1 else {"definitions": listed}
-    tail = {"files": shared.files_as_json(targets), "check": shared.checked_as_json(checked)}
+    tail = {
+        "files": shared.files_as_json(targets),
+        "check": shared.checked_as_json(checked),
+    }
     return json.dumps({**head, **tail}, indent=2, ensure_ascii=False)
 
 
@@ -65,6 +88,8 @@ def _as_item(read: Read) -> dict[str, Any]:
     findings = []
     for finding in definitions.import_findings:
         place = {"file": finding.spot.file} if finding.spot.file else {}
-        findings.append({**shared.finding_as_json(finding), **place, "line": finding.spot.line})
+        findings.append(
+            {**shared.finding_as_json(finding), **place, "line": finding.spot.line}
+        )
     return {"definition": definitions.file, "kind": read.kind, "messages": definitions.total, "held": read.imported,
             "findings": findings, "identifiers": read.identifiers}  # fmt: skip

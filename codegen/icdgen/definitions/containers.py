@@ -1,8 +1,10 @@
-"""Layout of frames as entries in sequence, shared by the readers of XTCE, electronic data sheets and Kaitai Struct.
+"""Layout of frames as entries in sequence, shared by the readers of XTCE, electronic
+data sheets and Kaitai Struct.
 
-A reader walks through its source and adds a part for each entry. This module handles the positions of parts,
-variable-length parts with their counters, and constants that conditions require. If an entry cannot be imported, the
-remaining bytes become one field. The module also creates the fields of the ICD.
+A reader walks through its source and adds a part for each entry. This module handles
+the positions of parts, variable-length parts with their counters, and constants that
+conditions require. If an entry cannot be imported, the remaining bytes become one
+field. The module also creates the fields of the ICD.
 """
 
 from __future__ import annotations
@@ -22,7 +24,10 @@ _ID_BITS = (8, 16, 24, 32)
 
 @dataclass
 class Piece:
-    """Field of a type, without name and position. ``bits`` is 0 if the length varies."""
+    """Field of a type, without name and position.
+
+    ``bits`` is 0 if the length varies.
+    """
 
     item: Item
     bits: int
@@ -31,10 +36,12 @@ class Piece:
 
 @dataclass
 class Part:
-    """Entry of a container with its position ``at``, in bits from the start of the frame.
+    """Entry of a container with its position ``at``, in bits from the start of the
+    frame.
 
-    ``path`` contains the names of the enclosing entries and of the entry itself. ``item`` has the keys of the ICD
-    field, without name and position. ``bits`` is the size of all elements, or 0 if their number varies.
+    ``path`` contains the names of the enclosing entries and of the entry itself.
+    ``item`` has the keys of the ICD field, without name and position. ``bits`` is the
+    size of all elements, or 0 if their number varies.
     """
 
     path: tuple[str, ...]
@@ -43,7 +50,10 @@ class Part:
     bits: int
     order: str = BIG
     element: int = 8  # bits of an element, if their number varies
-    counter: Counter | None = None  # of a variable-length part, which extends to the end of the frame without one
+    counter: Counter | None = (
+        # Of a variable-length part, which extends to the end of the frame without one.
+        None
+    )
 
     @property
     def end(self) -> int:
@@ -57,11 +67,17 @@ class Part:
         An id is a big-endian integer of 1 to 4 bytes at bit 0, without formula.
         """
         is_placed = self.at == 0 and self.bits in _ID_BITS and self.order == BIG
-        return is_placed and self.item.get("type") in ("uint", "enum") and "formula" not in self.item
+        return (
+            is_placed
+            and self.item.get("type") in ("uint", "enum")
+            and "formula" not in self.item
+        )
 
 
 class Counter(NamedTuple):
-    """Part whose value plus ``plus`` is the number of elements, or bytes, of a variable-length part."""
+    """Part whose value plus ``plus`` is the number of elements, or bytes, of a
+    variable-length part.
+    """
 
     part: Part
     plus: int = 0
@@ -73,12 +89,17 @@ class Counter(NamedTuple):
 
 
 class Lost(NamedTuple):
-    """First entry that cannot be imported, with the reason. The frame is imported as bytes from this entry on."""
+    """First entry that cannot be imported, with the reason.
+
+    The frame is imported as bytes from this entry on.
+    """
 
     name: str
     why: NotSupported
 
-    def report(self, message: str, to: Definitions, line: int | None = None, file: str = "") -> None:
+    def report(
+        self, message: str, to: Definitions, line: int | None = None, file: str = ""
+    ) -> None:
         """Report the entry as an error of a message (IMP081)."""
         text = f"message `{message}`: from `{self.name}` on only bytes are imported: {self.why}"
         help = self.why.help or "describe the rest by hand, or simplify the definition"
@@ -101,7 +122,9 @@ class Container(Generic[AnyPart]):
 
     @property
     def is_open(self) -> bool:
-        """Return whether the last part has a variable length, so that no part can follow."""
+        """Return whether the last part has a variable length, so that no part can
+        follow.
+        """
         return bool(self.parts) and not self.parts[-1].bits
 
     def add(self, part: AnyPart) -> None:
@@ -110,17 +133,28 @@ class Container(Generic[AnyPart]):
         self.at = part.end
 
     def check_size(self) -> None:
-        """Raise `NotSupported` if the container exceeds the fields or bytes that an ICD supports."""
+        """Raise `NotSupported` if the container exceeds the fields or bytes that an ICD
+        supports.
+        """
         if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
-            raise NotSupported(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
+            raise NotSupported(
+                f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes"
+            )
 
     def lose(self, remainder: AnyPart, why: NotSupported, before: int) -> None:
-        """Replace all but the first ``before`` parts by ``remainder``, the bytes up to the end of the frame.
+        """Replace all but the first ``before`` parts by ``remainder``, the bytes up to
+        the end of the frame.
 
-        Raises ``why`` if ``remainder`` does not begin at a byte boundary, or if the part in front of it is missing or has
-        a variable length. Also raises ``why`` if parts were replaced before.
+        Raises ``why`` if ``remainder`` does not begin at a byte boundary, or if the
+        part in front of it is missing or has a variable length. Also raises ``why`` if
+        parts were replaced before.
         """
-        if self.lost is not None or not before or remainder.at % 8 or not self.parts[before - 1].bits:
+        if (
+            self.lost is not None
+            or not before
+            or remainder.at % 8
+            or not self.parts[before - 1].bits
+        ):
             raise why
         del self.parts[before:]
         remainder.item.update(type="bytes", up_to=MOST_BYTES)
@@ -128,7 +162,9 @@ class Container(Generic[AnyPart]):
         self.at, self.lost = remainder.at, Lost(remainder.path[-1], why)
 
     def missing(self, name: str) -> NotSupported:
-        """Return the error for a condition on a part that the container does not contain."""
+        """Return the error for a condition on a part that the container does not
+        contain.
+        """
         if self.lost is None:
             return NotSupported(f"it depends on `{name}`, which it does not have")
         text = f"it depends on `{name}`, which is in or behind `{self.lost.name}`: {self.lost.why}"
@@ -136,9 +172,13 @@ class Container(Generic[AnyPart]):
 
 
 def check_only_value(item: Item, raw: int, name: str) -> None:
-    """Raise `NotSupported` if a field has a constant that differs from the raw value of a condition."""
+    """Raise `NotSupported` if a field has a constant that differs from the raw value of
+    a condition.
+    """
     if item.get("const", raw) != raw:
-        raise NotSupported(f"it depends on `{name}`, which is both {item['const']} and {raw}")
+        raise NotSupported(
+            f"it depends on `{name}`, which is both {item['const']} and {raw}"
+        )
 
 
 def fixed_field(part: Part, name: str, at: int) -> Item:
@@ -151,14 +191,23 @@ def fixed_field(part: Part, name: str, at: int) -> Item:
     bits = int(part.item.get("bits", part.bits))
     is_number = part.item["type"] not in ("bytes", "text")
     # Byte order has no meaning for a single byte, bytes and texts.
-    order = {"byte_order": LITTLE} if part.order == LITTLE and bits > 8 and is_number else {}
-    return replace_keys(part.item, {"at": at, "bits": bits, "name": name, **part.item, **order})
+    order = (
+        {"byte_order": LITTLE}
+        if part.order == LITTLE and bits > 8 and is_number
+        else {}
+    )
+    return replace_keys(
+        part.item, {"at": at, "bits": bits, "name": name, **part.item, **order}
+    )
 
 
 def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> Item:
-    """Return the ICD field of a variable-length part. ``names`` maps the `id` of each part of the message to its name.
+    """Return the ICD field of a variable-length part.
 
-    Raises `NotSupported` if the field does not begin at a byte boundary, or if its counter is not in the message.
+    ``names`` maps the `id` of each part of the message to its name.
+
+    Raises `NotSupported` if the field does not begin at a byte boundary, or if its
+    counter is not in the message.
     """
     if at % 8:
         raise NotSupported(f"`{name}`, whose length is not fixed, begins within a byte")
@@ -167,10 +216,22 @@ def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> 
         counter = names.get(id(part.counter.part))
         if counter is None:
             raise NotSupported(f"`{name}` is counted by a field of the header")
-        size = {"field": counter, "plus": part.counter.plus} if part.counter.plus else counter
-    # The largest frame leaves room for this number of elements after the preceding fields.
+        size = (
+            {"field": counter, "plus": part.counter.plus}
+            if part.counter.plus
+            else counter
+        )
+    # The largest frame leaves room for this number of elements after the preceding
+    # fields.
     room = max(1, (8 * MOST_BYTES - at) // part.element)
     key = "count" if part.item.keys() & {"bits", "struct"} else "size"
     return replace_keys(
-        part.item, {"at": at, "name": name, **part.item, key: size, "up_to": min(part.item["up_to"], room)}
+        part.item,
+        {
+            "at": at,
+            "name": name,
+            **part.item,
+            key: size,
+            "up_to": min(part.item["up_to"], room),
+        },
     )

@@ -26,15 +26,20 @@ _WITH_ID = re.compile(
     re.MULTILINE,
 )
 _MESSAGE = re.compile(r"\s*BO_\s+(\d+)\s+(\w+)")
-_NO_MESSAGE = 0xC0000000  # VECTOR__INDEPENDENT_SIG_MSG: pseudo message for signals without a message
+# VECTOR__INDEPENDENT_SIG_MSG: pseudo message for signals without a message
+_NO_MESSAGE = 0xC0000000
 _SYNTAX = re.compile(r"Invalid syntax at line (\d+), column (\d+)")
 _UNUSED = re.compile(r'^\s*(VAL_|SIG_VALTYPE_) (\d+) (\w+)"?$', re.MULTILINE)
 _STATEMENT = re.compile(r"\s*[A-Z][A-Z_]*_\b")
 
 
-_STRING_OR_KEYWORD = re.compile(r'"(?:\\"|[^"])*"|^[ \t]*([A-Z][A-Z_]*)(?=[ \t]*[:"\w])', re.MULTILINE)
+_STRING_OR_KEYWORD = re.compile(
+    r'"(?:\\"|[^"])*"|^[ \t]*([A-Z][A-Z_]*)(?=[ \t]*[:"\w])', re.MULTILINE
+)
 _OF_MESSAGE = re.compile(r'[A-Z_]+\s+(?:"[^"]*"\s+)?(?:(?:BO_|SG_)\s+)?(\d+)\b')
-_ATTRIBUTE = re.compile(r'BA_\s+"([^"]*)"\s*((?:BO_|SG_|BU_|EV_)[^"]*?)?\s*(?:"[^"]*"|[-+.\w]+)\s*;')
+_ATTRIBUTE = re.compile(
+    r'BA_\s+"([^"]*)"\s*((?:BO_|SG_|BU_|EV_)[^"]*?)?\s*(?:"[^"]*"|[-+.\w]+)\s*;'
+)
 _COMMENT = re.compile(r"CM_\s+(\w*)")
 # Statements that cantools and `can` use, or that only declare what others use.
 _USED = frozenset(
@@ -46,14 +51,24 @@ _USED = frozenset(
 _LONG_SIGNAL, _LONG_MESSAGE = "SystemSignalLongSymbol", "SystemMessageLongSymbol"
 # The frame format follows from id and length; of the send type `can` accounts.
 _USED_ATTRIBUTES = frozenset(
-    {"GenMsgCycleTime", "GenSigStartValue", "GenMsgSendType", "SPN", "VFrameFormat", "SystemNodeLongSymbol"}
+    {
+        "GenMsgCycleTime",
+        "GenSigStartValue",
+        "GenMsgSendType",
+        "SPN",
+        "VFrameFormat",
+        "SystemNodeLongSymbol",
+    }
     | {_LONG_SIGNAL, _LONG_MESSAGE}
 )
 _HIDDEN_SUFFIX = " of a DBC"  # suffix for attributes that cantools must not interpret
 
 
 class _Statement(NamedTuple):
-    """Statement with its first line, counted from 1. Each signal is a separate statement."""
+    """Statement with its first line, counted from 1.
+
+    Each signal is a separate statement.
+    """
 
     keyword: str
     text: str
@@ -61,18 +76,27 @@ class _Statement(NamedTuple):
 
 
 def account_for(text: str, account: Account, reported: Container[int | None]) -> None:
-    """Count unused statements and attributes of a DBC, except in lines of ``reported``, which have a finding."""
+    """Count unused statements and attributes of a DBC, except in lines of ``reported``,
+    which have a finding.
+    """
     for statement in _statements(text):
         if statement.line in reported:
             continue
         if statement.keyword == "BA_":
             match = _ATTRIBUTE.match(statement.text)
             if match is not None and match[1] not in _USED_ATTRIBUTES:
-                account.add("BA_", match[1], f"`{' '.join(match[2].split())}`" if match[2] else "", statement.line)
+                account.add(
+                    "BA_",
+                    match[1],
+                    f"`{' '.join(match[2].split())}`" if match[2] else "",
+                    statement.line,
+                )
         elif statement.keyword == "CM_":
             target = _COMMENT.match(statement.text)
             if target is not None and target[1] not in ("BO_", "SG_"):
-                account.add("CM_", target[1] or "text of the network", "", statement.line)
+                account.add(
+                    "CM_", target[1] or "text of the network", "", statement.line
+                )
         elif statement.keyword == "VERSION":
             if not re.match(r'VERSION\s*""', statement.text):
                 account.add("", statement.keyword, "", statement.line)
@@ -97,9 +121,11 @@ def _statements(text: str) -> Iterator[_Statement]:
 
 
 def with_short_names(text: str) -> str:
-    """Return the text with the attributes for long names renamed, so that cantools does not interpret them.
+    """Return the text with the attributes for long names renamed, so that cantools does
+    not interpret them.
 
-    Otherwise cantools uses long names for signals but short names for their multiplexers.
+    Otherwise cantools uses long names for signals but short names for their
+    multiplexers.
     """
     for name in (_LONG_SIGNAL, _LONG_MESSAGE):
         text = text.replace(f'"{name}"', f'"{name}{_HIDDEN_SUFFIX}"')
@@ -107,23 +133,34 @@ def with_short_names(text: str) -> str:
 
 
 def give_long_names(messages: list[Any]) -> None:
-    """Rename messages and signals to the names in their long-name attributes, unless these are empty or duplicate."""
+    """Rename messages and signals to the names in their long-name attributes, unless
+    these are empty or duplicate.
+    """
     names = {message.name for message in messages}
     for message in messages:
         taken = {signal.name for signal in message.signals}
-        long = {signal.name: _long_name(signal, _LONG_SIGNAL, taken) for signal in message.signals}
+        long = {
+            signal.name: _long_name(signal, _LONG_SIGNAL, taken)
+            for signal in message.signals
+        }
         for signal in message.signals:
             signal.name = long[signal.name]
             if signal.multiplexer_signal is not None:
-                signal.multiplexer_signal = long.get(signal.multiplexer_signal, signal.multiplexer_signal)
+                signal.multiplexer_signal = long.get(
+                    signal.multiplexer_signal, signal.multiplexer_signal
+                )
         message.name = _long_name(message, _LONG_MESSAGE, names)
         message.refresh(strict=False)
 
 
 def _long_name(item: Any, attribute: str, taken: set[str]) -> str:
-    """Return the long name, or the short name if there is no long name or it is already taken."""
+    """Return the long name, or the short name if there is no long name or it is already
+    taken.
+    """
     value = (
-        item.dbc.attributes.get(attribute + _HIDDEN_SUFFIX) if item.dbc is not None and item.dbc.attributes else None
+        item.dbc.attributes.get(attribute + _HIDDEN_SUFFIX)
+        if item.dbc is not None and item.dbc.attributes
+        else None
     )
     name = one_line(str(value.value), _LONGEST_NAME) if value is not None else ""
     if not name or name in taken:
@@ -133,14 +170,23 @@ def _long_name(item: Any, attribute: str, taken: set[str]) -> str:
 
 
 def mended(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """Return the result of ``load`` for the repaired text. Reports a last line that may be truncated."""
+    """Return the result of ``load`` for the repaired text.
+
+    Reports a last line that may be truncated.
+    """
     database = _load_repaired(text, load, to)
     last = text.count("\n") + 1
     if text.rstrip(" \t")[-1:] not in ("\n", ";", "") and all(
         finding.spot.line != last for finding in to.import_findings
     ):
         what = f"the file ends within line {last}: `{one_line(text[text.rfind(chr(10)) + 1 :], 60)}`"
-        to.warn(NOT_UNDERSTOOD, what, "check whether the file is complete: the rest may be cut off", "warning", last)
+        to.warn(
+            NOT_UNDERSTOOD,
+            what,
+            "check whether the file is complete: the rest may be cut off",
+            "warning",
+            last,
+        )
     return database
 
 
@@ -154,9 +200,13 @@ def _load_repaired(text: str, load: Callable[[str], Any], to: Definitions) -> An
         for _ in range(MOST):
             try:
                 return load(text)
-            except Exception as error:  # cantools raises its own exceptions and exceptions of its parser
+            except (
+                Exception
+            ) as error:  # cantools raises its own exceptions and exceptions of its parser
                 reason = str(error)
-                repaired = _without_line(text, reason, to) or _without_unused(text, reason, to)
+                repaired = _without_line(text, reason, to) or _without_unused(
+                    text, reason, to
+                )
                 if repaired is None:
                     raise
                 text = repaired
@@ -169,7 +219,9 @@ def _load_repaired(text: str, load: Callable[[str], Any], to: Definitions) -> An
 
 
 def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) -> Any:
-    """Load each message separately with its attributes and comments, and return the messages that can be read."""
+    """Load each message separately with its attributes and comments, and return the
+    messages that can be read.
+    """
     shared, blocks = "", []
     of_message: defaultdict[str, str] = defaultdict(str)
     block: list[_Statement] = []
@@ -189,15 +241,25 @@ def _message_by_message(text: str, load: Callable[[str], Any], to: Definitions) 
         if head is None or int(head[1]) == _NO_MESSAGE:
             continue
         try:
-            messages += load(shared + "".join(statement.text for statement in block) + of_message[head[1]]).messages
+            messages += load(
+                shared
+                + "".join(statement.text for statement in block)
+                + of_message[head[1]]
+            ).messages
         except Exception as error:
             to.total += 1
-            to.left_out(head[2], one_line(str(error), 200) or type(error).__name__, block[0].line)
+            to.left_out(
+                head[2],
+                one_line(str(error), 200) or type(error).__name__,
+                block[0].line,
+            )
     return SimpleNamespace(messages=messages)
 
 
 def _with_extended_ids(text: str, to: Definitions) -> str:
-    """Set the flag of extended frames (bit 31) in ids that exceed the 11 bits of a standard frame."""
+    """Set the flag of extended frames (bit 31) in ids that exceed the 11 bits of a
+    standard frame.
+    """
     reported = set()
 
     def widen(match: re.Match[str]) -> str:
@@ -220,24 +282,39 @@ def _without_invalid_ids(text: str, to: Definitions) -> str:
     lines = text.split("\n")
     for number, line in enumerate(lines):
         match = _MESSAGE.match(line)
-        if match is None or int(match[1]) == _NO_MESSAGE or int(match[1]) & ~_EXTENDED < 1 << 29:
+        if (
+            match is None
+            or int(match[1]) == _NO_MESSAGE
+            or int(match[1]) & ~_EXTENDED < 1 << 29
+        ):
             continue
         to.total += 1
-        to.left_out(match[2], f"its id is {int(match[1]):#x}, which no frame has", number + 1)
-        lines[number : _end_of_statement(lines, number)] = [""] * (_end_of_statement(lines, number) - number)
+        to.left_out(
+            match[2], f"its id is {int(match[1]):#x}, which no frame has", number + 1
+        )
+        lines[number : _end_of_statement(lines, number)] = [""] * (
+            _end_of_statement(lines, number) - number
+        )
     return "\n".join(lines)
 
 
 def _end_of_statement(lines: list[str], number: int) -> int:
-    """Return the index of the line after a message with its signals, or after another statement."""
+    """Return the index of the line after a message with its signals, or after another
+    statement.
+    """
     end = number + 1
-    while lines[number].lstrip().startswith("BO_ ") and end < len(lines) and lines[end].lstrip().startswith("SG_"):
+    while (
+        lines[number].lstrip().startswith("BO_ ")
+        and end < len(lines)
+        and lines[end].lstrip().startswith("SG_")
+    ):
         end += 1
     return end
 
 
 def _without_line(text: str, error: str, to: Definitions) -> str | None:
-    """Return the text without the statement of a syntax error, or None if it cannot be located.
+    """Return the text without the statement of a syntax error, or None if it cannot be
+    located.
 
     ``error`` is the message of cantools.
 
@@ -248,33 +325,52 @@ def _without_line(text: str, error: str, to: Definitions) -> str | None:
         return None
     lines = text.split("\n")
     number, column = int(match[1]) - 1, int(match[2])
-    if number >= len(lines) or not "".join(lines[number:]).strip():  # the parser reached the end of the file
-        number, column = max((at for at, line in enumerate(lines) if line.strip()), default=0), 0
-    if column == 1 + len(lines[number]) - len(lines[number].lstrip()) and _STATEMENT.match(lines[number]):
-        before = next((at for at in range(number - 1, -1, -1) if lines[at].strip()), None)
+    if (
+        number >= len(lines) or not "".join(lines[number:]).strip()
+    ):  # the parser reached the end of the file
+        number, column = (
+            max((at for at, line in enumerate(lines) if line.strip()), default=0),
+            0,
+        )
+    if column == 1 + len(lines[number]) - len(
+        lines[number].lstrip()
+    ) and _STATEMENT.match(lines[number]):
+        before = next(
+            (at for at in range(number - 1, -1, -1) if lines[at].strip()), None
+        )
         if before is None:
             return None
         number = before  # the previous statement lacks its end
     end = _end_of_statement(lines, number)
     shown = lines[number].strip()
     shown = shown if len(shown) <= 80 else shown[:77] + "..."
-    more = f", nor are the {end - number - 1} signals below it" if end - number > 1 else ""
+    more = (
+        f", nor are the {end - number - 1} signals below it" if end - number > 1 else ""
+    )
     what = f"`{shown}` is not understood{more}"
-    to.warn(NOT_UNDERSTOOD, what, "it is left out: correct the line", "error", number + 1)
+    to.warn(
+        NOT_UNDERSTOOD, what, "it is left out: correct the line", "error", number + 1
+    )
     # Empty lines keep the line numbers of later findings.
     lines[number:end] = [""] * (end - number)
     return "\n".join(lines)
 
 
 def _without_unused(text: str, error: str, to: Definitions) -> str | None:
-    """Return the text without value statements about missing signals, or None if there is no such statement."""
+    """Return the text without value statements about missing signals, or None if there
+    is no such statement.
+    """
     for keyword, id, name in _UNUSED.findall(error):
-        statement = rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
+        statement = (
+            rf'^[ \t]*{keyword}\s+{id}\s+{re.escape(name)}\s[^";]*(?:"[^"]*"[^";]*)*;'
+        )
         match = re.search(statement, text, re.MULTILINE)
         if match is None:
             return None
         line = text.count("\n", 0, match.start()) + 1
-        message = f"`{keyword}` names `{name}` of message {id}, which has no such signal"
+        message = (
+            f"`{keyword}` names `{name}` of message {id}, which has no such signal"
+        )
         to.warn(REPAIRED, message, "it is left out", line=line)
         text = text[: match.start()] + "\n" * match[0].count("\n") + text[match.end() :]
     return text if _UNUSED.search(error) else None

@@ -23,12 +23,16 @@ PROCESS, UNSENT = "IMP083", "IMP084"
 _SPACE = "ccsds.org/schema/sois/seds"
 _WITHOUT_EFFECT = frozenset({
     "schemaLocation", "Device.name", "ContainerDataType.abstract",
-    "Variable.type", "Variable.readOnly",  # the initial values of variables give the topic ids of interfaces
+    # The initial values of variables give the topic ids of interfaces.
+    "Variable.type", "Variable.readOnly",
 })  # fmt: skip
 
 
 class Eds:
-    """Reader of package files and device data sheets. References may lead to other files in the folder."""
+    """Reader of package files and device data sheets.
+
+    References may lead to other files in the folder.
+    """
 
     name = "eds"
     title = "an electronic data sheet (CCSDS SOIS)"
@@ -36,33 +40,55 @@ class Eds:
 
     def knows(self, start: str) -> bool:
         root = safe_xml.root_of(start)
-        return root == eds_sheets.PARAMETERS or (root in eds_sheets.ROOTS and _SPACE in start)
+        return root == eds_sheets.PARAMETERS or (
+            root in eds_sheets.ROOTS and _SPACE in start
+        )
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Read a data sheet. Raises `Findings` if the file, or an XML file in its folder, cannot be read."""
+        """Read a data sheet.
+
+        Raises `Findings` if the file, or an XML file in its folder, cannot be read.
+        """
         account = Account(_WITHOUT_EFFECT)
         to = Definitions(file)
-        sheets = Sheets(safe_xml.parse(file, data, account=account), eds_sheets.beside(file, len(data)), to)
+        sheets = Sheets(
+            safe_xml.parse(file, data, account=account),
+            eds_sheets.beside(file, len(data)),
+            to,
+        )
         _define(sheets, to)
         account.elements(sheets.root)
         account.report(to)
         return to
 
     def read_set(self, sources: Sequence[Source]) -> list[Definitions]:
-        """Return the definitions of each file. All files and their folders share types and design parameters."""
+        """Return the definitions of each file.
+
+        All files and their folders share types and design parameters.
+        """
         results = [Definitions(source.file) for source in sources]
         roots: dict[str, Element] = {}
         for source, to in zip(sources, results, strict=True):
             try:
-                roots[source.file] = safe_xml.parse(source.file, source.data, account=Account())
+                roots[source.file] = safe_xml.parse(
+                    source.file, source.data, account=Account()
+                )
             except Findings as error:
                 to.refuse(error)
         for to in results:
             if (root := roots.get(to.file)) is None:
                 continue
             # Files of the import take precedence over other files of the folder.
-            neighbours = [(path, neighbour) for path, neighbour in roots.items() if path != to.file]
-            neighbours += [(path, neighbour) for path, neighbour in eds_sheets.beside(to.file, 0) if path not in roots]
+            neighbours = [
+                (path, neighbour)
+                for path, neighbour in roots.items()
+                if path != to.file
+            ]
+            neighbours += [
+                (path, neighbour)
+                for path, neighbour in eds_sheets.beside(to.file, 0)
+                if path not in roots
+            ]
             sheets = Sheets(root, neighbours, to)
             if sheets.own:
                 _define(sheets, to)
@@ -80,14 +106,20 @@ def _define(sheets: Sheets, to: Definitions) -> None:
     sent, independent = Interfaces(sheets).sent()
     containers = [
         container
-        for container in (_read_message(sending, sheets, types, structs, to) for sending in sent)
+        for container in (
+            _read_message(sending, sheets, types, structs, to) for sending in sent
+        )
         if container is not None
     ]
     types.report_raw_only()
-    network = Network(node_name(to.file), _title(sheets) or node_name(to.file), {**ORDERS[BIG]})
+    network = Network(
+        node_name(to.file), _title(sheets) or node_name(to.file), {**ORDERS[BIG]}
+    )
     packets.fill(network, containers, to)
     network.name_messages_apart(to)
-    _report_process([container for container in containers if container.is_by_interface], to)
+    _report_process(
+        [container for container in containers if container.is_by_interface], to
+    )
     _report_unsent(independent, sheets, to)
     network.structs = _used_structs(list(structs.items.values()), network.messages)
     network.declare(types.enums.declared())
@@ -97,28 +129,50 @@ def _define(sheets: Sheets, to: Definitions) -> None:
 class _Message:
     """Container with its layout, kind and header, ready to become a message."""
 
-    def __init__(self, sending: Sending, layout: Layout, more: Item, sheets: Sheets) -> None:
+    def __init__(
+        self, sending: Sending, layout: Layout, more: Item, sheets: Sheets
+    ) -> None:
         self.container, self.layout, self.more = sending.container, layout, more
         self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
         self.line = sheets.line(sending.container)
         self.told = layout.constants
         self.front = layout.front()
-        # The type flag of the header takes precedence over the direction of the interface.
+        # The type flag of the header takes precedence over the direction of the
+        # interface.
         head = layout.header()
-        self.kind = (head.kind if head is not None else None) or sending.kind or packets.TELEMETRY
+        self.kind = (
+            (head.kind if head is not None else None)
+            or sending.kind
+            or packets.TELEMETRY
+        )
         sending.kind = self.kind
         apid = sending.apid(sheets)
-        self.is_by_interface = head is not None and head.apid is None and apid is not None
+        self.is_by_interface = (
+            head is not None and head.apid is None and apid is not None
+        )
         self.parameter = sending.parameter
-        self.header = head._replace(apid=apid) if head is not None and head.apid is None else head
+        self.header = (
+            head._replace(apid=apid) if head is not None and head.apid is None else head
+        )
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """Return the ICD message from the bit ``start`` on. Raises `NotSupported` if it is not supported."""
+        """Return the ICD message from the bit ``start`` on.
+
+        Raises `NotSupported` if it is not supported.
+        """
         fields = self.layout.fields(start)
         covered = max((part.end for part in self.layout.parts), default=start)
         # Trailing padding belongs to the length, but no field covers it.
-        length, covered = -(-(self.layout.at - start) // 8), -(-(max(covered, start) - start) // 8)
-        item: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
+        length, covered = -(-(self.layout.at - start) // 8), -(
+            -(max(covered, start) - start) // 8
+        )
+        item: Item = {
+            "name": self.name,
+            "id": id,
+            "kind": self.kind,
+            "length": length,
+            **self.more,
+        }
         if self.layout.lost is not None:
             self.layout.lost.report(self.name, to, self.line)
         if length > covered:
@@ -126,15 +180,25 @@ class _Message:
         return {**item, "fields": fields} if fields else item
 
 
-def _read_message(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Message | None:
-    """Read the layout of a container. Returns None and adds a finding if the container cannot be imported."""
+def _read_message(
+    sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions
+) -> _Message | None:
+    """Read the layout of a container.
+
+    Returns None and adds a finding if the container cannot be imported.
+    """
     to.total += 1
     container = sending.container
     types.message = line(container.get("name"), 200)
     layout = Layout(sheets, types, structs)
     try:
         layout.read(container)
-        return _Message(sending, layout, {**_group(sheets, container), **described(container)}, sheets)
+        return _Message(
+            sending,
+            layout,
+            {**_group(sheets, container), **described(container)},
+            sheets,
+        )
     except NotSupported as why:
         to.left_out(line(container.get("name"), 200), why, sheets.line(container))
         settle(container)
@@ -145,12 +209,18 @@ def _title(sheets: Sheets) -> str:
     """Return the short description or name of the device, or else of the package."""
     device = sheets.root.find("Device")
     element = device if device is not None else sheets.root.find("Package")
-    return "" if element is None else line(element.get("shortDescription") or element.get("name"), 100)
+    return (
+        ""
+        if element is None
+        else line(element.get("shortDescription") or element.get("name"), 100)
+    )
 
 
 def _group(sheets: Sheets, container: Element) -> Item:
     """Return the package as the group of the message if the file has several packages."""
-    return {"group": line(sheets.package(container), 200)} if len(sheets.own) > 1 else {}
+    return (
+        {"group": line(sheets.package(container), 200)} if len(sheets.own) > 1 else {}
+    )
 
 
 def _used_structs(structs: list[Item], messages: list[Item]) -> list[Item]:
@@ -167,7 +237,9 @@ def _used_structs(structs: list[Item], messages: list[Item]) -> list[Item]:
 
 
 def _report_process(containers: list[_Message], to: Definitions) -> None:
-    """Report (IMP083) that application process ids are derived from interface parameters by convention."""
+    """Report (IMP083) that application process ids are derived from interface
+    parameters by convention.
+    """
     if not containers:
         return
     parameters = "`, `".join(sorted({container.parameter for container in containers}))
@@ -178,10 +250,12 @@ def _report_process(containers: list[_Message], to: Definitions) -> None:
 
 def _report_unsent(containers: list[Element], sheets: Sheets, to: Definitions) -> None:
     if containers:
-        shown = ", ".join(f"`{line(container.get('name'), 60)}`" for container in containers[:3]) + (
-            " ..." if len(containers) > 3 else ""
+        shown = ", ".join(
+            f"`{line(container.get('name'), 60)}`" for container in containers[:3]
+        ) + (" ..." if len(containers) > 3 else "")
+        what = (
+            "1 container" if len(containers) == 1 else f"{len(containers)} containers"
         )
-        what = "1 container" if len(containers) == 1 else f"{len(containers)} containers"
         text = f"no interface carries {what}: {shown}"
         to.warn(UNSENT, text, "they are left out", "note", sheets.line(containers[0]))
         for container in containers:

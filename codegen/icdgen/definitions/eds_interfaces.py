@@ -1,4 +1,6 @@
-"""Interfaces of data sheets: containers that components send, with direction and identifying number."""
+"""Interfaces of data sheets: containers that components send, with direction and
+identifying number.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +22,18 @@ _TOPIC_BITS, _GLOBAL = (
     8,
     0x60,
 )  # topic ids as application process ids in the EDS library of cFS, for the first processor
-_TOPICS = {packets.TELECOMMAND: ("TELECOMMAND", "GLOBAL_CMD"), packets.TELEMETRY: ("TELEMETRY", "GLOBAL_TLM")}
+_TOPICS = {
+    packets.TELECOMMAND: ("TELECOMMAND", "GLOBAL_CMD"),
+    packets.TELEMETRY: ("TELEMETRY", "GLOBAL_TLM"),
+}
 
 
 @dataclass
 class Sending:
-    """Container that an interface carries. ``kind`` and ``number`` are None if no interface states them."""
+    """Container that an interface carries.
+
+    ``kind`` and ``number`` are None if no interface states them.
+    """
 
     container: Element
     kind: str | None = None
@@ -34,7 +42,8 @@ class Sending:
     interface: str = ""  # only for a container with several interfaces and numbers
 
     def apid(self, sheets: Sheets) -> int | None:
-        """Return the application process id that the number stands for, or None if it is unknown.
+        """Return the application process id that the number stands for, or None if it
+        is unknown.
 
         Topic ids are converted like in the EDS library of cFS, for the first processor.
         """
@@ -42,10 +51,19 @@ class Sending:
             return None
         if self.parameter.lower() != "topicid":
             return self.number & _APID_MASK
-        local_base, global_base = (sheets.defined(f"CFE_MISSION/{name}_BASE_TOPICID") for name in _TOPICS[self.kind])
-        if local_base is not None and local_base <= self.number < local_base + (1 << _TOPIC_BITS):
+        local_base, global_base = (
+            sheets.defined(f"CFE_MISSION/{name}_BASE_TOPICID")
+            for name in _TOPICS[self.kind]
+        )
+        if local_base is not None and local_base <= self.number < local_base + (
+            1 << _TOPIC_BITS
+        ):
             return self.number - local_base
-        if global_base is not None and local_base is not None and global_base <= self.number:
+        if (
+            global_base is not None
+            and local_base is not None
+            and global_base <= self.number
+        ):
             return (self.number - global_base) ^ _GLOBAL
         return self.number if self.number <= _APID_MASK else None
 
@@ -56,21 +74,32 @@ class Interfaces:
     def __init__(self, sheets: Sheets) -> None:
         self.sheets = sheets
         self.own = [
-            container for package in sheets.own for container in sheets.types(package) if container.tag == CONTAINER
+            container
+            for package in sheets.own
+            for container in sheets.types(package)
+            if container.tag == CONTAINER
         ]
         self._is_own = set(self.own)
         self._steps = 0
         self._derived: dict[Element, list[Element]] = {}
-        self._uses: dict[Element, set[Element]] = {}  # types of the entries, elements and base of a type
+        self._uses: dict[Element, set[Element]] = (
+            {}
+        )  # types of the entries, elements and base of a type
         for package in sheets.all:
             for type_ in sheets.types(package):
                 base = self._type(type_, "baseType")
                 if base is not None:
                     self._derived.setdefault(base, []).append(type_)
-                entries = (entry for tag in ("EntryList", "TrailerEntryList") for entry in type_.iterfind(f"{tag}/*"))
+                entries = (
+                    entry
+                    for tag in ("EntryList", "TrailerEntryList")
+                    for entry in type_.iterfind(f"{tag}/*")
+                )
                 inner = [self._type(entry, "type") for entry in entries]
                 used = {
-                    used_type for used_type in (base, self._type(type_, "dataTypeRef"), *inner) if used_type is not None
+                    used_type
+                    for used_type in (base, self._type(type_, "dataTypeRef"), *inner)
+                    if used_type is not None
                 }
                 self._uses[type_] = used
 
@@ -83,34 +112,49 @@ class Interfaces:
             return None  # reported when the container is read
 
     def sent(self) -> tuple[list[Sending], list[Element]]:
-        """Return carried containers in file order, and independent containers that no interface carries.
+        """Return carried containers in file order, and independent containers that no
+        interface carries.
 
-        If no interface carries a container, all independent containers are returned as sent. Raises `Findings` above
-        `MOST_STEPS` containers.
+        If no interface carries a container, all independent containers are returned as
+        sent. Raises `Findings` above `MOST_STEPS` containers.
         """
         by_container: dict[Element, dict[int | None, Sending]] = {}
-        # A generic type mapping is specific to an interface, so it takes precedence over the argument type.
+        # A generic type mapping is specific to an interface, so it takes precedence
+        # over the argument type.
         for is_mapped in (True, False):
             for sending in self._carried_containers(is_mapped):
                 for container in self._leaves(sending.container):
                     sendings = by_container.setdefault(container, {})
                     if is_mapped or not sendings:
-                        sendings.setdefault(sending.number, replace(sending, container=container))
-        nested = {type_ for used in self._uses.values() for type_ in used} - self._cyclic_types()
+                        sendings.setdefault(
+                            sending.number, replace(sending, container=container)
+                        )
+        nested = {
+            type_ for used in self._uses.values() for type_ in used
+        } - self._cyclic_types()
         independent = [
             container
             for container in self.own
-            if container not in nested and not self._is_abstract(container) and container not in by_container
+            if container not in nested
+            and not self._is_abstract(container)
+            and container not in by_container
         ]
         if not by_container:
             return [Sending(container) for container in independent], []
-        sent = [sending for container in self.own for sending in by_container.get(container, {}).values()]
+        sent = [
+            sending
+            for container in self.own
+            for sending in by_container.get(container, {}).values()
+        ]
         for sending in sent:
-            sending.interface = sending.interface if len(by_container[sending.container]) > 1 else ""
+            sending.interface = (
+                sending.interface if len(by_container[sending.container]) > 1 else ""
+            )
         return sent, independent
 
     def _leaves(self, container: Element) -> list[Element]:
-        """Return the most derived containers of the file that are based on a container, or the container itself.
+        """Return the most derived containers of the file that are based on a container,
+        or the container itself.
 
         Raises `Findings` above `MOST_STEPS` containers in total.
         """
@@ -122,15 +166,25 @@ class Interfaces:
             if self._steps > MOST_STEPS:
                 text = f"its interfaces carry more than {MOST_STEPS:,} containers"
                 raise unreadable(self.sheets.to.file, text, "import it in parts")
-            derived = [candidate for candidate in self._derived.get(current, ()) if candidate not in seen]
+            derived = [
+                candidate
+                for candidate in self._derived.get(current, ())
+                if candidate not in seen
+            ]
             seen.update(derived)
             waiting += reversed(derived)
-            if not derived and current in self._is_own and not self._is_abstract(current):
+            if (
+                not derived
+                and current in self._is_own
+                and not self._is_abstract(current)
+            ):
                 leaves.append(current)
         return leaves
 
     def _cyclic_types(self) -> set[Element]:
-        """Return the types in reference cycles, and the types that use these directly or indirectly."""
+        """Return the types in reference cycles, and the types that use these directly
+        or indirectly.
+        """
         users: dict[Element, list[Element]] = {}
         for type_, used in self._uses.items():
             for used_type in used:
@@ -154,16 +208,24 @@ class Interfaces:
             return False
 
     def _carried_containers(self, is_mapped: bool) -> Iterator[Sending]:
-        """Yield the containers of command arguments: mapped to a generic type if ``is_mapped``, else named directly."""
+        """Yield the containers of command arguments: mapped to a generic type if
+        ``is_mapped``, else named directly.
+        """
         for package in self.sheets.own:
             for component in package.iterfind("ComponentSet/Component"):
                 numbers = self._constant_parameters(component)
                 for tag, is_required in _SETS.items():
                     for interface in component.iterfind(f"{tag}/Interface"):
-                        yield from self._containers_of(interface, is_required, is_mapped, numbers)
+                        yield from self._containers_of(
+                            interface, is_required, is_mapped, numbers
+                        )
 
     def _containers_of(
-        self, interface: Element, is_required: bool, is_mapped: bool, numbers: dict[str, tuple[str, int]]
+        self,
+        interface: Element,
+        is_required: bool,
+        is_mapped: bool,
+        numbers: dict[str, tuple[str, int]],
     ) -> Iterator[Sending]:
         maps = self._type_mappings(interface)
         parameter, number = numbers.get(interface.get("name", ""), ("", None))
@@ -172,14 +234,23 @@ class Interfaces:
             maps = {**self._type_mappings(declared), **maps}
             for argument in declared.iterfind("CommandSet/Command/Argument"):
                 type_ = argument.get("type", "")
-                container = maps.get(type_) if is_mapped else self._type(argument, "type")
-                if container is None or container.tag != CONTAINER or (not is_mapped and type_ in maps):
+                container = (
+                    maps.get(type_) if is_mapped else self._type(argument, "type")
+                )
+                if (
+                    container is None
+                    or container.tag != CONTAINER
+                    or (not is_mapped and type_ in maps)
+                ):
                     continue
                 mode = argument.get("mode", "in").lower()
-                # A required interface sends its `in` arguments, a provided interface receives them.
+                # A required interface sends its `in` arguments, a provided interface
+                # receives them.
                 goes_out = (mode == "in") == is_required
                 kind = packets.TELEMETRY if goes_out else packets.TELECOMMAND
-                ways.setdefault(container, set()).update([kind] if mode in ("in", "out") else _TOPICS)
+                ways.setdefault(container, set()).update(
+                    [kind] if mode in ("in", "out") else _TOPICS
+                )
         if is_mapped:
             for container in maps.values():
                 if container.tag == CONTAINER:
@@ -194,10 +265,16 @@ class Interfaces:
         result: list[Element] = []
         while waiting and len(result) < _DEEPEST:
             current = waiting.pop()
-            bases = [current] if current is interface else current.findall("BaseInterfaceSet/Interface")
+            bases = (
+                [current]
+                if current is interface
+                else current.findall("BaseInterfaceSet/Interface")
+            )
             for base in bases:
                 try:
-                    declared = self.sheets.find("interface", self.sheets.attribute(base, "type"), base)
+                    declared = self.sheets.find(
+                        "interface", self.sheets.attribute(base, "type"), base
+                    )
                 except NotSupported:
                     continue
                 if declared not in result:
@@ -206,7 +283,9 @@ class Interfaces:
         return result
 
     def _type_mappings(self, interface: Element) -> dict[str, Element]:
-        """Return the concrete types of an interface by the generic type that they replace."""
+        """Return the concrete types of an interface by the generic type that they
+        replace.
+        """
         result: dict[str, Element] = {}
         for element in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
             if (type_ := self._type(element, "type")) is not None:
@@ -226,9 +305,13 @@ class Interfaces:
             except NotSupported:
                 continue
         result: dict[str, tuple[str, int]] = {}
-        for element in component.iterfind("Implementation/ParameterMapSet/ParameterMap"):
+        for element in component.iterfind(
+            "Implementation/ParameterMapSet/ParameterMap"
+        ):
             name, parameter = element.get("interface", ""), element.get("parameter", "")
             value = values.get(element.get("variableRef", ""))
-            if value is not None and (name not in result or parameter.lower().endswith("id")):
+            if value is not None and (
+                name not in result or parameter.lower().endswith("id")
+            ):
                 result[name] = (parameter, value)
         return result

@@ -1,4 +1,6 @@
-"""Containers of electronic data sheets as sequences of fields, with inheritance, nesting and constraints."""
+"""Containers of electronic data sheets as sequences of fields, with inheritance,
+nesting and constraints.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,12 @@ from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from icdgen.definitions import eds_parts, eds_ranges, packets
-from icdgen.definitions.containers import Container, Counter, fixed_field, variable_field
+from icdgen.definitions.containers import (
+    Container,
+    Counter,
+    fixed_field,
+    variable_field,
+)
 from icdgen.definitions.eds_parts import Line, Part, Told
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import ARRAY, CONTAINER, Types, described
@@ -22,7 +29,9 @@ from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 UNCHECKED = "IMP082"
 _DEEPEST = 30  # levels of inheritance, nesting, and arrays of arrays
 _FIELDS = ("Entry", "FixedValueEntry", "LengthEntry", "ErrorControlEntry")
-_PACKET = Line(Fraction(1), Fraction(7))  # packet data length of CCSDS 133.0-B: bytes after the 6-byte header, minus 1
+_PACKET = Line(
+    Fraction(1), Fraction(7)
+)  # packet data length of CCSDS 133.0-B: bytes after the 6-byte header, minus 1
 
 
 @dataclass
@@ -52,7 +61,9 @@ class Layout(Container[Part]):
         """
         self._add(container, (), self.within)
         for constraint in self.constraints:
-            part = next((part for part in self.parts if part.path == constraint.path), None)
+            part = next(
+                (part for part in self.parts if part.path == constraint.path), None
+            )
             if part is None and self.lost is not None:
                 raise self.missing(line(".".join(constraint.path), 100))
             raw = eds_parts.constrain(part, constraint, self.sheets, self.types)
@@ -64,62 +75,102 @@ class Layout(Container[Part]):
                 if part.entry.tag == "LengthEntry" and len(part.path) == 1:
                     eds_parts.measure(part, -(-self.at // 8), self.sheets)
 
-    def _add(self, container: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
-        """Add the entries of a container and its base containers, base first, then the trailers in reverse order."""
+    def _add(
+        self, container: Element, path: tuple[str, ...], within: tuple[Element, ...]
+    ) -> None:
+        """Add the entries of a container and its base containers, base first, then the
+        trailers in reverse order.
+        """
         chain = self.chain(container)
         if any(ancestor in within for ancestor in chain) or len(within) > _DEEPEST:
-            circle = " -> ".join(ancestor.get("name", "") for ancestor in (*within[-5:], container))
-            raise NotSupported(f"containers contain each other in a circle, or too deep: {line(circle, 200)}")
+            circle = " -> ".join(
+                ancestor.get("name", "") for ancestor in (*within[-5:], container)
+            )
+            raise NotSupported(
+                f"containers contain each other in a circle, or too deep: {line(circle, 200)}"
+            )
         # Entries of a base container may not contain a container that derives from it.
-        users = {ancestor: (*within, *chain[: number + 1]) for number, ancestor in enumerate(chain)}
+        users = {
+            ancestor: (*within, *chain[: number + 1])
+            for number, ancestor in enumerate(chain)
+        }
         for ancestor in reversed(chain):
             self._entries(ancestor, "EntryList", path, users[ancestor])
         for ancestor in chain:
             self._entries(ancestor, "TrailerEntryList", path, users[ancestor])
             for constraint in ancestor.iterfind("ConstraintSet/*"):
                 entry = self.sheets.attribute(constraint, "entry")
-                self.constraints.append(Told((*path, *entry.replace("/", ".").split(".")), constraint))
+                self.constraints.append(
+                    Told((*path, *entry.replace("/", ".").split(".")), constraint)
+                )
 
     def chain(self, container: Element) -> list[Element]:
         """Return a container, followed by its base containers.
 
-        Raises `NotSupported` if a base is not a container, or for a circular or too deep inheritance.
+        Raises `NotSupported` if a base is not a container, or for a circular or too
+        deep inheritance.
         """
         chain = [container]
         while base := self.sheets.attribute(chain[-1], "baseType"):
             self.types.step()
             ancestor = self.sheets.find("type", base, chain[-1])
             if ancestor.tag != CONTAINER:
-                raise NotSupported(f"it is based on `{line(base, 60)}`, which is not a container")
+                raise NotSupported(
+                    f"it is based on `{line(base, 60)}`, which is not a container"
+                )
             if ancestor in chain or len(chain) > _DEEPEST:
-                circle = " -> ".join(type_.get("name", "") for type_ in (*chain[-5:], ancestor))
-                raise NotSupported(f"containers are based on each other in a circle, or too deep: {line(circle, 200)}")
+                circle = " -> ".join(
+                    type_.get("name", "") for type_ in (*chain[-5:], ancestor)
+                )
+                raise NotSupported(
+                    f"containers are based on each other in a circle, or too deep: {line(circle, 200)}"
+                )
             chain.append(ancestor)
         return chain
 
-    def _entries(self, container: Element, tag: str, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
+    def _entries(
+        self,
+        container: Element,
+        tag: str,
+        path: tuple[str, ...],
+        within: tuple[Element, ...],
+    ) -> None:
         for entry in container.iterfind(f"{tag}/*"):
             if self.lost is not None:
                 break
             before, at = len(self.parts), self.at
             try:
                 self._add_entry(entry, path, within)
-            except TooMuch:  # the limit applies to the file, so the rest cannot become bytes
+            except (
+                TooMuch
+            ):  # the limit applies to the file, so the rest cannot become bytes
                 raise
             except NotSupported as why:
                 name = line(entry.get("name"), 100) or f"unnamed {at}"
                 self.lose(Part((*path, name), {}, at, 0, entry=entry), why, before)
 
-    def _add_entry(self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]) -> None:
-        """Add an entry at the current position. Raises `NotSupported` if the entry is not supported."""
+    def _add_entry(
+        self, entry: Element, path: tuple[str, ...], within: tuple[Element, ...]
+    ) -> None:
+        """Add an entry at the current position.
+
+        Raises `NotSupported` if the entry is not supported.
+        """
         self.types.step()
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
         if entry.find("PresentWhen") is not None:
             raise NotSupported(f"`{name}` is present only on a condition")
         if self.is_open:
-            raise NotSupported(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed")
+            raise NotSupported(
+                f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed"
+            )
         if entry.tag == "PaddingEntry":
-            self.at += whole(self.sheets.attribute(entry, "sizeInBits"), "the size of a padding", 0, 8 * MOST_BYTES)
+            self.at += whole(
+                self.sheets.attribute(entry, "sizeInBits"),
+                "the size of a padding",
+                0,
+                8 * MOST_BYTES,
+            )
         elif entry.tag in (*_FIELDS, "ListEntry"):
             self._add_field_or_container(entry, name, path, within)
         else:
@@ -127,7 +178,11 @@ class Layout(Container[Part]):
         self.check_size()
 
     def _add_field_or_container(
-        self, entry: Element, name: str, path: tuple[str, ...], within: tuple[Element, ...]
+        self,
+        entry: Element,
+        name: str,
+        path: tuple[str, ...],
+        within: tuple[Element, ...],
     ) -> None:
         type_, count = self._element_type(entry, name)
         path = (*path, name)
@@ -141,12 +196,28 @@ class Layout(Container[Part]):
             self._add(type_, path, within)
         elif type_.tag == CONTAINER:
             item, bits = self._struct(type_, name, within)
-            self._put(Part(path, {**item, "count": count, **described(entry)}, self.at, bits * count, entry=entry))
+            self._put(
+                Part(
+                    path,
+                    {**item, "count": count, **described(entry)},
+                    self.at,
+                    bits * count,
+                    entry=entry,
+                )
+            )
         else:
             piece = self.types.piece(type_, entry, f"`{name}`")
             if entry.tag == "FixedValueEntry":
                 eds_parts.fix(piece, self.sheets.attribute(entry, "fixedValue"), name)
-            part = Part(path, piece.item, self.at, piece.bits, piece.order, entry=entry, piece=piece)
+            part = Part(
+                path,
+                piece.item,
+                self.at,
+                piece.bits,
+                piece.order,
+                entry=entry,
+                piece=piece,
+            )
             if count != 1:
                 self._repeat(part, count, name)
             replace_keys(part.item, {**part.item, **self._summary(entry, name)})
@@ -160,23 +231,37 @@ class Layout(Container[Part]):
     def _summary(self, entry: Element, name: str) -> dict[str, str]:
         """Return the summary of an entry.
 
-        For an error control it includes the kind of checksum, which no other key states.
+        For an error control it includes the kind of checksum, which no other key
+        states.
         """
         description = described(entry)
         if entry.tag != "ErrorControlEntry":
             return description
-        kind = line(self.sheets.attribute(entry, "errorControlType"), 60) or "an error control"
+        kind = (
+            line(self.sheets.attribute(entry, "errorControlType"), 60)
+            or "an error control"
+        )
         if self.types.is_new(("error control", entry)):
             message = f"`{name}` is {kind} of what is in the frame"
             help = "it is a field like others, neither checked nor set"
             self.types.to.warn(UNCHECKED, message, help, line=self.sheets.line(entry))
         text = description.get("summary", "")
-        return {"summary": f"{text}{'' if text.endswith(('.', '!', '?')) else '.'} {kind}." if text else f"{kind}."}
+        return {
+            "summary": (
+                f"{text}{'' if text.endswith(('.', '!', '?')) else '.'} {kind}."
+                if text
+                else f"{kind}."
+            )
+        }
 
     def _check_not_abstract(self, container: Element, name: str) -> None:
-        """Raise `NotSupported` if a container is abstract, because the entry could then contain any derived container."""
+        """Raise `NotSupported` if a container is abstract, because the entry could then
+        contain any derived container.
+        """
         if self.sheets.says(container, "abstract"):
-            raise NotSupported(f"`{name}` is any container that is based on `{container.get('name', '')}`")
+            raise NotSupported(
+                f"`{name}` is any container that is based on `{container.get('name', '')}`"
+            )
 
     def _element_type(self, entry: Element, name: str) -> tuple[Element, int]:
         """Return the element type of an entry and the number of elements.
@@ -188,9 +273,16 @@ class Layout(Container[Part]):
         while type_.tag == ARRAY:
             self.types.step()
             count *= self._count(type_, "DimensionList/Dimension", name)
-            type_, depth = self.sheets.find("type", self.sheets.attribute(type_, "dataTypeRef"), type_), depth + 1
+            type_, depth = (
+                self.sheets.find(
+                    "type", self.sheets.attribute(type_, "dataTypeRef"), type_
+                ),
+                depth + 1,
+            )
             if depth > _DEEPEST:
-                raise NotSupported(f"`{name}` is an array of itself, or of too many others")
+                raise NotSupported(
+                    f"`{name}` is an array of itself, or of too many others"
+                )
             if count > 8 * MOST_BYTES:
                 raise NotSupported(f"`{name}` is an array of {count:,} elements")
         return type_, count
@@ -205,13 +297,19 @@ class Layout(Container[Part]):
             if index := self.sheets.attribute(element, "indexTypeRef"):
                 count *= self._indices(self.sheets.find("type", index, element), name)
             else:
-                count *= whole(self.sheets.attribute(element, "size"), f"a dimension of `{name}`", 1, 8 * MOST_BYTES)
+                count *= whole(
+                    self.sheets.attribute(element, "size"),
+                    f"a dimension of `{name}`",
+                    1,
+                    8 * MOST_BYTES,
+                )
             if count > 8 * MOST_BYTES:
                 raise NotSupported(f"`{name}` is an array of {count:,} elements")
         return count
 
     def _indices(self, type_: Element, name: str) -> int:
-        """Return the number of elements of an array dimension with the given index type.
+        """Return the number of elements of an array dimension with the given index
+        type.
 
         Raises `NotSupported` if it has no bounds.
         """
@@ -219,19 +317,28 @@ class Layout(Container[Part]):
         values = [value for _, value in self.sheets.labels(chain[-1])]
         if values:
             return max(values) - min(values) + 1
-        low, high = self.types.piece(type_, type_, f"the index of `{name}`").range.of_integers()
+        low, high = self.types.piece(
+            type_, type_, f"the index of `{name}`"
+        ).range.of_integers()
         if low is None or high is None or high < low:
-            raise NotSupported(f"the definition does not state how many elements `{name}` has")
+            raise NotSupported(
+                f"the definition does not state how many elements `{name}` has"
+            )
         return int(high - low) + 1
 
     def _repeat(self, part: Part, count: int, name: str) -> None:
-        """Make a scalar an array. An array of bytes above `MOST_ELEMENTS` becomes a field of type `bytes`.
+        """Make a scalar an array.
 
-        Raises `NotSupported` for other large arrays, variable-length elements and constants.
+        An array of bytes above `MOST_ELEMENTS` becomes a field of type `bytes`.
+
+        Raises `NotSupported` for other large arrays, variable-length elements and
+        constants.
         """
         item, bits = part.item, part.bits
         if not bits or "const" in item:
-            raise NotSupported(f"`{name}` is an array of elements of variable length, or of a constant")
+            raise NotSupported(
+                f"`{name}` is an array of elements of variable length, or of a constant"
+            )
         if count > MOST_ELEMENTS and bits == 8 and item["type"] == "uint":
             item.clear()
             item["type"] = "bytes"
@@ -241,8 +348,11 @@ class Layout(Container[Part]):
             item |= {"bits": bits, "count": count}
         part.bits = bits * count
 
-    def _struct(self, container: Element, name: str, within: tuple[Element, ...]) -> tuple[Item, int]:
-        """Return the `struct` key for elements of a container type, and the bits of an element.
+    def _struct(
+        self, container: Element, name: str, within: tuple[Element, ...]
+    ) -> tuple[Item, int]:
+        """Return the `struct` key for elements of a container type, and the bits of an
+        element.
 
         Raises `NotSupported` if their size varies or is not whole bytes.
         """
@@ -250,25 +360,49 @@ class Layout(Container[Part]):
         if struct is None:
             inner = Layout(self.sheets, self.types, self.structs, within=within)
             inner.read(container)
-            if inner.at % 8 or not inner.at or any(not part.bits for part in inner.parts):
-                raise NotSupported(f"`{name}` is an array of containers of different or partial bytes")
+            if (
+                inner.at % 8
+                or not inner.at
+                or any(not part.bits for part in inner.parts)
+            ):
+                raise NotSupported(
+                    f"`{name}` is an array of containers of different or partial bytes"
+                )
             struct_name = container.get("name", "")
             if struct_name in self.structs.names:
                 struct_name = f"{self.sheets.package(container)} {struct_name}"
             self.structs.names.add(struct_name)
             fields = inner.fields(0)
-            struct = {"name": line(struct_name, 100), "length": inner.at // 8, **described(container), "fields": fields}
+            struct = {
+                "name": line(struct_name, 100),
+                "length": inner.at // 8,
+                **described(container),
+                "fields": fields,
+            }
             self.structs.items[container] = struct
         return {"struct": struct["name"]}, 8 * int(struct["length"])
 
     def _add_list(
-        self, entry: Element, type_: Element, count: int, path: tuple[str, ...], within: tuple[Element, ...]
+        self,
+        entry: Element,
+        type_: Element,
+        count: int,
+        path: tuple[str, ...],
+        within: tuple[Element, ...],
     ) -> None:
-        """Add a list whose number of elements is in another field. Raises `NotSupported` if the list is not supported."""
+        """Add a list whose number of elements is in another field.
+
+        Raises `NotSupported` if the list is not supported.
+        """
         name = path[-1]
         counter = self.sheets.attribute(entry, "listLengthField")
         length_part = next(
-            (part for part in reversed(self.parts) if part.path == (*path[:-1], *counter.split("."))), None
+            (
+                part
+                for part in reversed(self.parts)
+                if part.path == (*path[:-1], *counter.split("."))
+            ),
+            None,
         )
         if (
             length_part is None
@@ -289,28 +423,60 @@ class Layout(Container[Part]):
             order = {"byte_order": LITTLE} if piece.order == LITTLE and bits > 8 else {}
             replace_keys(item, {"bits": bits, **item, **order})
         if not bits or bits % 8:
-            raise NotSupported(f"`{name}` is a list of elements without a fixed number of bytes")
+            raise NotSupported(
+                f"`{name}` is a list of elements without a fixed number of bytes"
+            )
         _, most = length_part.piece.range.within(
             eds_ranges.Range(Fraction(0), Fraction((1 << length_part.bits) - 1))
         ).of_integers()
         item["up_to"] = max(1, min(int(most or 1), MOST_ELEMENTS))
-        item |= {key: text for key, text in described(entry).items() if key not in item or "struct" in item}
-        self.add(Part(path, item, self.at, 0, element=bits, counter=Counter(length_part), entry=entry))
+        item |= {
+            key: text
+            for key, text in described(entry).items()
+            if key not in item or "struct" in item
+        }
+        self.add(
+            Part(
+                path,
+                item,
+                self.at,
+                0,
+                element=bits,
+                counter=Counter(length_part),
+                entry=entry,
+            )
+        )
 
     def header(self) -> packets.Header | None:
-        """Return the primary header of a space packet (CCSDS 133.0-B) if the container begins with one, else None."""
+        """Return the primary header of a space packet (CCSDS 133.0-B) if the container
+        begins with one, else None.
+        """
         first_parts = self.parts[: packets.MOST_PARTS]
-        plain = [part for part in first_parts if part.piece is not None and part.piece.bits == part.bits]
-        header = packets.header((part.at, part.bits, part.item.get("const")) for part in plain)
+        plain = [
+            part
+            for part in first_parts
+            if part.piece is not None and part.piece.bits == part.bits
+        ]
+        header = packets.header(
+            (part.at, part.bits, part.item.get("const")) for part in plain
+        )
         # A length with another calibration is not the packet data length of CCSDS.
-        length = next((part for part in first_parts if part.end == packets.HEADER_BITS), None)
+        length = next(
+            (part for part in first_parts if part.end == packets.HEADER_BITS), None
+        )
         if header is None or length is None:
             return None
         is_calibrated = length.entry.find("PolynomialCalibrator") is not None
-        return None if is_calibrated and eds_parts.line_of(length.entry, self.sheets) != _PACKET else header
+        return (
+            None
+            if is_calibrated and eds_parts.line_of(length.entry, self.sheets) != _PACKET
+            else header
+        )
 
     def front(self) -> tuple[Hashable, int] | None:
-        """Return the key and size in bits of the first part if a header can use it as id, else None."""
+        """Return the key and size in bits of the first part if a header can use it as
+        id, else None.
+        """
         part = next(iter(self.parts), None)
         if part is None or part.piece is None or not part.is_message_id:
             return None
@@ -329,21 +495,39 @@ class Layout(Container[Part]):
             if not part.bits and part.counter is None:
                 part.counter = self._length_of(part, names)
             name, at = names[id(part)], part.at - start
-            fields.append(fixed_field(part, name, at) if part.bits else variable_field(part, name, at, names))
+            fields.append(
+                fixed_field(part, name, at)
+                if part.bits
+                else variable_field(part, name, at, names)
+            )
         return fields
 
     def _length_of(self, part: Part, names: Mapping[int, str]) -> Counter | None:
-        """Return the container length field as counter of a variable-length part, or None without one."""
+        """Return the container length field as counter of a variable-length part, or
+        None without one.
+        """
         counter = None
         for other in self.parts:
-            is_length = other.entry.tag == "LengthEntry" and len(other.path) == 1 and id(other) in names
+            is_length = (
+                other.entry.tag == "LengthEntry"
+                and len(other.path) == 1
+                and id(other) in names
+            )
             if is_length and other.item["type"] == "uint":
                 length = eds_parts.line_of(other.entry, self.sheets)
-                if length is not None and length.factor == 1 and length.offset.denominator == 1:
+                if (
+                    length is not None
+                    and length.factor == 1
+                    and length.offset.denominator == 1
+                ):
                     counter = Counter(other, int(length.offset) - part.at // 8)
         return counter
 
 
 def _distinct_path(path: tuple[str, ...]) -> tuple[str, ...]:
     """Return a path in which a trailing `value` is joined with the name of its parent."""
-    return (*path[:-2], f"{path[-2]} {path[-1]}") if len(path) > 1 and path[-1].casefold() == "value" else path
+    return (
+        (*path[:-2], f"{path[-2]} {path[-1]}")
+        if len(path) > 1 and path[-1].casefold() == "value"
+        else path
+    )

@@ -12,7 +12,8 @@ from icdgen.definitions.model import Item
 from icdgen.definitions.wording import limits
 from icdgen.icd.layout import integer_range
 
-_TYPES = {  # rangeType: for low and high end whether it is included; None without an end
+# RangeType: for low and high end whether it is included; None without an end.
+_TYPES = {
     "inclusivemininclusivemax": (True, True), "inclusiveminexclusivemax": (True, False),
     "exclusivemininclusivemax": (False, True), "exclusiveminexclusivemax": (False, False),
     "atleast": (True, None), "greaterthan": (False, None), "atmost": (None, True), "lessthan": (None, False),
@@ -22,7 +23,8 @@ _TYPES = {  # rangeType: for low and high end whether it is included; None witho
 class Range(NamedTuple):
     """Range of values.
 
-    An end is None if unlimited. ``is_low_in`` and ``is_high_in`` state whether the ends are included.
+    An end is None if unlimited. ``is_low_in`` and ``is_high_in`` state whether the ends
+    are included.
     """
 
     low: Fraction | None = None
@@ -33,19 +35,33 @@ class Range(NamedTuple):
     def within(self, other: Range) -> Range:
         """Return the intersection of two ranges."""
         low, high, is_low_in, is_high_in = self
-        if other.low is not None and (low is None or (other.low, not other.is_low_in) > (low, not is_low_in)):
+        if other.low is not None and (
+            low is None or (other.low, not other.is_low_in) > (low, not is_low_in)
+        ):
             low, is_low_in = other.low, other.is_low_in
-        if other.high is not None and (high is None or (other.high, other.is_high_in) < (high, is_high_in)):
+        if other.high is not None and (
+            high is None or (other.high, other.is_high_in) < (high, is_high_in)
+        ):
             high, is_high_in = other.high, other.is_high_in
         return Range(low, high, is_low_in, is_high_in)
 
     def of_integers(self) -> tuple[Fraction | None, Fraction | None]:
-        """Return the smallest and largest integer of the range, with None for an unlimited end."""
+        """Return the smallest and largest integer of the range, with None for an
+        unlimited end.
+        """
         low, high = self.low, self.high
         if low is not None:
-            low = Fraction(-(-low // 1)) if self.is_low_in or low.denominator != 1 else low + 1
+            low = (
+                Fraction(-(-low // 1))
+                if self.is_low_in or low.denominator != 1
+                else low + 1
+            )
         if high is not None:
-            high = Fraction(high // 1) if self.is_high_in or high.denominator != 1 else high - 1
+            high = (
+                Fraction(high // 1)
+                if self.is_high_in or high.denominator != 1
+                else high - 1
+            )
         return low, high
 
 
@@ -75,17 +91,26 @@ def _end(text: str) -> Fraction | None:
 
 
 def limited(item: Item, bits: int, of: Range) -> Item:
-    """Return the limit keys of a field. Limits beyond the values of its type and bits are left out."""
+    """Return the limit keys of a field.
+
+    Limits beyond the values of its type and bits are left out.
+    """
     if item["type"] in ("uint", "int"):
         first, last = integer_range(bits, item["type"] == "int")
         return dict(limits(*of.of_integers(), Fraction(first), Fraction(last)))
     result: Item = {}
-    if item["type"] == "float" and (of.low is None or of.high is None or of.low <= of.high):
+    if item["type"] == "float" and (
+        of.low is None or of.high is None or of.low <= of.high
+    ):
         for end, key in (
             (of.low, "min" if of.is_low_in else "above"),
             (of.high, "max" if of.is_high_in else "below"),
         ):
-            number = None if end is None else end.numerator if end.denominator == 1 else _double(end)
+            number = (
+                None
+                if end is None
+                else end.numerator if end.denominator == 1 else _double(end)
+            )
             if number is not None and "e" not in str(number) and len(str(number)) < 30:
                 result[key] = number
     return result

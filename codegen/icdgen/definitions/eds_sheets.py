@@ -1,4 +1,6 @@
-"""Packages of a data sheet and neighbouring files, with type references and values of design parameters."""
+"""Packages of a data sheet and neighbouring files, with type references and values of
+design parameters.
+"""
 
 from __future__ import annotations
 
@@ -25,20 +27,32 @@ _REFERENCE = re.compile(r"\$\{([^${}]{1,200})\}")
 
 
 class Sheets:
-    """Index of types, interfaces and design parameters. ``own`` lists the packages of the file itself."""
+    """Index of types, interfaces and design parameters.
 
-    def __init__(self, root: Element, neighbours: Iterable[tuple[str, Element]], to: Definitions) -> None:
-        """Index a file and the files to which it may refer. ``neighbours`` contains their paths and root elements."""
+    ``own`` lists the packages of the file itself.
+    """
+
+    def __init__(
+        self, root: Element, neighbours: Iterable[tuple[str, Element]], to: Definitions
+    ) -> None:
+        """Index a file and the files to which it may refer.
+
+        ``neighbours`` contains their paths and root elements.
+        """
         self.to = to
         self.root = root
         self.own: list[Element] = []
         self._within = set(root.iter())
         self.all: list[Element] = []  # packages
         self._found: dict[tuple[str, str], Element] = {}
-        self._scopes: dict[Element, tuple[str, str]] = {}  # package and component of an element
+        self._scopes: dict[Element, tuple[str, str]] = (
+            {}
+        )  # package and component of an element
         self._files: dict[str, str] = {}  # by package
         self._defines: dict[str, tuple[str, str, str]] = {}  # value, package and file
-        self._duplicates: dict[str, str] = {}  # second file of duplicate packages and parameters
+        self._duplicates: dict[str, str] = (
+            {}
+        )  # second file of duplicate packages and parameters
         self._values: dict[tuple[str, str], str] = {}
         self._index(to.file, root)
         self.own = list(self.all)
@@ -67,11 +81,15 @@ class Sheets:
                 self._index_types(component, f"{name}/{component.get('name', '')}//")
             self._index_types(package, f"{name}/")
             for interface in package.iterfind("DeclaredInterfaceSet/Interface"):
-                self._found.setdefault(("interface", f"{name}/{interface.get('name', '')}"), interface)
+                self._found.setdefault(
+                    ("interface", f"{name}/{interface.get('name', '')}"), interface
+                )
 
     def _index_types(self, owner: Element, before: str) -> None:
         for element in owner.iterfind("DataTypeSet/*"):
-            self._found.setdefault(("type", f"{before}{element.get('name', '')}"), element)
+            self._found.setdefault(
+                ("type", f"{before}{element.get('name', '')}"), element
+            )
 
     def _index_parameter(self, package: str, define: Element, file: str) -> None:
         name, value = f"{package}/{define.get('name', '')}", define.get("value", "")
@@ -93,21 +111,33 @@ class Sheets:
         return self._scopes[element][0]
 
     def attribute(self, element: Element, key: str, default: str = "") -> str:
-        """Return an attribute with its design parameters resolved. Raises `NotSupported` if a parameter is undefined."""
+        """Return an attribute with its design parameters resolved.
+
+        Raises `NotSupported` if a parameter is undefined.
+        """
         text = element.get(key)
         if text is None:
             return default
-        return self._resolved(text, self._scopes.get(element, ("", ""))[0], 0).strip() if "${" in text else text.strip()
+        return (
+            self._resolved(text, self._scopes.get(element, ("", ""))[0], 0).strip()
+            if "${" in text
+            else text.strip()
+        )
 
     def labels(self, type_: Element) -> Iterator[tuple[str, int]]:
         """Yield the labels of an enumeration with their values.
 
-        A label without a value follows the previous one. Raises `NotSupported` if a value is undefined or not an integer.
+        A label without a value follows the previous one. Raises `NotSupported` if a
+        value is undefined or not an integer.
         """
         value = -1
         for element in type_.iterfind("EnumerationList/Enumeration"):
             text = self.attribute(element, "value")
-            value = whole(text, "the value of a label") if text or "value" in element.attrib else value + 1
+            value = (
+                whole(text, "the value of a label")
+                if text or "value" in element.attrib
+                else value + 1
+            )
             yield self.attribute(element, "label"), value
 
     def says(self, element: Element, key: str) -> bool:
@@ -116,29 +146,46 @@ class Sheets:
 
     def _resolved(self, text: str, package: str, depth: int) -> str:
         if depth > _DEEPEST:
-            raise NotSupported(f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others")
+            raise NotSupported(
+                f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others"
+            )
         result, at = "", 0
         for reference in _REFERENCE.finditer(text):
-            result += text[at : reference.start()] + self._value(reference[1].strip(), package, depth)
+            result += text[at : reference.start()] + self._value(
+                reference[1].strip(), package, depth
+            )
             at = reference.end()
             if len(result) > _LONGEST:
-                raise NotSupported(f"`{line(text, 60)}` becomes longer than {_LONGEST} characters")
+                raise NotSupported(
+                    f"`{line(text, 60)}` becomes longer than {_LONGEST} characters"
+                )
         return result + text[at:]
 
     def _value(self, name: str, package: str, depth: int) -> str:
-        """Return the text that replaces a reference to a design parameter. Arithmetic expressions are evaluated.
+        """Return the text that replaces a reference to a design parameter.
+
+        Arithmetic expressions are evaluated.
 
         Raises `NotSupported` if the parameter is undefined, circular or too long.
         """
         if (resolved := self._values.get((name, package))) is not None:
             return resolved
         qualified_name = next(
-            (candidate for candidate in (name, f"{package}/{name}") if candidate in self._defines), None
+            (
+                candidate
+                for candidate in (name, f"{package}/{name}")
+                if candidate in self._defines
+            ),
+            None,
         )
         if qualified_name is None:
-            raise NotSupported(f"no file in the folder defines `${{{line(name, 100)}}}`", _TOGETHER)
+            raise NotSupported(
+                f"no file in the folder defines `${{{line(name, 100)}}}`", _TOGETHER
+            )
         text, defining_package, _ = self._defines[qualified_name]
-        self._report_duplicate(f"${{{qualified_name}}}", self._defines[qualified_name][2])
+        self._report_duplicate(
+            f"${{{qualified_name}}}", self._defines[qualified_name][2]
+        )
         text = self._resolved(text, defining_package, depth + 1)
         try:
             # Parentheses keep a fraction intact in the expression that contains it.
@@ -150,7 +197,9 @@ class Sheets:
         return text
 
     def defined(self, name: str) -> int | None:
-        """Return a design parameter as an integer, or None if it is undefined or not an integer."""
+        """Return a design parameter as an integer, or None if it is undefined or not an
+        integer.
+        """
         try:
             value = evaluate(self._value(name, "", 0))
         except (NotSupported, ValueError):
@@ -174,19 +223,26 @@ class Sheets:
         while element.tag == _ALIAS:
             element = self._find(kind, self.attribute(element, "type"), element)
             if element in aliases:
-                raise NotSupported(f"the type `{line(reference, 100)}` is an alias of itself")
+                raise NotSupported(
+                    f"the type `{line(reference, 100)}` is an alias of itself"
+                )
             aliases.add(element)
         return element
 
     def _find(self, kind: str, reference: str, seen_from: Element) -> Element:
-        """Return the element that a reference names, without resolving aliases. Raises `NotSupported` if it is undefined."""
+        """Return the element that a reference names, without resolving aliases.
+
+        Raises `NotSupported` if it is undefined.
+        """
         package, component = self._scopes[seen_from]
         # Scopes from inside to outside: component, package, qualified name.
         inner = f"{package}/{component}//{reference}" if component else ""
         for path in (inner, f"{package}/{reference}", reference):
             element = self._found.get((kind, path)) if path else None
             if element is not None:
-                self._report_duplicate(self.package(element), self._files[self.package(element)])
+                self._report_duplicate(
+                    self.package(element), self._files[self.package(element)]
+                )
                 return element
         prefix = reference.rpartition("/")[0]
         if prefix and prefix not in self._files:
@@ -198,10 +254,11 @@ class Sheets:
 
 
 def beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
-    """Yield path and root of other data sheets and design parameter files in the folder of a file, by name.
+    """Yield path and root of other data sheets and design parameter files in the folder
+    of a file, by name.
 
-    ``size`` is the number of bytes already read. Raises `Findings` if a file cannot be read, or above `MOST_FILES` or
-    `MOST_BYTES`.
+    ``size`` is the number of bytes already read. Raises `Findings` if a file cannot be
+    read, or above `MOST_FILES` or `MOST_BYTES`.
     """
     own = Path(file)
     count = 0

@@ -1,4 +1,6 @@
-"""Scalar types of electronic data sheets as fields: encoding, labels, calibration and limits."""
+"""Scalar types of electronic data sheets as fields: encoding, labels, calibration and
+limits.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ from icdgen.definitions.wording import line, summary, unit, without_type
 from icdgen.definitions.xtce_calibration import calibrated
 from icdgen.icd.variable_length import MOST_BYTES
 
-_BITS_ONLY = "its raw bits are imported as a number, without unit and limits"  # help text of findings
+# Help text of findings.
+_BITS_ONLY = "its raw bits are imported as a number, without unit and limits"
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
 _DEEPEST = 20  # levels of subranges
 _WORD = 64  # bits of the largest number
@@ -39,13 +42,24 @@ class Piece(containers.Piece):
     range: Range = ALL
 
     def raw(self, text: str, where: str) -> int:
-        """Return the raw value of a literal or label. Raises `NotSupported` if the field cannot have this value."""
+        """Return the raw value of a literal or label.
+
+        Raises `NotSupported` if the field cannot have this value.
+        """
         if self.item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotSupported(f"{where} has a value and is of the type {self.item['type']}")
-        if (label := text if self.code else text.lower()) in self.values:  # labels of flags ignore case
+            raise NotSupported(
+                f"{where} has a value and is of the type {self.item['type']}"
+            )
+        if (
+            label := text if self.code else text.lower()
+        ) in self.values:  # labels of flags ignore case
             return self.values[label]
         try:
-            raw = coded(whole(text, "a value"), self.code, self.bits) if self.code else None
+            raw = (
+                coded(whole(text, "a value"), self.code, self.bits)
+                if self.code
+                else None
+            )
         except NotSupported:
             raw = None
         if raw is None:
@@ -68,22 +82,35 @@ class Types(Reading):
         """
         chain = [type_]
         while chain[-1].tag == SUBRANGE:
-            base = self.sheets.find("type", self.sheets.attribute(chain[-1], "baseType"), chain[-1])
+            base = self.sheets.find(
+                "type", self.sheets.attribute(chain[-1], "baseType"), chain[-1]
+            )
             if base in chain or len(chain) >= _DEEPEST:
-                raise NotSupported(f"the type `{type_.get('name', '')}` is based on itself, or on too many others")
+                raise NotSupported(
+                    f"the type `{type_.get('name', '')}` is based on itself, or on too many others"
+                )
             chain.append(base)
         return chain
 
     def piece(self, type_: Element, entry: Element, where: str) -> Piece:
-        """Return the field of a scalar type. The encoding of the entry takes precedence over that of the type.
+        """Return the field of a scalar type.
 
-        ``where`` names the field in messages. Raises `NotSupported` with the reason if the type is not supported.
+        The encoding of the entry takes precedence over that of the type.
+
+        ``where`` names the field in messages. Raises `NotSupported` with the reason if
+        the type is not supported.
         """
         self.step()
         chain = self.chain(type_)
         kind = chain[-1].tag.removesuffix("DataType")
         encoding = next(
-            (inner for element in (entry, *chain) for inner in element if inner.tag.endswith("DataEncoding")), None
+            (
+                inner
+                for element in (entry, *chain)
+                for inner in element
+                if inner.tag.endswith("DataEncoding")
+            ),
+            None,
         )
         if kind in ("Integer", "Enumerated"):
             piece = self._integer(encoding, where, kind == "Enumerated")
@@ -100,7 +127,10 @@ class Types(Reading):
         if kind == "Enumerated":
             self._labels(piece, chain[-1], where)
         piece.range = self._range(chain, entry)
-        if piece.item["type"] in ("uint", "int", "float") and piece.code in (UNSIGNED, TWOS):
+        if piece.item["type"] in ("uint", "int", "float") and piece.code in (
+            UNSIGNED,
+            TWOS,
+        ):
             piece.item |= self._meaning(chain, entry, piece, where)
         return piece
 
@@ -110,7 +140,8 @@ class Types(Reading):
         code = self._keyword(encoding, "encoding", UNSIGNED, CODES)
         bits = self._size(encoding, where)
         order = self._order(encoding, bits, where)
-        # Labels are assigned to the transmitted bits, so enumerations support all encodings.
+        # Labels are assigned to the transmitted bits, so enumerations support all
+        # encodings.
         if code not in (UNSIGNED, TWOS) and not has_names:
             self.raw_only(where, f"it is encoded as {code}", _BITS_ONLY)
         if bits > _WORD:
@@ -120,17 +151,33 @@ class Types(Reading):
     def _float(self, encoding: Element | None, where: str) -> Piece:
         if encoding is None or encoding.tag != "FloatDataEncoding":
             raise NotSupported(f"{where} has a type without an encoding")
-        precision = self.sheets.attribute(encoding, "encodingAndPrecision", "IEEE754_2008_single")
+        precision = self.sheets.attribute(
+            encoding, "encodingAndPrecision", "IEEE754_2008_single"
+        )
         bits = self._size(encoding, where, _FLOATS.get(precision.lower()))
         order = self._order(encoding, bits, where)
         if _FLOATS.get(precision.lower()) == bits:
             return Piece({"type": "float"}, bits, order)
-        self.raw_only(where, f"it is encoded as {line(precision, 60)} of {bits} bits", _BITS_ONLY)
-        return _bytes(bits, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
+        self.raw_only(
+            where, f"it is encoded as {line(precision, 60)} of {bits} bits", _BITS_ONLY
+        )
+        return (
+            _bytes(bits, where)
+            if bits > _WORD
+            else Piece({"type": "uint"}, bits, order, "")
+        )
 
     def _flag(self, encoding: Element | None, type_: Element) -> Piece:
-        bits = 1 if encoding is None else self._size(encoding, f"`{type_.get('name', '')}`")
-        is_inverse = encoding is not None and self.sheets.attribute(encoding, "falseValue").lower() == "nonzeroisfalse"
+        bits = (
+            1
+            if encoding is None
+            else self._size(encoding, f"`{type_.get('name', '')}`")
+        )
+        is_inverse = (
+            encoding is not None
+            and self.sheets.attribute(encoding, "falseValue").lower()
+            == "nonzeroisfalse"
+        )
         if bits > _WORD:
             raise NotSupported(f"the flag `{type_.get('name', '')}` has {bits} bits")
         names = ("True", "False") if is_inverse else ("False", "True")
@@ -138,18 +185,36 @@ class Types(Reading):
         piece = Piece({"type": "bool"}, bits, code="", values=values)
         # The type `bool` has one bit, and 1 means true.
         if bits > 1 or is_inverse:
-            members: list[Item] = [{"value": value, "name": name} for value, name in enumerate(names)]
+            members: list[Item] = [
+                {"value": value, "name": name} for value, name in enumerate(names)
+            ]
             piece.item = {"type": "enum"}
-            self.enums.give(piece.item, _enumeration_name(type_), self._owner(type_), members)
+            self.enums.give(
+                piece.item, _enumeration_name(type_), self._owner(type_), members
+            )
         return piece
 
     def _text(self, encoding: Element | None, type_: Element) -> Piece:
-        length = whole(self.sheets.attribute(type_, "length"), "the length of a text", 1, MOST_BYTES)
-        ends = "" if encoding is None else self.sheets.attribute(encoding, "terminationCharacter")
-        if self.sheets.attribute(type_, "fixedLength", "true").lower() not in ("false", "0"):
+        length = whole(
+            self.sheets.attribute(type_, "length"),
+            "the length of a text",
+            1,
+            MOST_BYTES,
+        )
+        ends = (
+            ""
+            if encoding is None
+            else self.sheets.attribute(encoding, "terminationCharacter")
+        )
+        if self.sheets.attribute(type_, "fixedLength", "true").lower() not in (
+            "false",
+            "0",
+        ):
             return Piece({"type": "text"}, 8 * length)
         if ends:
-            raise NotSupported(f"`{type_.get('name', '')}` ends at the character `{line(ends, 20)}`")
+            raise NotSupported(
+                f"`{type_.get('name', '')}` ends at the character `{line(ends, 20)}`"
+            )
         return Piece({"type": "text", "up_to": length}, 0)
 
     def _binary(self, type_: Element) -> Piece:
@@ -163,22 +228,36 @@ class Types(Reading):
         return _bytes(bits, f"`{type_.get('name', '')}`")
 
     def _size(self, encoding: Element, where: str, default: int | None = None) -> int:
-        text = self.sheets.attribute(encoding, "sizeInBits", "" if default is None else str(default))
+        text = self.sheets.attribute(
+            encoding, "sizeInBits", "" if default is None else str(default)
+        )
         return whole(text, f"the size of {where}", 1, 8 * MOST_BYTES)
 
     def _order(self, encoding: Element, bits: int, where: str) -> str:
-        is_little = self._keyword(encoding, "byteOrder", "bigEndian", ("bigEndian", "littleEndian")) == "littleEndian"
+        is_little = (
+            self._keyword(
+                encoding, "byteOrder", "bigEndian", ("bigEndian", "littleEndian")
+            )
+            == "littleEndian"
+        )
         if is_little and bits % 8:
-            raise NotSupported(f"the least significant byte of {where}, of {bits} bits, is sent first")
+            raise NotSupported(
+                f"the least significant byte of {where}, of {bits} bits, is sent first"
+            )
         return LITTLE if is_little else BIG
 
-    def _keyword(self, element: Element, key: str, default: str, keywords: tuple[str, ...]) -> str:
+    def _keyword(
+        self, element: Element, key: str, default: str, keywords: tuple[str, ...]
+    ) -> str:
         """Return the keyword in ``keywords`` that an attribute matches, ignoring case.
 
         Raises `NotSupported` if none matches.
         """
         text = self.sheets.attribute(element, key, default)
-        keyword = next((candidate for candidate in keywords if candidate.lower() == text.lower()), None)
+        keyword = next(
+            (candidate for candidate in keywords if candidate.lower() == text.lower()),
+            None,
+        )
         if keyword is None:
             raise NotSupported(f"its `{key}` is `{line(text, 60)}`")
         return keyword
@@ -187,16 +266,30 @@ class Types(Reading):
         choices: dict[int, str] = {}
         for label, value in self.sheets.labels(type_):
             self.step()
-            raw = coded(value, piece.code, piece.bits) if piece.item["type"] != "bytes" else None
+            raw = (
+                coded(value, piece.code, piece.bits)
+                if piece.item["type"] != "bytes"
+                else None
+            )
             if raw is None:
-                raise NotSupported(f"{where} never has the value `{value}` of `{line(label, 60)}`")
+                raise NotSupported(
+                    f"{where} never has the value `{value}` of `{line(label, 60)}`"
+                )
             choices.setdefault(raw, label)
             piece.values.setdefault(label, raw)
         if not choices:
             return
         notes = self.heard(f"labels of {id(type_)}")  # report faults of a type once
         name = _enumeration_name(type_)
-        self.enums.hold(piece.item, piece.bits, choices, name, self._owner(type_), f"`{name}`", notes)
+        self.enums.hold(
+            piece.item,
+            piece.bits,
+            choices,
+            name,
+            self._owner(type_),
+            f"`{name}`",
+            notes,
+        )
 
     def _owner(self, type_: Element) -> str:
         return self.sheets.package(type_).rsplit("/", 1)[-1]
@@ -204,11 +297,15 @@ class Types(Reading):
     def _range(self, chain: list[Element], entry: Element) -> Range:
         result = ALL
         for element in (*chain, entry):
-            for bounds in (inner for inner in element if inner.tag in ("Range", "ValidRange")):
+            for bounds in (
+                inner for inner in element if inner.tag in ("Range", "ValidRange")
+            ):
                 result = result.within(eds_ranges.said(self.sheets, bounds))
         return result
 
-    def _meaning(self, chain: list[Element], entry: Element, piece: Piece, where: str) -> Item:
+    def _meaning(
+        self, chain: list[Element], entry: Element, piece: Piece, where: str
+    ) -> Item:
         """Return calibration and unit of the entry, and the limits of its type.
 
         A calibrated field gets no limits, because the calibration converts them.
@@ -229,15 +326,24 @@ class Types(Reading):
         for type_ in chain:
             for element in (type_.find("Semantics"), type_):
                 for key in ("unit", "units") if element is not None else ():
-                    if element is not None and (text := self.sheets.attribute(element, key)):
+                    if element is not None and (
+                        text := self.sheets.attribute(element, key)
+                    ):
                         return {**unit(_SI.get(text.lower(), text))}
         return {}
 
 
 def described(element: Element) -> dict[str, str]:
-    """Return the `summary` key from the short description, or else from the first paragraph of the long description."""
-    paragraphs = re.split(r"\n[ \t\r]*\n", (element.findtext("LongDescription") or "")[:20_000])
-    texts = (_MARKUP.sub("", text) for text in (element.get("shortDescription") or "", *paragraphs))
+    """Return the `summary` key from the short description, or else from the first
+    paragraph of the long description.
+    """
+    paragraphs = re.split(
+        r"\n[ \t\r]*\n", (element.findtext("LongDescription") or "")[:20_000]
+    )
+    texts = (
+        _MARKUP.sub("", text)
+        for text in (element.get("shortDescription") or "", *paragraphs)
+    )
     return next((item for item in map(summary, texts) if item), {})
 
 
@@ -247,7 +353,10 @@ def _enumeration_name(type_: Element) -> str:
 
 
 def _bytes(bits: int, where: str) -> Piece:
-    """Return a field of bytes, for numbers that exceed 64 bits. Raises `NotSupported` for a partial byte."""
+    """Return a field of bytes, for numbers that exceed 64 bits.
+
+    Raises `NotSupported` for a partial byte.
+    """
     if bits % 8:
         raise NotSupported(f"{where} has {bits} bits")
     return Piece({"type": "bytes"}, bits, code="")

@@ -1,4 +1,6 @@
-"""Numbers of electronic data sheets: arithmetic expressions in attributes, and encodings of integers."""
+"""Numbers of electronic data sheets: arithmetic expressions in attributes, and
+encodings of integers.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,8 @@ _TOKEN = re.compile(
 def evaluate(text: str) -> Fraction:
     """Return the value of an arithmetic expression such as `2 ^ (16) - 1`.
 
-    Operators are `+ - * / ^` and parentheses. Raises `ValueError` for other texts and for too large values.
+    Operators are `+ - * / ^` and parentheses. Raises `ValueError` for other texts and
+    for too large values.
     """
     tokens, at, text = [], 0, text.strip()
     if len(text) > _LONGEST:
@@ -43,7 +46,10 @@ def evaluate(text: str) -> Fraction:
 
 
 class _Sum:
-    """Recursive descent parser of arithmetic expressions. ``left`` contains the remaining tokens in reverse order."""
+    """Recursive descent parser of arithmetic expressions.
+
+    ``left`` contains the remaining tokens in reverse order.
+    """
 
     def __init__(self, left: list[str]) -> None:
         self.left = left
@@ -92,7 +98,9 @@ class _Sum:
             return value
         if token in "+-*/^)":
             raise ValueError("no number")
-        return Fraction(int(token, 16)) if token[:2].lower() == "0x" else Fraction(token)
+        return (
+            Fraction(int(token, 16)) if token[:2].lower() == "0x" else Fraction(token)
+        )
 
 
 def _bounded(value: Fraction) -> Fraction:
@@ -101,13 +109,24 @@ def _bounded(value: Fraction) -> Fraction:
     return value
 
 
-def whole(text: str, what: str, least: int | None = None, most: int | None = None) -> int:
+def whole(
+    text: str, what: str, least: int | None = None, most: int | None = None
+) -> int:
     """Return the integer value of a text.
 
-    Raises `NotSupported` if it is not an integer from ``least`` to ``most``; ``what`` names it.
+    Raises `NotSupported` if it is not an integer from ``least`` to ``most``; ``what``
+    names it.
     """
-    plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _integer(text)
-    if plain is None or (least is not None and plain < least) or (most is not None and plain > most):
+    plain = (
+        int(text)
+        if text.isascii() and text.isdigit() and len(text) < _PLAIN
+        else _integer(text)
+    )
+    if (
+        plain is None
+        or (least is not None and plain < least)
+        or (most is not None and plain > most)
+    ):
         raise NotSupported(f"{what} is `{line(text, 60)}`")
     return plain
 
@@ -121,9 +140,11 @@ def _integer(text: str) -> int | None:
 
 
 def coded(value: int, code: str, bits: int) -> int | None:
-    """Return the raw value of a number in an integer encoding, or None if it does not fit.
+    """Return the raw value of a number in an integer encoding, or None if it does not
+    fit.
 
-    The raw value is signed for two's complement. For other encodings it consists of the transmitted bits.
+    The raw value is signed for two's complement. For other encodings it consists of the
+    transmitted bits.
     """
     if code in (TWOS, UNSIGNED):
         low, high = integer_range(bits, code == TWOS)
@@ -132,10 +153,15 @@ def coded(value: int, code: str, bits: int) -> int | None:
         width = 8 if code == "BCD" else 4
         if value < 0 or len(str(value)) > bits // width:
             return None
-        return sum(int(digit) << width * place for place, digit in enumerate(reversed(str(value))))
+        return sum(
+            int(digit) << width * place
+            for place, digit in enumerate(reversed(str(value)))
+        )
     # One's complement and sign-magnitude have symmetric ranges.
     if abs(value) >= 1 << bits - 1:
         return None
     if value >= 0:
         return value
-    return (1 << bits - 1 | -value) if code == "signMagnitude" else (1 << bits) - 1 + value
+    return (
+        (1 << bits - 1 | -value) if code == "signMagnitude" else (1 << bits) - 1 + value
+    )

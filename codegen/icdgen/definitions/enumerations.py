@@ -1,4 +1,6 @@
-"""Value names as enumeration members with unique names, and enumerations that several fields share."""
+"""Value names as enumeration members with unique names, and enumerations that several
+fields share.
+"""
 
 from __future__ import annotations
 
@@ -14,28 +16,40 @@ from icdgen.icd.layout import integer_range
 SAME_NAME = "IMP073"
 BEYOND = "IMP074"
 LEFT_OUT = "IMP090"
-MOST_SPECIAL = 1024  # special values of a field; each becomes a constant in generated code
+MOST_SPECIAL = (
+    1024  # special values of a field; each becomes a constant in generated code
+)
 _LONGEST = 400
 _LIMITS = ("min", "max", "above", "below")
 _OF_NUMBERS = ("unit", *_LIMITS)  # keys that an enumeration does not have
 
 
-def members(choices: Mapping[int, str], first: int, last: int, where: str, to: Definitions) -> list[Item]:
+def members(
+    choices: Mapping[int, str], first: int, last: int, where: str, to: Definitions
+) -> list[Item]:
     """Return the enumeration members for values from ``first`` to ``last``.
 
-    Consecutive values of equal name form a range. Other duplicate names are extended by their value (IMP073). Names
-    of values out of range are left out (IMP074).
+    Consecutive values of equal name form a range. Other duplicate names are extended by
+    their value (IMP073). Names of values out of range are left out (IMP074).
     """
     beyond = [value for value in choices if not first <= value <= last]
     if beyond:
         shown = ", ".join(map(str, beyond[:5])) + (" ..." if len(beyond) > 5 else "")
-        to.warn(BEYOND, f"{where}: it never has the value {shown}, which has a name", "the name is left out")
+        to.warn(
+            BEYOND,
+            f"{where}: it never has the value {shown}, which has a name",
+            "the name is left out",
+        )
     result: list[Item] = []
     for value, text in sorted(choices.items()):
         name = line(text, _LONGEST)
         if value in beyond or not name:
             continue
-        if result and result[-1]["name"] == name and result[-1].get("to", result[-1]["value"]) == value - 1:
+        if (
+            result
+            and result[-1]["name"] == name
+            and result[-1].get("to", result[-1]["value"]) == value - 1
+        ):
             result[-1]["to"] = value
         else:
             result.append({"value": value, "name": name})
@@ -49,24 +63,40 @@ def members(choices: Mapping[int, str], first: int, last: int, where: str, to: D
             taken = {member["name"] for member in result}
             for member in duplicates:
                 extended_name = f"{name} {member['value']}"
-                member["name"] = extended_name if extended_name not in taken else f"{extended_name} of {where}"
-    return [{key: member[key] for key in ("value", "to", "name") if key in member} for member in result]
+                member["name"] = (
+                    extended_name
+                    if extended_name not in taken
+                    else f"{extended_name} of {where}"
+                )
+    return [
+        {key: member[key] for key in ("value", "to", "name") if key in member}
+        for member in result
+    ]
 
 
 def is_enumeration(item: Item, bits: int, named: list[Item]) -> bool:
-    """Return whether a number with value names is an enumeration. Otherwise it is a quantity with special values.
+    """Return whether a number with value names is an enumeration.
 
-    It is an enumeration if the names cover all values, or if the field has neither unit nor limits. A field with a
-    formula is a quantity. A signed number is an enumeration only if a named value is negative, because the ICD
-    derives the sign from the members.
+    Otherwise it is a quantity with special values.
+
+    It is an enumeration if the names cover all values, or if the field has neither unit
+    nor limits. A field with a formula is a quantity. A signed number is an enumeration
+    only if a named value is negative, because the ICD derives the sign from the
+    members.
     """
-    if item["type"] not in ("uint", "int") or not named or item.keys() & {"formula", "points"}:
+    if (
+        item["type"] not in ("uint", "int")
+        or not named
+        or item.keys() & {"formula", "points"}
+    ):
         return False
     # The type `enum` has no sign of its own: it is signed if a member is negative.
     is_signed = item["type"] == "int"
     if is_signed != any(member["value"] < 0 for member in named):
         return False
-    return not item.keys() & set(_OF_NUMBERS) or _covers(named, *_value_range(item, bits))
+    return not item.keys() & set(_OF_NUMBERS) or _covers(
+        named, *_value_range(item, bits)
+    )
 
 
 def _value_range(item: Item, bits: int) -> tuple[int, int]:
@@ -81,7 +111,10 @@ def _value_range(item: Item, bits: int) -> tuple[int, int]:
 
 
 def _covers(named: list[Item], first: int, last: int) -> bool:
-    """Return whether each value from ``first`` to ``last`` has a name; ``named`` is in ascending order."""
+    """Return whether each value from ``first`` to ``last`` has a name.
+
+    ``named`` is in ascending order.
+    """
     following = first
     for member in named:
         if member["value"] > following:
@@ -110,16 +143,28 @@ def special(named: list[Item], where: str, to: Definitions) -> Item:
             break
         for value in range(member["value"], last + 1):
             values.append(
-                {"value": value, "meaning": member["name"] if last == member["value"] else f"{member['name']} {value}"}
+                {
+                    "value": value,
+                    "meaning": (
+                        member["name"]
+                        if last == member["value"]
+                        else f"{member['name']} {value}"
+                    ),
+                }
             )
     return {"special": values} if values else {}
 
 
 @dataclass
 class Enumerations:
-    """Collection of enumerations. Fields of equal name and values share an enumeration."""
+    """Collection of enumerations.
 
-    uses: list[tuple[Item, str, str, tuple[tuple[int, int, str], ...]]] = field(default_factory=list)
+    Fields of equal name and values share an enumeration.
+    """
+
+    uses: list[tuple[Item, str, str, tuple[tuple[int, int, str], ...]]] = field(
+        default_factory=list
+    )
 
     def give(self, to: Item, name: str, owner: str, named: list[Item]) -> None:
         """Assign an enumeration to a field.
@@ -127,22 +172,37 @@ class Enumerations:
         ``name`` is its preferred name, and ``owner`` a prefix for names in conflict.
         """
         values = tuple(
-            (member["value"], member["to"] if "to" in member else member["value"], str(member["name"]))
+            (
+                member["value"],
+                member["to"] if "to" in member else member["value"],
+                str(member["name"]),
+            )
             for member in named
         )
         self.uses.append((to, name, owner, values))
 
     def hold(
-        self, to: Item, bits: int, choices: Mapping[int, str], name: str, owner: str, where: str, notes: Definitions
+        self,
+        to: Item,
+        bits: int,
+        choices: Mapping[int, str],
+        name: str,
+        owner: str,
+        where: str,
+        notes: Definitions,
     ) -> None:
-        """Assign value names to a number, as an enumeration or as special values (see `is_enumeration`).
+        """Assign value names to a number, as an enumeration or as special values (see
+        `is_enumeration`).
 
-        ``to`` already has its formula, unit and limits. ``name`` is the preferred name of an enumeration, and
-        ``owner`` a prefix for names in conflict. ``where`` names the field in findings.
+        ``to`` already has its formula, unit and limits. ``name`` is the preferred name
+        of an enumeration, and ``owner`` a prefix for names in conflict. ``where`` names
+        the field in findings.
         """
         if to["type"] not in ("uint", "int"):
             return
-        named = members(choices, *integer_range(bits, to["type"] == "int"), where, notes)
+        named = members(
+            choices, *integer_range(bits, to["type"] == "int"), where, notes
+        )
         if is_enumeration(to, bits, named):
             for key in _OF_NUMBERS:
                 to.pop(key, None)
@@ -161,8 +221,14 @@ class Enumerations:
             unique_name = name if len(kinds[name]) == 1 else f"{owner} {name}"
             to["enum"] = unique_name
             enum_members = [
-                {"value": first, **({"to": last} if last != first else {}), "name": text}
+                {
+                    "value": first,
+                    **({"to": last} if last != first else {}),
+                    "name": text,
+                }
                 for first, last, text in values
             ]
-            enums.setdefault(unique_name, {"name": unique_name, "members": enum_members})
+            enums.setdefault(
+                unique_name, {"name": unique_name, "members": enum_members}
+            )
         return list(enums.values())

@@ -1,4 +1,6 @@
-"""Fields by bit position in a frame: byte and bit order, and overlay fields for overlapping bits."""
+"""Fields by bit position in a frame: byte and bit order, and overlay fields for
+overlapping bits.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +11,17 @@ from icdgen.definitions.model import Definitions, Item
 
 OVERLAPPING = "IMP071"
 LITTLE, BIG = "little", "big"
-ORDERS = {LITTLE: {"byte_order": "little", "bit_order": "lsb0"}, BIG: {"byte_order": "big", "bit_order": "msb0"}}
+ORDERS = {
+    LITTLE: {"byte_order": "little", "bit_order": "lsb0"},
+    BIG: {"byte_order": "big", "bit_order": "msb0"},
+}
 
 
 class Place(NamedTuple):
     """Bits of a frame: position of the first bit, number of bits and order.
 
-    `LITTLE` counts from the least significant bit of each byte, `BIG` from the most significant bit.
+    `LITTLE` counts from the least significant bit of each byte, `BIG` from the most
+    significant bit.
     """
 
     at: int
@@ -24,7 +30,9 @@ class Place(NamedTuple):
 
     @property
     def is_within_byte(self) -> bool:
-        """Return whether all bits are in one byte, so that either order can describe them."""
+        """Return whether all bits are in one byte, so that either order can describe
+        them.
+        """
         return self.at // 8 == (self.at + self.bits - 1) // 8
 
     @property
@@ -32,7 +40,9 @@ class Place(NamedTuple):
         """Bits as an integer: bit w of byte b is bit 8 * b + w."""
         if self.order == LITTLE:
             return (1 << self.bits) - 1 << self.at
-        return sum(1 << at // 8 * 8 + 7 - at % 8 for at in range(self.at, self.at + self.bits))
+        return sum(
+            1 << at // 8 * 8 + 7 - at % 8 for at in range(self.at, self.at + self.bits)
+        )
 
     def counted(self, order: str) -> Place:
         """Return these bits in another order, or unchanged if they span several bytes."""
@@ -42,12 +52,17 @@ class Place(NamedTuple):
 
 
 def usual(places: Iterable[Place]) -> str:
-    """Return the order of most fields that span bytes; `LITTLE` if there is no majority for `BIG`."""
+    """Return the order of most fields that span bytes.
+
+    `LITTLE` if there is no majority for `BIG`.
+    """
     orders = [place.order for place in places if not place.is_within_byte]
     return BIG if 2 * orders.count(BIG) > len(orders) else LITTLE
 
 
-def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: Definitions) -> Item:
+def laid_out(
+    message: Item, placed: list[tuple[Item, Place]], order: str, to: Definitions
+) -> Item:
     """Return the message with its fields.
 
     Its order is ``order``, unless all fields that span bytes have the other one.
@@ -61,8 +76,14 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
         # Another order would reverse the elements of an array.
         place = place if "count" in field else place.counted(order)
         keys = dict(field)
-        field.clear()  # keep the mapping: `Enumerations.declared` sets `enum` in it later
-        field |= {"at": place.at, "bits": place.bits, **keys, **(ORDERS[place.order] if place.order != order else {})}
+        # Keep the mapping: `Enumerations.declared` sets `enum` in it later.
+        field.clear()
+        field |= {
+            "at": place.at,
+            "bits": place.bits,
+            **keys,
+            **(ORDERS[place.order] if place.order != order else {}),
+        }
         fields.append(field)
         covered = max(covered, place.mask.bit_length())
     fields.sort(key=lambda field: (field["at"] // 8, field["at"]))
@@ -71,10 +92,13 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
     return {**message, "fields": fields} if fields else message
 
 
-def _with_overlays(name: str, placed: list[tuple[Item, Place]], to: Definitions) -> Iterator[tuple[Item, Place]]:
+def _with_overlays(
+    name: str, placed: list[tuple[Item, Place]], to: Definitions
+) -> Iterator[tuple[Item, Place]]:
     """Yield the fields, with overlapping smaller fields as overlay fields (IMP071).
 
-    Bits that only overlay fields cover become fields. Optional fields that overlap others are left out.
+    Bits that only overlay fields cover become fields. Optional fields that overlap
+    others are left out.
     """
     owners: list[tuple[Item, int]] = []
     left, pairs = 0, []
@@ -86,23 +110,36 @@ def _with_overlays(name: str, placed: list[tuple[Item, Place]], to: Definitions)
             left |= mask
             continue
         over = next(
-            (owner for owner, owner_mask in owners if mask & owner_mask and not _are_exclusive(owner, field)), None
+            (
+                owner
+                for owner, owner_mask in owners
+                if mask & owner_mask and not _are_exclusive(owner, field)
+            ),
+            None,
         )
         if over is None:
             owners.append((field, mask))
             continue
         if "when" in field:
-            to.without_field(name, field["name"], f"it is optional, and overlaps `{over['name']}`")
+            to.without_field(
+                name, field["name"], f"it is optional, and overlaps `{over['name']}`"
+            )
             left_out.append(field)
             continue
         pairs.append(f"`{field['name']}` and `{over['name']}`")
         field["view"] = True
         left |= mask
     if pairs:
-        shown = ", ".join(pairs[:3]) + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")
+        shown = ", ".join(pairs[:3]) + (
+            f" and {len(pairs) - 3} more" if len(pairs) > 3 else ""
+        )
         help = "the smaller ones are imported as overlay fields, which can be read but not set"
         to.warn(OVERLAPPING, f"message `{name}`: {shown} overlap", help)
-    yield from ((field, place) for field, place in placed if not any(field is removed for removed in left_out))
+    yield from (
+        (field, place)
+        for field, place in placed
+        if not any(field is removed for removed in left_out)
+    )
     owned = 0
     for _, mask in owners:
         owned |= mask
@@ -112,7 +149,11 @@ def _with_overlays(name: str, placed: list[tuple[Item, Place]], to: Definitions)
 def _are_exclusive(field: Item, other: Item) -> bool:
     """Return whether the conditions of two fields exclude each other."""
     first, second = field.get("when", {}), other.get("when", {})
-    return any(not set(listed(first[key])) & set(listed(second[key])) for key in first if key in second)
+    return any(
+        not set(listed(first[key])) & set(listed(second[key]))
+        for key in first
+        if key in second
+    )
 
 
 def listed(condition: object) -> list[object]:
@@ -128,6 +169,8 @@ def _fields_of_bits(mask: int) -> Iterator[tuple[Item, Place]]:
         while mask >> at & 1 and (at == start or at % 8):
             at += 1
         if at > start:
-            yield {"name": f"Bits from {start}", "type": "uint"}, Place(start, at - start, LITTLE)
+            yield {"name": f"Bits from {start}", "type": "uint"}, Place(
+                start, at - start, LITTLE
+            )
         else:
             at += 1

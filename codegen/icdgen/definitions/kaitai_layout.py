@@ -1,4 +1,6 @@
-"""Layout of a .ksy: its attributes as consecutive parts, for one combination of its conditional branches."""
+"""Layout of a .ksy: its attributes as consecutive parts, for one combination of its
+conditional branches.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +10,32 @@ from typing import Any
 
 from icdgen.definitions.accounting import settle
 from icdgen.definitions.containers import AS_BYTES, Container, Counter
-from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, linear_function, masked, number
-from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, Undecided, placed
-from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
+from icdgen.definitions.kaitai_expressions import (
+    Masked,
+    counted,
+    equalities,
+    linear_function,
+    masked,
+    number,
+)
+from icdgen.definitions.kaitai_parts import (
+    Ended,
+    File,
+    Key,
+    Label,
+    Part,
+    Scope,
+    Undecided,
+    placed,
+)
+from icdgen.definitions.kaitai_types import (
+    Piece,
+    Type,
+    built_in,
+    contents,
+    named,
+    sized,
+)
 from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Item, NotSupported
 from icdgen.definitions.reading import TooMuch
@@ -26,25 +51,33 @@ _WORD = 8  # bytes of the largest integer
 
 @dataclass
 class Layout(Container[Part]):
-    """Parts of a root type. ``decided`` are the values of the fields that select branches."""
+    """Parts of a root type.
+
+    ``decided`` are the values of the fields that select branches.
+    """
 
     file: File
     decided: dict[Key, int | None]
     is_struct: bool = False
     labels: list[Label] = field(default_factory=list)
-    ends: list[int] = field(default_factory=list)  # bit behind each enclosing part that states its `size`
+    ends: list[int] = field(
+        default_factory=list
+    )  # bit behind each enclosing part that states its `size`
 
     def read(self, root: Type) -> None:
         """Add the parts of the root type.
 
-        Raises `NotSupported` if it is not supported, `Undecided` if a branch depends on a value that is not in ``decided``.
+        Raises `NotSupported` if it is not supported, `Undecided` if a branch depends on
+        a value that is not in ``decided``.
         """
         try:
             self.type(root, Scope(root), (), (root,))
         except Ended:
             return
 
-    def type(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
+    def type(
+        self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]
+    ) -> None:
         """Add the attributes of a type (`seq`), and the formulas of its `instances`."""
         try:
             self._sequence(type_, scope, path, within)
@@ -53,8 +86,13 @@ class Layout(Container[Part]):
             raise
         self._instances(type_, scope, path)
 
-    def _sequence(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
-        """Add the attributes of `seq`. Attributes that are not supported become bytes."""
+    def _sequence(
+        self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]
+    ) -> None:
+        """Add the attributes of `seq`.
+
+        Attributes that are not supported become bytes.
+        """
         for index, attribute in enumerate(type_.seq):
             self.file.step()
             self.check_size()
@@ -74,9 +112,17 @@ class Layout(Container[Part]):
                 self._as_bytes(attribute, where, why, is_present)
 
     def _attribute(
-        self, attribute: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]
+        self,
+        attribute: Map,
+        name: str,
+        where: tuple[str, ...],
+        scope: Scope,
+        within: tuple[Type, ...],
     ) -> None:
-        """Add the parts of an attribute. ``where`` is its path, ``within`` the enclosing types. Raises `NotSupported`."""
+        """Add the parts of an attribute.
+
+        ``where`` is its path, ``within`` the enclosing types. Raises `NotSupported`.
+        """
         if "process" in attribute:
             raise NotSupported(
                 f"its bytes are processed by `{line(str(attribute['process']), 60)}` before they are read"
@@ -99,11 +145,15 @@ class Layout(Container[Part]):
             scope.names[name] = part
             return
         if "(" in str(name_of_type):
-            raise NotSupported(f"the type `{line(str(name_of_type), 60)}` has parameters")
+            raise NotSupported(
+                f"the type `{line(str(name_of_type), 60)}` has parameters"
+            )
         inner = scope.type.find(str(name_of_type))
         if any(inner is other for other in within):
             circle = " -> ".join(other.name for other in (*within, inner))
-            raise NotSupported(f"types contain each other in a circle: {line(circle, 200)}")
+            raise NotSupported(
+                f"types contain each other in a circle: {line(circle, 200)}"
+            )
         if len(within) >= _DEEPEST:
             raise NotSupported(f"more than {_DEEPEST} types contain each other")
         if count is not None:
@@ -114,9 +164,17 @@ class Layout(Container[Part]):
         self._within(attribute, inner, below, where, within)
 
     def _within(
-        self, attribute: Map, inner: Type, below: Scope, where: tuple[str, ...], within: tuple[Type, ...]
+        self,
+        attribute: Map,
+        inner: Type,
+        below: Scope,
+        where: tuple[str, ...],
+        within: tuple[Type, ...],
     ) -> None:
-        """Add the fields of a type that is not repeated. If the attribute states a `size`, the next part begins behind it."""
+        """Add the fields of a type that is not repeated.
+
+        If the attribute states a `size`, the next part begins behind it.
+        """
         if "size" in attribute and sized(attribute) is None:
             raise NotSupported(f"its size is `{line(str(attribute['size']), 80)}`")
         size = sized(attribute)
@@ -135,11 +193,14 @@ class Layout(Container[Part]):
         finally:
             self.ends.pop()
         if self.at > end:
-            raise NotSupported(f"it has more than the {size} bytes that are there for it")
+            raise NotSupported(
+                f"it has more than the {size} bytes that are there for it"
+            )
         self.at = end
 
     def _count(self, attribute: Map, scope: Scope) -> int | Counter | str | None:
-        """Return the number of repetitions: None without `repeat`, a number, a counter, or `rest` for `repeat: eos`.
+        """Return the number of repetitions: None without `repeat`, a number, a counter,
+        or `rest` for `repeat: eos`.
 
         Raises `NotSupported` for any other expression.
         """
@@ -160,12 +221,20 @@ class Layout(Container[Part]):
         return count
 
     def _counter(self, expression: object, scope: Scope, why: str) -> Counter:
-        """Return the preceding integer that an expression refers to. Raises `NotSupported` with ``why`` for other expressions."""
+        """Return the preceding integer that an expression refers to.
+
+        Raises `NotSupported` with ``why`` for other expressions.
+        """
         linear = counted(expression)
         if linear is None:
             raise NotSupported(why)
         of = scope.find(linear[0])
-        if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is part for part in self.parts):
+        if (
+            of.item.get("type") != "uint"
+            or "count" in of.item
+            or of.mask
+            or not any(of is part for part in self.parts)
+        ):
             raise NotSupported(f"{why}, which is not a number in front of it")
         counter = Counter(of, linear[1])
         if self.ends:
@@ -179,27 +248,53 @@ class Layout(Container[Part]):
         self.at = -(-self.at // 8) * 8
 
     def _place(
-        self, where: tuple[str, ...], piece: Piece, count: int | Counter | str | None, attribute: Map, scope: Scope
+        self,
+        where: tuple[str, ...],
+        piece: Piece,
+        count: int | Counter | str | None,
+        attribute: Map,
+        scope: Scope,
     ) -> Part:
         """Add a number, a text or bytes behind the last part. Raises `NotSupported`."""
         counter = count if isinstance(count, Counter) else None
         if not piece.bits and "size" in attribute:
-            counter = self._counter(attribute["size"], scope, f"its size is `{line(str(attribute['size']), 80)}`")
+            counter = self._counter(
+                attribute["size"],
+                scope,
+                f"its size is `{line(str(attribute['size']), 80)}`",
+            )
         if not piece.is_bits:
             self._align()
-        elif self.at % 8 and self.parts and self.parts[-1].piece.is_bits and self.parts[-1].piece.order != piece.order:
-            raise NotSupported("its bits are counted from the other end of a byte than the bits in front of it")
+        elif (
+            self.at % 8
+            and self.parts
+            and self.parts[-1].piece.is_bits
+            and self.parts[-1].piece.order != piece.order
+        ):
+            raise NotSupported(
+                "its bits are counted from the other end of a byte than the bits in front of it"
+            )
         if not piece.bits and self.ends:
             piece.bits = self.ends[-1] - self.at
             if piece.bits <= 0:
                 raise NotSupported("no byte is left for it")
         if "enum" in attribute:
             reference = str(attribute["enum"])
-            named(piece.item, piece.bits, reference, scope.type, self.file.enums, self.file.heard(reference))
+            named(
+                piece.item,
+                piece.bits,
+                reference,
+                scope.type,
+                self.file.enums,
+                self.file.heard(reference),
+            )
         if count is not None:
             if piece.item["type"] == "bytes" or not piece.bits:
                 raise NotSupported("its elements are not numbers")
-            piece.item |= {"bits": piece.bits, "count": REST if isinstance(count, Counter) else count}
+            piece.item |= {
+                "bits": piece.bits,
+                "count": REST if isinstance(count, Counter) else count,
+            }
         piece.item |= summary(str(attribute.get("doc") or "")) | unit(_unit(attribute))
         part = placed(where, piece, self.at, counter)
         self._valid(part, attribute.get("valid"), scope)
@@ -207,22 +302,35 @@ class Layout(Container[Part]):
         return part
 
     def _fit(self, part: Part) -> None:
-        """Add a part. Raises `NotSupported` if it does not fit into the enclosing part."""
+        """Add a part.
+
+        Raises `NotSupported` if it does not fit into the enclosing part.
+        """
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotSupported("it is longer than the part that contains it")
         self.add(part)
 
     def _valid(self, part: Part, valid: Any, scope: Scope) -> None:
-        """Apply the key `valid`: a single value becomes a constant, `min` and `max` become limits. Ignores other forms."""
+        """Apply the key `valid`: a single value becomes a constant, `min` and `max`
+        become limits.
+
+        Ignores other forms.
+        """
         item = part.item
-        if valid is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
+        if (
+            valid is None
+            or item["type"] not in ("uint", "int", "enum", "bool")
+            or "count" in item
+        ):
             return
         equal = valid.get("eq") if isinstance(valid, Map) else valid
         all_bits = (1 << part.bits) - 1
         if isinstance(valid, Map) and item["type"] in ("uint", "int"):
             low, high = integer_range(part.bits, item["type"] == "int")
             item |= {
-                key: valid[key] for key in ("min", "max") if type(valid.get(key)) is int and low <= valid[key] <= high
+                key: valid[key]
+                for key in ("min", "max")
+                if type(valid.get(key)) is int and low <= valid[key] <= high
             }
         try:
             value = number(str(equal), scope.type.members)
@@ -236,22 +344,42 @@ class Layout(Container[Part]):
         for start in range(0, len(always), _WORD):
             data = always[start : start + _WORD]
             name = where if len(always) <= _WORD else (*where, str(start // _WORD + 1))
-            item = {"type": "uint", **(summary(str(attribute.get("doc") or "")) if not start else {})}
+            item = {
+                "type": "uint",
+                **(summary(str(attribute.get("doc") or "")) if not start else {}),
+            }
             bits = 8 * len(data)
             part = placed(name, Piece(item, bits), self.at)
             part.mask, part.value = (1 << bits) - 1, int.from_bytes(data, "big")
             self.add(part)
 
     def _structs(
-        self, where: tuple[str, ...], inner: Type, count: int | Counter | str, attribute: Map, within: tuple[Type, ...]
+        self,
+        where: tuple[str, ...],
+        inner: Type,
+        count: int | Counter | str,
+        attribute: Map,
+        within: tuple[Type, ...],
     ) -> None:
-        """Add an array of structs. Raises `NotSupported` if the layout of the type depends on values or varies in size."""
+        """Add an array of structs.
+
+        Raises `NotSupported` if the layout of the type depends on values or varies in
+        size.
+        """
         self._align()
         layout = Layout(self.file, {}, is_struct=True)
         try:
-            layout._within(attribute, inner, Scope(inner), (), (*within, inner) if sized(attribute) is None else within)
+            layout._within(
+                attribute,
+                inner,
+                Scope(inner),
+                (),
+                (*within, inner) if sized(attribute) is None else within,
+            )
         except Undecided as error:
-            raise NotSupported(f"what each of them has depends on `{error.key[0][-1]}`") from None
+            raise NotSupported(
+                f"what each of them has depends on `{error.key[0][-1]}`"
+            ) from None
         if not layout.parts and not layout.at:
             return  # a type without bytes, such as an empty `seq`
         if layout.is_open or layout.at % 8:
@@ -269,15 +397,24 @@ class Layout(Container[Part]):
             raise NotSupported("they are not as long as elsewhere")
         self._fit(placed(where, Piece(item, layout.at), self.at, counter))
 
-    def _as_bytes(self, attribute: Map, where: tuple[str, ...], why: NotSupported, is_present: bool) -> None:
+    def _as_bytes(
+        self,
+        attribute: Map,
+        where: tuple[str, ...],
+        why: NotSupported,
+        is_present: bool,
+    ) -> None:
         """Add an attribute that is not supported as bytes, and report it (IMP081).
 
-        An attribute without a fixed size takes all remaining bytes; then `Ended` is raised. Raises ``why`` in a struct.
+        An attribute without a fixed size takes all remaining bytes; then `Ended` is
+        raised. Raises ``why`` in a struct.
         """
         if self.is_struct:
             raise why
         try:
-            size = sized(attribute) if is_present and "repeat" not in attribute else None
+            size = (
+                sized(attribute) if is_present and "repeat" not in attribute else None
+            )
         except NotSupported:
             size = None
         is_end = self.is_open or size is None
@@ -296,12 +433,20 @@ class Layout(Container[Part]):
             effect = "the bytes up to the end of the frame are imported"
             self._bytes(where, 0)
         settle(attribute)
-        self.file.note(AS_BYTES, f"`{' '.join(where)}` is not imported: {why}", effect, "error", attribute.place.line)
+        self.file.note(
+            AS_BYTES,
+            f"`{' '.join(where)}` is not imported: {why}",
+            effect,
+            "error",
+            attribute.place.line,
+        )
         if is_end:
             raise Ended
 
     def _bytes(self, where: tuple[str, ...], bits: int) -> None:
-        """Add bytes without a meaning. 0 ``bits`` stand for all bytes up to the end of the frame."""
+        """Add bytes without a meaning. 0 ``bits`` stand for all bytes up to the end of
+        the frame.
+        """
         self._align()
         item: Item = {"type": "bytes"}
         part = placed(where, Piece(item, bits), self.at)
@@ -311,9 +456,14 @@ class Layout(Container[Part]):
     # Branches: `if` and `switch-on`.
 
     def _is_present(self, attribute: Map, name: str, scope: Scope) -> bool:
-        """Return whether this message contains an attribute with `if`. Raises `NotSupported` if the condition is not supported."""
+        """Return whether this message contains an attribute with `if`.
+
+        Raises `NotSupported` if the condition is not supported.
+        """
         conditions = equalities(attribute["if"])
-        if len(conditions) > 1 and any(condition.is_negated for condition in conditions):
+        if len(conditions) > 1 and any(
+            condition.is_negated for condition in conditions
+        ):
             raise NotSupported(
                 f"it depends on `{line(str(attribute['if']), 80)}`, which is more than equalities of fields"
             )
@@ -322,29 +472,50 @@ class Layout(Container[Part]):
             chosen, is_new = self._choose(condition.of, [value], scope, is_else=True)
             is_met = (chosen is not None) != condition.is_negated
             if is_new:
-                self.labels.append(Label(f"with {name}" if is_met else "", "" if chosen is None else f"{value}"))
+                self.labels.append(
+                    Label(
+                        f"with {name}" if is_met else "",
+                        "" if chosen is None else f"{value}",
+                    )
+                )
             if not is_met:
                 return False
         return True
 
     def _switched(self, switch: Map, scope: Scope) -> str | None:
-        """Return the type that a `switch-on` selects in this message, None if no case applies. Raises `NotSupported`."""
+        """Return the type that a `switch-on` selects in this message, None if no case
+        applies.
+
+        Raises `NotSupported`.
+        """
         cases = switch.get("cases")
         if not isinstance(cases, Map):
             raise NotSupported("a switch has no cases")
-        types = {number(key, scope.type.members): str(of) for key, of in cases.items() if key != "_"}
+        types = {
+            number(key, scope.type.members): str(of)
+            for key, of in cases.items()
+            if key != "_"
+        }
         of = masked(switch.get("switch-on"))
         value, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
-        chosen = str(cases["_"]) if value is None and "_" in cases else None if value is None else types[value]
+        chosen = (
+            str(cases["_"])
+            if value is None and "_" in cases
+            else None if value is None else types[value]
+        )
         if is_new and chosen is not None:
             self.labels.append(Label(chosen, "other" if value is None else f"{value}"))
         return chosen
 
-    def _choose(self, of: Masked, options: list[int], scope: Scope, is_else: bool) -> tuple[int | None, bool]:
-        """Return which of ``options`` the bits of a field have in this message, and whether a new decision was needed.
+    def _choose(
+        self, of: Masked, options: list[int], scope: Scope, is_else: bool
+    ) -> tuple[int | None, bool]:
+        """Return which of ``options`` the bits of a field have in this message, and
+        whether a new decision was needed.
 
-        Returns None as the value if the bits differ from all options. ``is_else``: other values have their own branch.
-        Raises `Undecided` if the value is not in ``decided``, `NotSupported` if the field is not an integer.
+        Returns None as the value if the bits differ from all options. ``is_else``:
+        other values have their own branch. Raises `Undecided` if the value is not in
+        ``decided``, `NotSupported` if the field is not an integer.
         """
         part = scope.find(of.path)
         item = part.item
@@ -352,21 +523,33 @@ class Layout(Container[Part]):
             raise NotSupported(f"it depends on `{of.path}`, which is not an integer")
         all_bits = (1 << part.bits) - 1
         mask = all_bits if of.mask is None else of.mask & all_bits
-        raw = {option & mask: option for option in options if option in (option & mask, (option & mask) - all_bits - 1)}
+        raw = {
+            option & mask: option
+            for option in options
+            if option in (option & mask, (option & mask) - all_bits - 1)
+        }
         if part.mask & mask == mask:
             return raw.get(part.value & mask), False
         common = part.mask & mask
-        possible = [value for value in raw if not (value ^ part.value) & common and (mask, value) not in part.excluded]
+        possible = [
+            value
+            for value in raw
+            if not (value ^ part.value) & common and (mask, value) not in part.excluded
+        ]
         key = (part.path, mask, tuple(possible))
         free = mask & ~part.mask
         is_all = len(possible) == 1 << free.bit_count()
         if not possible:
             return None, False
         if key not in self.decided:
-            raise Undecided(key, [*possible, *([None] if is_else and not is_all else [])])
+            raise Undecided(
+                key, [*possible, *([None] if is_else and not is_all else [])]
+            )
         chosen = self.decided[key]
         if chosen is None and free.bit_count() == 1 and len(possible) == 1:
-            part.mask, part.value = part.mask | mask, part.value & ~mask | (possible[0] ^ free)
+            part.mask, part.value = part.mask | mask, part.value & ~mask | (
+                possible[0] ^ free
+            )
         elif chosen is None:
             part.excluded |= {(mask, value) for value in possible}
         else:
@@ -374,32 +557,59 @@ class Layout(Container[Part]):
         return (None if chosen is None else raw[chosen]), True
 
     def _instances(self, type_: Type, scope: Scope, path: tuple[str, ...]) -> None:
-        """Add the formulas of `instances`, and the fields of instances at a fixed `pos`. Reports instances not imported."""
+        """Add the formulas of `instances`, and the fields of instances at a fixed
+        `pos`.
+
+        Reports instances not imported.
+        """
         instances = type_.instances.items()
-        for name, instance in instances if type_.seq else sorted(instances, key=_position):
-            if not isinstance(instance, Map) or self._add_positioned(name, instance, type_, scope):
+        for name, instance in (
+            instances if type_.seq else sorted(instances, key=_position)
+        ):
+            if not isinstance(instance, Map) or self._add_positioned(
+                name, instance, type_, scope
+            ):
                 continue
             where = " ".join((*path, name))
             if "value" not in instance:
                 settle(instance)
                 text = f"`{where}` is not imported: an expression gives its position"
-                self.file.note(AS_BYTES, text, "the fields of the sequence are imported", "error", instance.place.line)
+                self.file.note(
+                    AS_BYTES,
+                    text,
+                    "the fields of the sequence are imported",
+                    "error",
+                    instance.place.line,
+                )
                 continue
             if not self._formula(instance, scope):
                 settle(instance)
                 expression = line(str(instance["value"]), 80)
-                text = f"`{where}`: `{expression}` is not a linear function of one field"
+                text = (
+                    f"`{where}`: `{expression}` is not a linear function of one field"
+                )
                 self.file.note(
-                    RAW_ONLY, text, "the fields that it is computed from are imported", "warning", instance.place.line
+                    RAW_ONLY,
+                    text,
+                    "the fields that it is computed from are imported",
+                    "warning",
+                    instance.place.line,
                 )
 
-    def _add_positioned(self, name: str, instance: Map, type_: Type, scope: Scope) -> bool:
+    def _add_positioned(
+        self, name: str, instance: Map, type_: Type, scope: Scope
+    ) -> bool:
         """Add an instance with a fixed `pos` as a field, and return whether it is one.
 
         This is supported for the root type of a format without `seq`.
         """
         at = instance.get("pos")
-        if not isinstance(at, int) or "io" in instance or type_.outer is not None or type_.seq:
+        if (
+            not isinstance(at, int)
+            or "io" in instance
+            or type_.outer is not None
+            or type_.seq
+        ):
             return False
         if self.is_open or 8 * at < self.at or at > MOST_BYTES:
             return False
@@ -413,7 +623,9 @@ class Layout(Container[Part]):
         return True
 
     def _formula(self, instance: Map, scope: Scope) -> bool:
-        """Add the formula of an instance to the field it depends on, and return whether that is possible."""
+        """Add the formula of an instance to the field it depends on, and return whether
+        that is possible.
+        """
         if isinstance(instance["value"], (int, float)):
             return True  # a constant of the definition; the frame does not contain it
         linear = linear_function(instance["value"], is_integer=False)
@@ -424,11 +636,21 @@ class Layout(Container[Part]):
         except NotSupported:
             return False
         item = part.item
-        if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:
+        if (
+            item.get("type") not in ("uint", "int", "float")
+            or "formula" in item
+            or "view" in item
+        ):
             return False
-        if any(other.counter is not None and other.counter.part is part for other in self.parts):
+        if any(
+            other.counter is not None and other.counter.part is part
+            for other in self.parts
+        ):
             return False  # a counter cannot have a formula
-        if item["type"] != "float" and linear_function(instance["value"], is_integer=True) is None:
+        if (
+            item["type"] != "float"
+            and linear_function(instance["value"], is_integer=True) is None
+        ):
             return False
         if linear[1] != "raw":
             for raw in ("min", "max"):  # in an ICD, limits apply to the physical value
@@ -446,5 +668,8 @@ def _position(instance: tuple[str, Any]) -> float:
 
 
 def _unit(attribute: Map) -> str:
-    """Return the unit from the key `-unit`, a convention of Kaitai Struct files; the language itself has no units."""
+    """Return the unit from the key `-unit`, a convention of Kaitai Struct files.
+
+    The language itself has no units.
+    """
     return str(attribute.get("-unit") or "")

@@ -30,11 +30,15 @@ class Undecided(Exception):
 
 
 class Ended(Exception):
-    """Raised if the remaining bytes of the enclosing type are imported without their structure."""
+    """Raised if the remaining bytes of the enclosing type are imported without their
+    structure.
+    """
 
 
 class Label(NamedTuple):
-    """Word that a branch adds to the name of the message, and the value that selects the branch."""
+    """Word that a branch adds to the name of the message, and the value that selects
+    the branch.
+    """
 
     word: str
     value: str
@@ -44,20 +48,27 @@ class Label(NamedTuple):
 class Part(containers.Part):
     """Attribute at its position.
 
-    The bits of ``mask`` have the fixed values in ``value``. ``excluded`` are pairs of mask and value that do not occur.
+    The bits of ``mask`` have the fixed values in ``value``. ``excluded`` are pairs of
+    mask and value that do not occur.
     """
 
     piece: Piece = field(kw_only=True)
     mask: int = 0
     value: int = 0
     excluded: set[tuple[int, int]] = field(default_factory=set)
-    is_whole: bool = True  # False for bytes that replace an attribute that is not supported
+    is_whole: bool = (
+        True  # False for bytes that replace an attribute that is not supported
+    )
 
     @property
     def is_ordered(self) -> bool:
         """Whether the byte or bit order affects the part."""
         is_number = self.item.get("type", "bytes") not in ("bytes", "text")
-        return is_number and (self.piece.is_bits or self.piece.bits > 8 or (self.mask > 0 and "count" not in self.item))
+        return is_number and (
+            self.piece.is_bits
+            or self.piece.bits > 8
+            or (self.mask > 0 and "count" not in self.item)
+        )
 
     @property
     def place(self) -> Place:
@@ -65,14 +76,21 @@ class Part(containers.Part):
         return Place(self.at, self.bits, self.piece.order)
 
 
-def placed(path: tuple[str, ...], piece: Piece, at: int, counter: Counter | None = None) -> Part:
-    """Return the part that a piece makes at a bit. ``counter`` counts its elements, or bytes."""
+def placed(
+    path: tuple[str, ...], piece: Piece, at: int, counter: Counter | None = None
+) -> Part:
+    """Return the part that a piece makes at a bit.
+
+    ``counter`` counts its elements, or bytes.
+    """
     item, count = piece.item, piece.item.get("count", 1)
     bits = piece.bits * count if isinstance(count, int) else 0
     if not bits:
         most = MOST_ELEMENTS if "count" in item else MOST_BYTES
         item["up_to"] = min(most, counter.most) if counter is not None else most
-    return Part(path, item, at, bits, piece.order, piece.bits or 8, counter, piece=piece)
+    return Part(
+        path, item, at, bits, piece.order, piece.bits or 8, counter, piece=piece
+    )
 
 
 @dataclass
@@ -84,7 +102,10 @@ class Scope:
     names: dict[str, Part | Scope] = field(default_factory=dict)
 
     def find(self, path: str) -> Part:
-        """Return the part at a path such as ``_parent.header.length``. Raises `NotSupported` if no preceding part has it."""
+        """Return the part at a path such as ``_parent.header.length``.
+
+        Raises `NotSupported` if no preceding part has it.
+        """
         here: Part | Scope | None = self
         for name in path.split("."):
             if not isinstance(here, Scope):
@@ -105,10 +126,13 @@ class Scope:
 class File(Reading):
     """State that all messages of a file share."""
 
-    most_steps = 100_000  # attributes of all messages; a small file can have many combinations of branches
+    # Attributes of all messages; a small file can have many combinations of branches.
+    most_steps = 100_000
 
     structs: dict[int, Item] = field(default_factory=dict)  # by `id` of the type
 
-    def note(self, code: str, message: str, help: str, severity: str, at: int | None) -> None:
+    def note(
+        self, code: str, message: str, help: str, severity: str, at: int | None
+    ) -> None:
         """Report a finding once, even if it applies to several messages."""
         self.heard(message).warn(code, message, help, severity, at)

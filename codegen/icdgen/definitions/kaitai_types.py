@@ -1,4 +1,6 @@
-"""Types of a .ksy: the nested types that the file declares, and the built-in numbers, texts and bytes."""
+"""Types of a .ksy: the nested types that the file declares, and the built-in numbers,
+texts and bytes.
+"""
 
 from __future__ import annotations
 
@@ -19,16 +21,24 @@ _NUMBER = re.compile(r"([usf])([1248])(le|be)?\Z")
 _BITS = re.compile(r"b([1-9][0-9]?)(le|be)?\Z")
 _KINDS = {"u": "uint", "s": "int", "f": "float"}
 _ORDERS = {"le": LITTLE, "be": BIG}
-# Encodings with one byte for each ASCII character; text in other encodings is imported as bytes.
+# Encodings with one byte for each ASCII character; text in other encodings is imported
+# as bytes.
 _PLAIN = frozenset({"ASCII", "US-ASCII", "UTF-8", "ISO-8859-1"})
 _DEEPEST = 40  # levels of nested types
 
 
 @dataclass
 class Piece(containers.Piece):
-    """Field that the type of an attribute describes. ``bits`` is the width of one element."""
+    """Field that the type of an attribute describes.
 
-    is_bits: bool = False  # a bit-sized integer, which begins at the next bit; other types begin at a byte
+    ``bits`` is the width of one element.
+    """
+
+    is_bits: bool = (
+        # A bit-sized integer, which begins at the next bit; other types begin at a
+        # byte.
+        False
+    )
 
 
 @dataclass
@@ -44,12 +54,19 @@ class Type:
 
     @property
     def seq(self) -> list[Map]:
-        """Attributes in their order; empty without a `seq`. Raises `NotSupported` if `seq` is not a list of mappings."""
+        """Attributes in their order; empty without a `seq`.
+
+        Raises `NotSupported` if `seq` is not a list of mappings.
+        """
         attributes = self.body.get("seq")
         if attributes is None:
             return []
-        if not isinstance(attributes, Seq) or not all(isinstance(attribute, Map) for attribute in attributes):
-            raise NotSupported(f"the `seq` of `{self.name}` is not a list of attributes")
+        if not isinstance(attributes, Seq) or not all(
+            isinstance(attribute, Map) for attribute in attributes
+        ):
+            raise NotSupported(
+                f"the `seq` of `{self.name}` is not a list of attributes"
+            )
         return attributes
 
     @property
@@ -58,11 +75,16 @@ class Type:
         return mapping(self.body, "instances")
 
     def find(self, reference: str) -> Type:
-        """Return the type that a reference names in this type or an enclosing one. Raises `NotSupported` if it is missing."""
+        """Return the type that a reference names in this type or an enclosing one.
+
+        Raises `NotSupported` if it is missing.
+        """
         first, *inner_names = reference.split("::")
         scope: Type | None = self
         while scope is not None:
-            result = scope.types.get(first) or (scope if scope.outer is None and scope.name == first else None)
+            result = scope.types.get(first) or (
+                scope if scope.outer is None and scope.name == first else None
+            )
             for inner_name in inner_names:
                 result = result.types.get(inner_name) if result else None
             if result is not None:
@@ -71,14 +93,19 @@ class Type:
         raise NotSupported(f"there is no type `{line(reference, 60)}`")
 
     def members(self, reference: str) -> dict[int, str]:
-        """Return the members of an enumeration by value. Raises `NotSupported` if this and the enclosing types lack it."""
+        """Return the members of an enumeration by value.
+
+        Raises `NotSupported` if this and the enclosing types lack it.
+        """
         *path, name = reference.split("::")
         scope: Type | None = self.find("::".join(path)) if path else self
         while scope is not None:
             enumeration = mapping(scope.body, "enums").get(name)
             if isinstance(enumeration, Map):
                 return {
-                    value: str(member.get("id", "") if isinstance(member, Map) else member)
+                    value: str(
+                        member.get("id", "") if isinstance(member, Map) else member
+                    )
                     for key, member in enumeration.items()
                     if (value := integer(key)) is not None
                 }
@@ -87,13 +114,18 @@ class Type:
 
 
 def mapping(body: Map, key: str) -> Map | dict[str, Any]:
-    """Return the mapping of a key, an empty one if the key is missing or has no mapping."""
+    """Return the mapping of a key, an empty one if the key is missing or has no
+    mapping.
+    """
     value = body.get(key)
     return value if isinstance(value, Map) else {}
 
 
 def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) -> Type:
-    """Return a type with its nested types. A type inherits the byte order and bit order of the enclosing one."""
+    """Return a type with its nested types.
+
+    A type inherits the byte order and bit order of the enclosing one.
+    """
     meta = mapping(body, "meta")
     endian = outer.endian if outer else None
     if "endian" in meta:
@@ -109,8 +141,8 @@ def declared(name: str, body: Map, outer: Type | None = None, depth: int = 0) ->
 def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
     """Return the field of a built-in type, None for a type that the file declares.
 
-    ``within`` has the default byte order and encoding. A size that another field gives is 0 bits.
-    Raises `NotSupported` if the type is not supported.
+    ``within`` has the default byte order and encoding. A size that another field gives
+    is 0 bits. Raises `NotSupported` if the type is not supported.
     """
     if (number := _NUMBER.match(name)) is not None:
         kind, size, suffix = number.groups()
@@ -143,7 +175,10 @@ def built_in(name: str, attribute: Map, within: Type) -> Piece | None:
 
 
 def sized(attribute: Map) -> int | None:
-    """Return the `size` of an attribute in bytes, None if it is not a number. Raises `NotSupported` if it is out of range."""
+    """Return the `size` of an attribute in bytes, None if it is not a number.
+
+    Raises `NotSupported` if it is out of range.
+    """
     stated = attribute.get("size")
     size = integer(stated.strip()) if isinstance(stated, str) else stated
     if not isinstance(size, int) or isinstance(size, bool):
@@ -154,14 +189,21 @@ def sized(attribute: Map) -> int | None:
 
 
 def contents(attribute: Map) -> bytes | None:
-    """Return the constant bytes of an attribute (`contents`), None without the key. Raises `NotSupported` for bad values."""
+    """Return the constant bytes of an attribute (`contents`), None without the key.
+
+    Raises `NotSupported` for bad values.
+    """
     stated = attribute.get("contents")
     if stated is None:
         return None
     parts = stated if isinstance(stated, Seq) else [stated]
     result = b""
     for part in parts:
-        value = integer(part) if isinstance(part, str) and integer(part) is not None else part
+        value = (
+            integer(part)
+            if isinstance(part, str) and integer(part) is not None
+            else part
+        )
         if isinstance(value, int) and 0 <= value <= 255:
             result += bytes([value])
         elif isinstance(part, str):
@@ -173,16 +215,38 @@ def contents(attribute: Map) -> bytes | None:
     return result
 
 
-def named(item: Item, bits: int, reference: str, within: Type, enums: Enumerations, to: Definitions) -> None:
-    """Add the enumeration that ``reference`` names to an integer of ``bits``. Raises `NotSupported`."""
+def named(
+    item: Item,
+    bits: int,
+    reference: str,
+    within: Type,
+    enums: Enumerations,
+    to: Definitions,
+) -> None:
+    """Add the enumeration that ``reference`` names to an integer of ``bits``.
+
+    Raises `NotSupported`.
+    """
     choices = within.members(reference)
     if item["type"] not in ("uint", "int"):
-        raise NotSupported(f"it has names for values, and is of the type {item['type']}")
-    enums.hold(item, bits, choices, reference.rsplit("::", 1)[-1], within.name, f"`{reference}`", to)
+        raise NotSupported(
+            f"it has names for values, and is of the type {item['type']}"
+        )
+    enums.hold(
+        item,
+        bits,
+        choices,
+        reference.rsplit("::", 1)[-1],
+        within.name,
+        f"`{reference}`",
+        to,
+    )
 
 
 def _encoding(within: Type) -> object:
-    """Return the default text encoding (`meta.encoding`) of a type or the nearest enclosing one."""
+    """Return the default text encoding (`meta.encoding`) of a type or the nearest
+    enclosing one.
+    """
     scope: Type | None = within
     while scope is not None:
         if (encoding := mapping(scope.body, "meta").get("encoding")) is not None:

@@ -14,7 +14,9 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
 GROUP = "icdgen.definitions"
-MAX_BYTES = 8_000_000  # readers need up to about a gigabyte of memory for a file of this size
+MAX_BYTES = (
+    8_000_000  # readers need up to about a gigabyte of memory for a file of this size
+)
 _START = 65_536  # bytes that identify the kind of a file
 
 _BUILT_IN = {
@@ -37,15 +39,23 @@ def names() -> list[str]:
 
 
 def get(name: str) -> Reader:
-    """Return the reader of a kind. Raises `UserError` if the kind is unknown or its reader cannot be loaded."""
+    """Return the reader of a kind.
+
+    Raises `UserError` if the kind is unknown or its reader cannot be loaded.
+    """
     target = (_plug_ins() | _BUILT_IN).get(name)
     if target is None:
-        raise UserError(f"there is no kind of definition `{name}`", f"there are {', '.join(names())}")
+        raise UserError(
+            f"there is no kind of definition `{name}`",
+            f"there are {', '.join(names())}",
+        )
     module, _, attribute = target.partition(":")
     try:
         return cast(Reader, getattr(import_module(module), attribute)())
     except (ImportError, AttributeError) as error:
-        raise UserError(f"the reader of `{name}`, {target}, cannot be loaded: {error}") from None
+        raise UserError(
+            f"the reader of `{name}`, {target}, cannot be loaded: {error}"
+        ) from None
 
 
 def of(path: Path) -> Reader | None:
@@ -63,15 +73,24 @@ def of(path: Path) -> Reader | None:
     text = start.decode("utf-8-sig", "replace")
     readers = [get(name) for name in names()]
     # The suffix decides only if no reader recognizes the content.
-    by_suffix = (reader for reader in readers if path.suffix.lower() == f".{reader.name}")
-    return next((reader for reader in readers if reader.knows(text)), next(by_suffix, None))
+    by_suffix = (
+        reader for reader in readers if path.suffix.lower() == f".{reader.name}"
+    )
+    return next(
+        (reader for reader in readers if reader.knows(text)), next(by_suffix, None)
+    )
 
 
 def within(folder: Path) -> list[tuple[Path, Reader]]:
-    """Return the definitions in a folder and its subfolders, by path. Other files and hidden folders are ignored."""
+    """Return the definitions in a folder and its subfolders, by path.
+
+    Other files and hidden folders are ignored.
+    """
     definitions: list[tuple[Path, Reader]] = []
     for where, folders, files in os.walk(folder):
-        folders[:] = sorted(subfolder for subfolder in folders if not subfolder.startswith("."))
+        folders[:] = sorted(
+            subfolder for subfolder in folders if not subfolder.startswith(".")
+        )
         for name in sorted(files):
             path = Path(where, name)
             if path.is_file() and (reader := of(path)) is not None:
@@ -82,7 +101,8 @@ def within(folder: Path) -> list[tuple[Path, Reader]]:
 def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
     """Read files of one kind, together if they may refer to each other.
 
-    An unreadable file is reported in its own definitions. Raises `UserError` if a library is missing.
+    An unreadable file is reported in its own definitions. Raises `UserError` if a
+    library is missing.
     """
     _check_libraries(reader)
     most = getattr(reader, "most_bytes", MAX_BYTES)
@@ -106,9 +126,15 @@ def read_set(paths: Sequence[Path], reader: Reader) -> list[Definitions]:
 
 
 def read(path: Path, reader: Reader) -> Definitions:
-    """Read a file. Raises `Findings` if the file cannot be read, and `UserError` if a library is missing."""
+    """Read a file.
+
+    Raises `Findings` if the file cannot be read, and `UserError` if a library is
+    missing.
+    """
     _check_libraries(reader)
-    return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
+    return reader.read(
+        str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES))
+    )
 
 
 def _check_libraries(reader: Reader) -> None:
@@ -122,19 +148,35 @@ def _check_libraries(reader: Reader) -> None:
 
 
 def contents(path: Path, most: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file. Raises `Findings` if it cannot be read or has more than ``most`` bytes."""
+    """Return the bytes of a file.
+
+    Raises `Findings` if it cannot be read or has more than ``most`` bytes.
+    """
     try:
         with open(path, "rb") as file:
             data = file.read(most + 1)
     except OSError as error:
-        raise unreadable(str(path), f"cannot read the file: {error.strerror}", "check the path") from None
+        raise unreadable(
+            str(path), f"cannot read the file: {error.strerror}", "check the path"
+        ) from None
     if len(data) > most:
-        raise unreadable(str(path), f"the file has more than the {most:,} bytes allowed", "import it in parts")
+        raise unreadable(
+            str(path),
+            f"the file has more than the {most:,} bytes allowed",
+            "import it in parts",
+        )
     return data
 
 
 def _plug_ins() -> dict[str, str]:
-    """Return the readers of other packages by kind. Plug-ins with a built-in name are ignored."""
+    """Return the readers of other packages by kind.
+
+    Plug-ins with a built-in name are ignored.
+    """
     from importlib.metadata import entry_points
 
-    return {point.name: point.value for point in entry_points(group=GROUP) if point.name not in _BUILT_IN}
+    return {
+        point.name: point.value
+        for point in entry_points(group=GROUP)
+        if point.name not in _BUILT_IN
+    }

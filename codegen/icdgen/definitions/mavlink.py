@@ -1,4 +1,6 @@
-"""Reader of MAVLink dialects: messages and enumerations of an XML file and its includes, with the framing of version 2 or 1."""
+"""Reader of MAVLink dialects: messages and enumerations of an XML file and its
+includes, with the framing of version 2 or 1.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,13 @@ from xml.etree.ElementTree import Element
 from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.enumerations import BEYOND, is_enumeration, members, special
-from icdgen.definitions.model import Definitions, Item, Network, NotSupported, unreadable
+from icdgen.definitions.model import (
+    Definitions,
+    Item,
+    Network,
+    NotSupported,
+    unreadable,
+)
 from icdgen.definitions.wording import line, node_name, summary, unit
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.layout import integer_range
@@ -22,11 +30,20 @@ from icdgen.icd.layout import integer_range
 TWICE = "IMP077"
 MOST_FILES = 100
 # Attributes for the display in ground stations, and the number of the dialect.
-_WITHOUT_MEANING = frozenset({"dialect", "print_format", "display", "schemaLocation", "noNamespaceSchemaLocation"})
+_WITHOUT_MEANING = frozenset(
+    {
+        "dialect",
+        "print_format",
+        "display",
+        "schemaLocation",
+        "noNamespaceSchemaLocation",
+    }
+)
 _BITS = {"int8_t": 8, "uint8_t": 8, "char": 8, "int16_t": 16, "uint16_t": 16, "int32_t": 32, "uint32_t": 32,
          "int64_t": 64, "uint64_t": 64, "float": 32, "double": 64}  # fmt: skip
 _VERSION_FIELD = "uint8_t_mavlink_version"
-# Units with a factor. For integers, the base unit is imported, and the factor as a formula.
+# Units with a factor. For integers, the base unit is imported, and the factor as a
+# formula.
 _SCALED = {
     "degE7": ("deg", "1e-7"), "degE5": ("deg", "1e-5"), "cdeg": ("deg", "0.01"), "ddeg/s": ("deg/s", "0.1"),
     "cm/s": ("m/s", "0.01"), "dm/s": ("m/s", "0.1"), "mm/s": ("m/s", "0.001"), "dm": ("m", "0.1"), "dam": ("m", "10"),
@@ -34,7 +51,9 @@ _SCALED = {
     "mrad/s": ("rad/s", "0.001"), "hPa": ("Pa", "100"), "hJ": ("J", "100"), "ds": ("s", "0.1"), "cs": ("s", "0.01"),
 }  # fmt: skip
 _SPELLED = {"m/s/s": "m/s^2", "bits/s": "bit/s", "bytes": "byte"}
-_NUMBER = re.compile(r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z")
+_NUMBER = re.compile(
+    r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z"
+)
 # CRC-16/MCRF4XX. MAVLink calls it X.25, but X.25 inverts the result.
 _X25 = {"kind": "crc", "width": 16, "polynomial": Spelled("0x1021"), "init": Spelled("0xFFFF"),
         "reflect_in": True, "reflect_out": True, "xor_out": 0}  # fmt: skip
@@ -55,7 +74,9 @@ class _Field(NamedTuple):
 
 
 class MavLink2:
-    """Reader of a dialect for MAVLink 2: ids of 24 bits, extension fields, and truncation of trailing zeros."""
+    """Reader of a dialect for MAVLink 2: ids of 24 bits, extension fields, and
+    truncation of trailing zeros.
+    """
 
     name = "mavlink"
     title = "a MAVLink dialect"
@@ -68,7 +89,10 @@ class MavLink2:
         return safe_xml.root_of(start) == "mavlink"
 
     def read(self, file: str, data: bytes) -> Definitions:
-        """Return the messages of a dialect and its includes. Raises `Findings` if one of the files cannot be read."""
+        """Return the messages of a dialect and its includes.
+
+        Raises `Findings` if one of the files cannot be read.
+        """
         to, account = Definitions(file), Account(_WITHOUT_MEANING)
         roots = dict(_with_included(file, data, account))
         enums = _enumerations(roots, to)
@@ -80,7 +104,9 @@ class MavLink2:
         seeds = network.seeds = network.protocol["checksums"]["x25"]["seeds"]  # type: ignore[index]
         for path, root in roots.items():
             versions = (node.text or "" for node in root.iter("version"))
-            version = next((int(text) for text in versions if text.strip().isdigit()), 2)
+            version = next(
+                (int(text) for text in versions if text.strip().isdigit()), 2
+            )
             for element in root.iterfind("messages/message"):
                 name, id = element.get("name", ""), _number(element.get("id", ""))
                 if id is not None and id >> self.id_bits and not self.has_extensions:
@@ -90,14 +116,20 @@ class MavLink2:
                 try:
                     if id is None or id >> self.id_bits:
                         raise NotSupported(f"its id is `{element.get('id', '')}`")
-                    seeds[name], item = self._message(element, name, id, enums, version, to)
+                    seeds[name], item = self._message(
+                        element, name, id, enums, version, to
+                    )
                 except NotSupported as why:
                     to.left_out(name, why)
                     settle(element)
                     continue
-                network.messages.append(item if len(roots) == 1 else {**item, "group": Path(path).stem})
+                network.messages.append(
+                    item if len(roots) == 1 else {**item, "group": Path(path).stem}
+                )
         network.messages.sort(key=lambda message: int(message["id"]))
-        in_order = {message["name"]: seeds[message["name"]] for message in network.messages}
+        in_order = {
+            message["name"]: seeds[message["name"]] for message in network.messages
+        }
         seeds.clear()
         seeds |= in_order
         network.declare(enum for _, enum in sorted(enums.items()))
@@ -108,9 +140,18 @@ class MavLink2:
         return to
 
     def _message(
-        self, element: Element, name: str, id: int, enums: dict[str, Item], version: int, to: Definitions
+        self,
+        element: Element,
+        name: str,
+        id: int,
+        enums: dict[str, Item],
+        version: int,
+        to: Definitions,
     ) -> tuple[int, Item]:
-        """Return the CRC_EXTRA of a message, and the message of the ICD. Raises `NotSupported`."""
+        """Return the CRC_EXTRA of a message, and the message of the ICD.
+
+        Raises `NotSupported`.
+        """
         base: list[_Field] = []
         more: list[_Field] = []
         is_more = False
@@ -134,13 +175,23 @@ class MavLink2:
             at += field.bits
         item["length"] = at // 8
         if at <= 8:
-            item.pop("may_end_early", None)  # MAVLink 2 never truncates the first byte of the payload
+            item.pop(
+                "may_end_early", None
+            )  # MAVLink 2 never truncates the first byte of the payload
         return _crc_extra(name, base), {**item, "fields": fields} if fields else item
 
     def envelope(self) -> Item:
-        """Return the section `protocol`. Commands have the ids of a ground station (255, 190), telemetry of an autopilot (1, 1)."""
+        """Return the section `protocol`.
+
+        Commands have the ids of a ground station (255, 190), telemetry of an autopilot
+        (1, 1).
+        """
         flags: list[Item] = [
-            {"bits": 8, "role": "constant", "value": 0},  # incompatibility flags: no signature
+            {
+                "bits": 8,
+                "role": "constant",
+                "value": 0,
+            },  # incompatibility flags: no signature
             {"bits": 8, "role": "flags"},
         ]
         parts: list[Item] = [
@@ -148,7 +199,11 @@ class MavLink2:
             {"bits": 8, "role": "length"},
             *(flags if self.has_extensions else ()),
             {"bits": 8, "role": "sequence"},
-            {"bits": 8, "role": "source", "value": {"telecommand": 255, "telemetry": 1}},
+            {
+                "bits": 8,
+                "role": "source",
+                "value": {"telecommand": 255, "telemetry": 1},
+            },
             {"bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
             {"bits": self.id_bits, "role": "id"},
         ]
@@ -172,13 +227,17 @@ class MavLink1(MavLink2):
     has_extensions = False
 
     def knows(self, start: str) -> bool:
-        return False  # the XML does not differ from version 2: `--kind mavlink1` selects it
+        # The XML does not differ from version 2: `--kind mavlink1` selects it.
+        return False
 
 
-def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[str, Element]]:
+def _with_included(
+    file: str, data: bytes, account: Account
+) -> Iterator[tuple[str, Element]]:
     """Yield the path and root of the XML and of all included files, each once.
 
-    Raises `Findings` for circular includes, and for files that are missing or in another folder.
+    Raises `Findings` for circular includes, and for files that are missing or in
+    another folder.
     """
     roots: dict[str, Element] = {}
 
@@ -188,16 +247,37 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
             name = (element.text or "").strip()
             target = os.path.join(os.path.dirname(path), name)
             if not name or os.path.basename(name) != name:
-                raise unreadable(path, f"`{line(name, 100)}`, which it includes, is not in its folder", "put it there")
+                raise unreadable(
+                    path,
+                    f"`{line(name, 100)}`, which it includes, is not in its folder",
+                    "put it there",
+                )
             if target in (*stack, path):
-                circle = " -> ".join(map(os.path.basename, (*(*stack, path)[(*stack, path).index(target) :], target)))
-                raise unreadable(path, f"files include each other in a circle: {circle}", "take one `include` out")
+                circle = " -> ".join(
+                    map(
+                        os.path.basename,
+                        (*(*stack, path)[(*stack, path).index(target) :], target),
+                    )
+                )
+                raise unreadable(
+                    path,
+                    f"files include each other in a circle: {circle}",
+                    "take one `include` out",
+                )
             if target in roots:
                 continue
             if len(roots) >= MOST_FILES:
-                raise unreadable(file, f"it includes more than {MOST_FILES} files", "import it in parts")
+                raise unreadable(
+                    file,
+                    f"it includes more than {MOST_FILES} files",
+                    "import it in parts",
+                )
             if not os.path.isfile(target):
-                raise unreadable(path, f"`{name}`, which it includes, is not in its folder", "put it there")
+                raise unreadable(
+                    path,
+                    f"`{name}`, which it includes, is not in its folder",
+                    "put it there",
+                )
             read(target, kinds.contents(Path(target)), (*stack, path))
 
     read(file, data, ())
@@ -205,21 +285,34 @@ def _with_included(file: str, data: bytes, account: Account) -> Iterator[tuple[s
 
 
 def _field(element: Element) -> _Field:
-    """Return the field of an XML element. Raises `NotSupported` if MAVLink has no such type."""
+    """Return the field of an XML element.
+
+    Raises `NotSupported` if MAVLink has no such type.
+    """
     match = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
     # As in pymavlink, `array` means `int8_t`, and the suffix `_t` is optional.
-    type_ = "uint8_t" if match and match[1] == _VERSION_FIELD else match[1] if match else ""
+    type_ = (
+        "uint8_t" if match and match[1] == _VERSION_FIELD else match[1] if match else ""
+    )
     type_ = "int8_t" if type_ == "array" else type_ if type_ in _BITS else f"{type_}_t"
     if match is None or type_ not in _BITS:
-        raise NotSupported(f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`")
+        raise NotSupported(
+            f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`"
+        )
     return _Field(element.get("name", ""), type_, int(match[2] or 0), element)
 
 
 def _crc_extra(name: str, fields: list[_Field]) -> int:
-    """Return CRC_EXTRA, a checksum of the name and the base fields of a message in 8 bits. It excludes extensions."""
+    """Return CRC_EXTRA, a checksum of the name and the base fields of a message in 8
+    bits.
+
+    It excludes extensions.
+    """
     data = f"{name} ".encode()
     for field in fields:
-        data += f"{field.type} {field.name} ".encode() + (bytes([field.elements]) if field.elements else b"")
+        data += f"{field.type} {field.name} ".encode() + (
+            bytes([field.elements]) if field.elements else b""
+        )
     # `_X25` over these bytes: 0x8408 is the polynomial 0x1021 with its bits reversed.
     checksum = 0xFFFF
     for byte in data:
@@ -229,12 +322,23 @@ def _crc_extra(name: str, fields: list[_Field]) -> int:
     return checksum & 0xFF ^ checksum >> 8
 
 
-def _icd_field(owner: str, field: _Field, enums: dict[str, Item], version: int, to: Definitions) -> Item:
+def _icd_field(
+    owner: str, field: _Field, enums: dict[str, Item], version: int, to: Definitions
+) -> Item:
     """Return the field of the ICD without its position."""
     element = field.element
     if field.type == "char":
-        return {"bits": field.bits, "name": field.name, "type": "text", **summary(_text(element))}
-    kind = "float" if field.type in ("float", "double") else "uint" if field.type[0] == "u" else "int"
+        return {
+            "bits": field.bits,
+            "name": field.name,
+            "type": "text",
+            **summary(_text(element)),
+        }
+    kind = (
+        "float"
+        if field.type in ("float", "double")
+        else "uint" if field.type[0] == "u" else "int"
+    )
     bits = _BITS[field.type]
     item: Item = {"bits": bits, "name": field.name, "type": kind}
     item |= {"count": field.elements} if field.elements else {}
@@ -251,7 +355,11 @@ def _icd_field(owner: str, field: _Field, enums: dict[str, Item], version: int, 
         _name_values(item, enum, bits, f"message `{owner}`, `{field.name}`", to)
     invalid = _invalid(element.get("invalid", ""), kind, bits)
     if invalid and "const" not in item:
-        named = {member["value"] for member in enum["members"]} if enum and item["type"] == "enum" else set()
+        named = (
+            {member["value"] for member in enum["members"]}
+            if enum and item["type"] == "enum"
+            else set()
+        )
         named |= {value["value"] for value in item.get("special", ())}
         if invalid["value"] not in named:
             item["special"] = [*item.get("special", ()), invalid]
@@ -259,8 +367,13 @@ def _icd_field(owner: str, field: _Field, enums: dict[str, Item], version: int, 
 
 
 def _formula(factor: str, multiplier: str) -> str:
-    """Return a formula such as ``raw*0.01``, empty without a scale. The multiplier may be a quotient: ``1E-2/3``."""
-    match = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)(?:\s*/\s*([0-9]+))?\s*", multiplier)
+    """Return a formula such as ``raw*0.01``, empty without a scale.
+
+    The multiplier may be a quotient: ``1E-2/3``.
+    """
+    match = re.fullmatch(
+        r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)(?:\s*/\s*([0-9]+))?\s*", multiplier
+    )
     try:
         scale = Fraction(match[1]) if match else Fraction(1)
     except ValueError:
@@ -270,14 +383,22 @@ def _formula(factor: str, multiplier: str) -> str:
     return f"raw{text}" + (f"/{match[2]}" if match and match[2] else "") if text else ""
 
 
-def _name_values(item: Item, enum: Item, bits: int, where: str, to: Definitions) -> None:
-    """Add an enumeration to an integer field, or its members as special values if the field cannot have all of them."""
+def _name_values(
+    item: Item, enum: Item, bits: int, where: str, to: Definitions
+) -> None:
+    """Add an enumeration to an integer field, or its members as special values if the
+    field cannot have all of them.
+    """
     low, high = integer_range(bits, item["type"] == "int")
     named = [
-        member for member in enum["members"] if low <= member["value"] and member.get("to", member["value"]) <= high
+        member
+        for member in enum["members"]
+        if low <= member["value"] and member.get("to", member["value"]) <= high
     ]
     if len(named) < len(enum["members"]):
-        beyond = next(member["value"] for member in enum["members"] if member not in named)
+        beyond = next(
+            member["value"] for member in enum["members"] if member not in named
+        )
         text = f"{where}: it never has the value {beyond} of `{enum['name']}`"
         to.warn(BEYOND, text, "the names of values that it can have are special values")
     elif is_enumeration(item, bits, named):
@@ -286,12 +407,21 @@ def _name_values(item: Item, enum: Item, bits: int, where: str, to: Definitions)
         return
     if "const" not in item:
         item |= special(
-            [{key: member[key] for key in ("value", "to", "name") if key in member} for member in named], where, to
+            [
+                {key: member[key] for key in ("value", "to", "name") if key in member}
+                for member in named
+            ],
+            where,
+            to,
         )
 
 
 def _invalid(text: str, kind: str, bits: int) -> Item:
-    """Return the special value for 'not known': `NaN`, `[NaN]` of arrays, `UINT16_MAX` or `-1000`. Empty if out of range."""
+    """Return the special value for 'not known': `NaN`, `[NaN]` of arrays, `UINT16_MAX`
+    or `-1000`.
+
+    Empty if out of range.
+    """
     text = text.strip("[]:, ")
     if kind == "float" and text.lower() == "nan":
         return {"value": "nan", "meaning": "not known"}
@@ -300,7 +430,11 @@ def _invalid(text: str, kind: str, bits: int) -> Item:
     if value is None:
         return {}
     low, high = integer_range(bits, kind == "int")
-    return {"value": value, "meaning": "not known"} if kind == "float" or low <= value <= high else {}
+    return (
+        {"value": value, "meaning": "not known"}
+        if kind == "float" or low <= value <= high
+        else {}
+    )
 
 
 def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]:
@@ -313,23 +447,38 @@ def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]
             descriptions[name] = descriptions.get(name) or _description(enum)
             entries = enums.setdefault(name, {})
             for entry in enum.iterfind("entry"):
-                # As in pymavlink, an entry without a value continues from the highest one.
+                # As in pymavlink, an entry without a value continues from the highest
+                # one.
                 value = _number(entry.get("value", str(max(entries, default=0) + 1)))
                 label = entry.get("name", "")
                 if value is None:
                     text = f"enumeration `{name}`: `{label}` has the value `{entry.get('value')}`"
                     to.warn(BEYOND, text, "the name is left out")
-                elif entries.setdefault(value, (label, _description(entry)))[0] != label:
+                elif (
+                    entries.setdefault(value, (label, _description(entry)))[0] != label
+                ):
                     text = f"enumeration `{name}`: {value} is `{entries[value][0]}` and `{label}`"
                     to.warn(TWICE, text, "the first name is imported")
-    return {name: _enumeration(name, entries, descriptions[name], to) for name, entries in enums.items() if entries}
+    return {
+        name: _enumeration(name, entries, descriptions[name], to)
+        for name, entries in enums.items()
+        if entries
+    }
 
 
-def _enumeration(name: str, entries: dict[int, tuple[str, str]], description: str, to: Definitions) -> Item:
-    """Return an enumeration. Its members lose the words that are common to all of them."""
+def _enumeration(
+    name: str, entries: dict[int, tuple[str, str]], description: str, to: Definitions
+) -> Item:
+    """Return an enumeration.
+
+    Its members lose the words that are common to all of them.
+    """
     labels = [label for label, _ in entries.values()]
     prefix = f"{name}_" if len(labels) < 2 else _common_prefix(min(labels), max(labels))
-    short = {value: label.removeprefix(prefix) or label for value, (label, _) in entries.items()}
+    short = {
+        value: label.removeprefix(prefix) or label
+        for value, (label, _) in entries.items()
+    }
     named = members(short, -(2**63), 2**64 - 1, f"enumeration `{name}`", to)
     for member in named:
         if "to" not in member:
@@ -342,7 +491,14 @@ def _common_prefix(first: str, second: str) -> str:
 
     All names between the two in alphabetical order begin with them, too.
     """
-    end = next((at for at, pair in enumerate(zip(first, second, strict=False)) if pair[0] != pair[1]), len(first))
+    end = next(
+        (
+            at
+            for at, pair in enumerate(zip(first, second, strict=False))
+            if pair[0] != pair[1]
+        ),
+        len(first),
+    )
     return first[: first.rfind("_", 0, end) + 1]
 
 
@@ -350,7 +506,11 @@ def _description(element: Element) -> str:
     """Return the description of a message, enumeration or entry, with its deprecation."""
     text = line(next((_text(child) for child in element.iterfind("description")), ""))
     for deprecation in element.iterfind("deprecated"):
-        by = f", replaced by {deprecation.get('replaced_by')}" if deprecation.get("replaced_by") else ""
+        by = (
+            f", replaced by {deprecation.get('replaced_by')}"
+            if deprecation.get("replaced_by")
+            else ""
+        )
         text = f"{text} Deprecated since {deprecation.get('since', '?')}{by}.".strip()
     return text
 
@@ -361,7 +521,9 @@ def _text(element: Element) -> str:
 
 
 def _number(text: str) -> Any:
-    """Return the value of ``12``, ``0x0C``, ``1<<3`` or ``2**3``, None for any other text."""
+    """Return the value of ``12``, ``0x0C``, ``1<<3`` or ``2**3``, None for any other
+    text.
+    """
     match = _NUMBER.match(text)
     if match is None:
         return None

@@ -1,4 +1,6 @@
-"""Common result of all readers: ICDs as mappings with the keys of the YAML format, and findings."""
+"""Common result of all readers: ICDs as mappings with the keys of the YAML format, and
+findings.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +21,16 @@ WITHOUT_FIELD = "IMP091"
 RAW_ONLY = "IMP078"
 SAME_NAME = "IMP092"
 
-Item = dict[str, Any]  # message, field, enumeration, member or struct with the keys of the ICD
+Item = dict[
+    str, Any
+]  # message, field, enumeration, member or struct with the keys of the ICD
 
 
 class NotSupported(Exception):
-    """Message that an ICD cannot represent. The text gives the reason, and ``help`` the remedy if any."""
+    """Message that an ICD cannot represent.
+
+    The text gives the reason, and ``help`` the remedy if any.
+    """
 
     def __init__(self, text: str, help: str = "") -> None:
         super().__init__(text)
@@ -44,12 +51,18 @@ class Network:
     enums: list[Item] = field(default_factory=list)
     structs: list[Item] = field(default_factory=list)
     protocol: Item | None = None
-    seeds: dict[str, int] = field(default_factory=dict)  # checksum seeds of ``protocol`` by message name
+    seeds: dict[str, int] = field(
+        default_factory=dict
+    )  # checksum seeds of ``protocol`` by message name
 
     @property
     def fields(self) -> Iterator[Item]:
         """Fields of all messages and structs."""
-        return (field for owner in (*self.messages, *self.structs) for field in owner.get("fields", ()))
+        return (
+            field
+            for owner in (*self.messages, *self.structs)
+            for field in owner.get("fields", ())
+        )
 
     def declare(self, enums: Iterable[Item]) -> None:
         """Set the enumerations to the subset that fields use."""
@@ -59,8 +72,8 @@ class Network:
     def name_messages_apart(self, to: Definitions) -> None:
         """Make message names unique, with a note (IMP092).
 
-        Duplicate names get the group or kind as prefix. If neither distinguishes the messages, they get the id as
-        suffix.
+        Duplicate names get the group or kind as prefix. If neither distinguishes the
+        messages, they get the id as suffix.
         """
         by_name: dict[str, list[Item]] = {}
         for message in self.messages:
@@ -74,19 +87,34 @@ class Network:
                     names = [f"{value} {name}" if value else name for value in values]
                     break
             else:
-                ids = [message[KEYS_OF_IDS[message["kind"]][0][0]] for message in messages]
-                names = [f"{name} {id.spelling if isinstance(id, Spelled) else id}" for id in ids]
+                ids = [
+                    message[KEYS_OF_IDS[message["kind"]][0][0]] for message in messages
+                ]
+                names = [
+                    f"{name} {id.spelling if isinstance(id, Spelled) else id}"
+                    for id in ids
+                ]
             for message, distinct in zip(messages, names, strict=True):
                 message["name"] = distinct
             shown = ", ".join(f"`{distinct}`" for distinct in names)
             text = f"{len(messages)} messages have the name `{name}`: they are imported as {shown}"
-            to.warn(SAME_NAME, text, "rename them in the ICD if you want other names", "note")
+            to.warn(
+                SAME_NAME,
+                text,
+                "rename them in the ICD if you want other names",
+                "note",
+            )
 
     def tree(self) -> Item:
         """Return the ICD as plain mappings and lists."""
         self._mark_shared_ids()
-        tree: Item = {"icdgen": 1, "node": {"name": self.name, "title": self.title, **self.head}}
-        if declared := units.declared(field["unit"] for field in self.fields if "unit" in field):
+        tree: Item = {
+            "icdgen": 1,
+            "node": {"name": self.name, "title": self.title, **self.head},
+        }
+        if declared := units.declared(
+            field["unit"] for field in self.fields if "unit" in field
+        ):
             tree["units"] = declared
         for key in ("protocol", "enums", "structs", "messages"):
             if value := getattr(self, key):
@@ -94,7 +122,9 @@ class Network:
         return tree
 
     def _mark_shared_ids(self) -> None:
-        """Set `shares_id` for messages whose id occurs several times in a direction, and remove it elsewhere."""
+        """Set `shares_id` for messages whose id occurs several times in a direction,
+        and remove it elsewhere.
+        """
         uses = [(message, use) for message in self.messages for use in _ids(message)]
         times = Counter(use for _, use in uses)
         for message in self.messages:
@@ -108,8 +138,8 @@ class Network:
 class Definitions:
     """Definitions and findings of a file.
 
-    ``total`` counts all messages, including messages that are not imported. ``more`` is the number of further files
-    read together with the file.
+    ``total`` counts all messages, including messages that are not imported. ``more`` is
+    the number of further files read together with the file.
     """
 
     file: str
@@ -124,7 +154,9 @@ class Definitions:
         further = "1 more file" if self.more == 1 else f"{self.more} more files"
         return f"{self.file} and {further}" if self.more else self.file
 
-    def left_out(self, name: str, why: object, line: int | None = None, file: str = "") -> None:
+    def left_out(
+        self, name: str, why: object, line: int | None = None, file: str = ""
+    ) -> None:
         """Report a message that is not imported (IMP070).
 
         ``file`` is the file that contains it, if several files are read together.
@@ -132,14 +164,26 @@ class Definitions:
         spot = SourcePlace(line=line, file=file if file != self.file else "")
         help = why.help if isinstance(why, NotSupported) else ""
         self.import_findings.append(
-            ImportFinding(NOT_HELD, f"message `{name}` is not imported: {why}", spot, help, "error")
+            ImportFinding(
+                NOT_HELD,
+                f"message `{name}` is not imported: {why}",
+                spot,
+                help,
+                "error",
+            )
         )
 
-    def without_field(self, message: str, field: str, why: object, line: int | None = None) -> None:
+    def without_field(
+        self, message: str, field: str, why: object, line: int | None = None
+    ) -> None:
         """Report a field that is left out of an imported message (IMP091)."""
         text = f"message `{message}`, `{field}` is left out: {why}"
         help = "the message is imported without it: its bits are reserved"
-        self.import_findings.append(ImportFinding(WITHOUT_FIELD, text, SourcePlace(line=line), help, severity="error"))
+        self.import_findings.append(
+            ImportFinding(
+                WITHOUT_FIELD, text, SourcePlace(line=line), help, severity="error"
+            )
+        )
 
     def warn(
         self,
@@ -150,7 +194,9 @@ class Definitions:
         line: int | None = None,
         file: str = "",
     ) -> None:
-        """Add a finding for the file, or for ``file`` if several files are read together."""
+        """Add a finding for the file, or for ``file`` if several files are read
+        together.
+        """
         spot = SourcePlace(line=line, file=file if file != self.file else "")
         self.import_findings.append(ImportFinding(code, message, spot, help, severity))
 
@@ -182,13 +228,17 @@ class Source(NamedTuple):
 
 
 class Reader(Protocol):
-    """Interface of a reader. Packages can register readers in the entry point group ``icdgen.definitions``."""
+    """Interface of a reader.
+
+    Packages can register readers in the entry point group ``icdgen.definitions``.
+    """
 
     name: str  # value of `--kind`
     title: str  # for reports
     needs: tuple[str, ...]  # required modules, from the extra `definitions`
-    # Optional members: `most_bytes` is the size limit of a file. Kinds whose files refer to each other have
-    # `read_set(sources: Sequence[Source]) -> list[Definitions]`. Files that belong together share a result.
+    # Optional members: `most_bytes` is the size limit of a file. Kinds whose files
+    # refer to each other have `read_set(sources: Sequence[Source]) ->
+    # list[Definitions]`. Files that belong together share a result.
 
     def knows(self, start: str) -> bool:
         """Return whether a file with this beginning is of this kind."""
@@ -199,7 +249,10 @@ class Reader(Protocol):
 
 def _ids(message: Item) -> list[tuple[str, int]]:
     """Return direction and number of each id of a message."""
-    return [(direction, wire_ids.number(message[key])) for key, direction in KEYS_OF_IDS[message["kind"]]]
+    return [
+        (direction, wire_ids.number(message[key]))
+        for key, direction in KEYS_OF_IDS[message["kind"]]
+    ]
 
 
 def unreadable(file: str, message: str, help: str = "", line: int = 1) -> Findings:

@@ -1,4 +1,6 @@
-"""Messages of space packets (CCSDS 133.0-B) and of frames without a header: ids, and the common header."""
+"""Messages of space packets (CCSDS 133.0-B) and of frames without a header: ids, and
+the common header.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,10 @@ _MOST_ID_BITS = 32
 
 
 class Header(NamedTuple):
-    """Primary header of a space packet. Each field has its constant, or None if it varies."""
+    """Primary header of a space packet.
+
+    Each field has its constant, or None if it varies.
+    """
 
     version: int | None
     type: int | None
@@ -45,25 +50,39 @@ class Sent(Protocol):
     told: dict[Hashable, int]  # constants by part: candidates for the discriminator
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
-        """Return the ICD message from the bit ``start`` on. Raises `NotSupported` if it is not supported."""
+        """Return the ICD message from the bit ``start`` on.
+
+        Raises `NotSupported` if it is not supported.
+        """
 
 
 def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
-    """Return the primary header that the first parts form, or None. A part has position, bits and constant.
+    """Return the primary header that the first parts form, or None.
 
-    Many databases name only the parts that they use. The application process id is required.
+    A part has position, bits and constant.
+
+    Many databases name only the parts that they use. The application process id is
+    required.
     """
     values: dict[tuple[int, int], int | None] = {}
     for at, bits, value in parts:
         values.setdefault((at, bits), value)
     ahead = [place for place in values if place[0] < HEADER_BITS]
     is_whole = any(set(places) <= set(ahead) for places in _HEADERS)
-    is_part = _APID in ahead and len(ahead) > 1 and any(set(ahead) <= set(places) for places in _HEADERS)
+    is_part = (
+        _APID in ahead
+        and len(ahead) > 1
+        and any(set(ahead) <= set(places) for places in _HEADERS)
+    )
     if not is_whole and not is_part:
         return None
     # Type and secondary header flag may be one part of two bits.
     flags = values.get(_FLAGS)
-    kind, secondary = (values.get((3, 1)), values.get((4, 1))) if flags is None else (flags >> 1, flags & 1)
+    kind, secondary = (
+        (values.get((3, 1)), values.get((4, 1)))
+        if flags is None
+        else (flags >> 1, flags & 1)
+    )
     return Header(values.get((0, 3)), kind, secondary, values[_APID])
 
 
@@ -73,7 +92,10 @@ def is_of_header(at: int, bits: int) -> bool:
 
 
 def fill(network: Network, containers: Sequence[Sent], to: Definitions) -> None:
-    """Add messages with ids and framing to a network. Messages that are not supported are reported."""
+    """Add messages with ids and framing to a network.
+
+    Messages that are not supported are reported.
+    """
     if any(container.header is not None for container in containers):
         network.head["id_bits"] = APID_BITS
         _add_packets(containers, network, to)
@@ -82,21 +104,36 @@ def fill(network: Network, containers: Sequence[Sent], to: Definitions) -> None:
 
 
 def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) -> None:
-    """Add space packets: the primary header is the framing, and the application process id is the message id."""
+    """Add space packets: the primary header is the framing, and the application process
+    id is the message id.
+    """
     headers: list[tuple[str, Header]] = []
-    versions = [container.header.version for container in containers if container.header is not None]
+    versions = [
+        container.header.version
+        for container in containers
+        if container.header is not None
+    ]
     version = next((number for number in versions if number is not None), 0)
     for container in containers:
         try:
             if container.header is None:
-                raise NotSupported("it does not begin with the header of a space packet, although others do")
+                raise NotSupported(
+                    "it does not begin with the header of a space packet, although others do"
+                )
             if container.header.apid is None:
                 raise NotSupported("its application process is not stated")
-            if container.header.version not in (None, version) or container.header.kind not in (None, container.kind):
-                raise NotSupported(f"its header is not that of a space packet with {container.kind}")
+            if container.header.version not in (
+                None,
+                version,
+            ) or container.header.kind not in (None, container.kind):
+                raise NotSupported(
+                    f"its header is not that of a space packet with {container.kind}"
+                )
             message = container.message(container.header.apid, HEADER_BITS, to)
             if not message["length"] and not message.get("fields"):
-                raise NotSupported("it has no data, and a space packet has at least one byte behind its header")
+                raise NotSupported(
+                    "it has no data, and a space packet has at least one byte behind its header"
+                )
             network.messages.append(message)
             headers.append((container.kind, container.header))
         except NotSupported as why:
@@ -106,7 +143,12 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
             "delimited_by": "length",
             "header": [
                 {"at": 0, "bits": 3, "role": "constant", "value": version},
-                {"at": 3, "bits": 1, "role": "constant", "value": {TELECOMMAND: 1, TELEMETRY: 0}},
+                {
+                    "at": 3,
+                    "bits": 1,
+                    "role": "constant",
+                    "value": {TELECOMMAND: 1, TELEMETRY: 0},
+                },
                 {"at": 4, "bits": 1, "role": "flags", **_secondary_flag(headers)},
                 {"at": 5, "bits": APID_BITS, "role": "id"},
                 # Sequence flags 3: unsegmented, unless the sender sets another value.
@@ -121,23 +163,35 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
 def _secondary_flag(headers: list[tuple[str, Header]]) -> Item:
     """Return the secondary header flag as a key, if it is constant in a direction."""
     values = {
-        kind: {head.secondary for direction, head in headers if direction == kind} for kind in (TELECOMMAND, TELEMETRY)
+        kind: {head.secondary for direction, head in headers if direction == kind}
+        for kind in (TELECOMMAND, TELEMETRY)
     }
-    constants = {kind: flags.copy().pop() if len(flags) == 1 else None for kind, flags in values.items()}
+    constants = {
+        kind: flags.copy().pop() if len(flags) == 1 else None
+        for kind, flags in values.items()
+    }
     if all(value is None for value in constants.values()):
         return {}
     return {"value": {kind: value or 0 for kind, value in constants.items()}}
 
 
-def _add_without_header(containers: Sequence[Sent], network: Network, to: Definitions) -> None:
+def _add_without_header(
+    containers: Sequence[Sent], network: Network, to: Definitions
+) -> None:
     """Add messages without a header.
 
-    A discriminator in each direction gives the ids; without one they are counted from 1.
+    A discriminator in each direction gives the ids; without one they are counted from
+    1.
     """
     # `id_bits` is at least 8, also for small numbers.
     widest, start = 8, _id_in_front(containers)
     if start:
-        network.protocol = {"stream": {"delimited_by": "none", "header": [{"at": 0, "bits": start, "role": "id"}]}}
+        network.protocol = {
+            "stream": {
+                "delimited_by": "none",
+                "header": [{"at": 0, "bits": start, "role": "id"}],
+            }
+        }
     for kind in (TELEMETRY, TELECOMMAND):
         same_kind = [container for container in containers if container.kind == kind]
         discriminator = _discriminator(same_kind)
@@ -152,27 +206,38 @@ def _add_without_header(containers: Sequence[Sent], network: Network, to: Defini
             except NotSupported as why:
                 to.left_out(container.name, why)
         if len(numbered) > 1:
-            shown = ", ".join(f"`{name}`" for name in numbered[:3]) + (" ..." if len(numbered) > 3 else "")
+            shown = ", ".join(f"`{name}`" for name in numbered[:3]) + (
+                " ..." if len(numbered) > 3 else ""
+            )
             text = f"no parameter tells all {len(numbered)} messages of {kind}: {shown}"
             to.warn(UNTOLD, text, "their ids are counted from 1")
     network.head["id_bits"] = widest
 
 
 def _id_in_front(containers: Sequence[Sent]) -> int:
-    """Return the bits of the discriminator if all messages begin with it as an id of equal size, else 0."""
+    """Return the bits of the discriminator if all messages begin with it as an id of
+    equal size, else 0.
+    """
     sizes = set()
     for kind in (TELEMETRY, TELECOMMAND):
         same_kind = [container for container in containers if container.kind == kind]
         discriminator = _discriminator(same_kind)
         for container in same_kind:
-            is_id = container.front is not None and discriminator is not None and container.front[0] == discriminator
-            sizes.add(container.front[1] if is_id and container.front is not None else 0)
+            is_id = (
+                container.front is not None
+                and discriminator is not None
+                and container.front[0] == discriminator
+            )
+            sizes.add(
+                container.front[1] if is_id and container.front is not None else 0
+            )
     size, *further_sizes = sizes or {0}
     return 0 if further_sizes else size
 
 
 def _discriminator(containers: list[Sent]) -> Hashable | None:
-    """Return the key of the discriminator: a constant in each message, with the most different values.
+    """Return the key of the discriminator: a constant in each message, with the most
+    different values.
 
     None without one.
     """
@@ -181,5 +246,15 @@ def _discriminator(containers: list[Sent]) -> Hashable | None:
         for key in (containers[0].told if containers else ())
         if all(key in container.told for container in containers)
     ]
-    fits = [key for key in common if all(0 <= container.told[key] < 1 << _MOST_ID_BITS for container in containers)]
-    return max(fits, key=lambda key: len({container.told[key] for container in containers}), default=None)
+    fits = [
+        key
+        for key in common
+        if all(
+            0 <= container.told[key] < 1 << _MOST_ID_BITS for container in containers
+        )
+    ]
+    return max(
+        fits,
+        key=lambda key: len({container.told[key] for container in containers}),
+        default=None,
+    )

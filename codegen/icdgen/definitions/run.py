@@ -1,4 +1,7 @@
-"""Import of definitions from files to trees of ICDs with findings. No file is written."""
+"""Import of definitions from files to trees of ICDs with findings.
+
+No file is written.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,9 @@ from icdgen.definitions import kinds
 from icdgen.definitions.model import Definitions, Item, Network, Reader, unreadable
 from icdgen.definitions.settle import settle
 
-TOLD = frozenset({"special", "min", "max", "shares_id"})  # keys that manuals usually lack, and definitions contain
+TOLD = frozenset(
+    {"special", "min", "max", "shares_id"}
+)  # keys that manuals usually lack, and definitions contain
 
 
 @dataclass
@@ -21,7 +26,9 @@ class Read:
     definitions: Definitions
     kind: str
     trees: dict[str, Item]
-    identifiers: list[str] = field(default_factory=list)  # names with their generated identifiers, as text
+    identifiers: list[str] = field(
+        default_factory=list
+    )  # names with their generated identifiers, as text
 
     @property
     def imported(self) -> int:
@@ -31,22 +38,41 @@ class Read:
     @property
     def failed(self) -> bool:
         """Return whether a part of the definition is missing in the ICDs."""
-        return any(finding.severity == "error" for finding in self.definitions.import_findings)
+        return any(
+            finding.severity == "error" for finding in self.definitions.import_findings
+        )
 
 
 def read(path: Path, reader: Reader) -> Read:
-    """Read a file. Raises `Findings` if no message can be imported, and `UserError` if a library is missing."""
+    """Read a file.
+
+    Raises `Findings` if no message can be imported, and `UserError` if a library is
+    missing.
+    """
     definitions = kinds.read(path, reader)
     result = _settled_result(definitions, reader)
     if not result.trees:
-        first = next((finding for finding in definitions.import_findings if finding.severity == "error"), None)
+        first = next(
+            (
+                finding
+                for finding in definitions.import_findings
+                if finding.severity == "error"
+            ),
+            None,
+        )
         why = ", for none is defined" if first is None else f": {first.message}"
-        raise unreadable(str(path), f"no message can be imported{why}", "" if first is None else first.help)
+        raise unreadable(
+            str(path),
+            f"no message can be imported{why}",
+            "" if first is None else first.help,
+        )
     return result
 
 
 def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
-    """Read files, all files of a kind together because they may refer to each other. The names of all ICDs are unique.
+    """Read files, all files of a kind together because they may refer to each other.
+
+    The names of all ICDs are unique.
 
     Raises `UserError` if a library is missing.
     """
@@ -54,9 +80,16 @@ def read_set(files: Sequence[tuple[Path, Reader]]) -> list[Read]:
     for path, reader in files:
         by_kind.setdefault(reader.name, (reader, []))[1].append(path)
     results = [
-        (definitions, reader) for reader, paths in by_kind.values() for definitions in kinds.read_set(paths, reader)
+        (definitions, reader)
+        for reader, paths in by_kind.values()
+        for definitions in kinds.read_set(paths, reader)
     ]
-    _make_names_unique(network for definitions, _ in results for network in definitions.networks if network.messages)
+    _make_names_unique(
+        network
+        for definitions, _ in results
+        for network in definitions.networks
+        if network.messages
+    )
     return [_settled_result(definitions, reader) for definitions, reader in results]
 
 

@@ -14,21 +14,30 @@ from icdgen.naming import DEVICES, latin
 LONGEST = 4000  # characters of a summary
 _LONGEST_UNIT = 60
 _NO_UNIT = frozenset({"", "-", "--", "none", "n/a", "na", "unitless", "no unit", "no_unit", "unit_none", "[]", "[-]"}) | {
-    # Placeholders of databases for states and flags without a unit; SED and SES mean "state encoded".
+    # Placeholders of databases for states and flags without a unit; SED and SES mean
+    # "state encoded".
     "sed", "ses", "state", "states", "enum", "discrete", "binary", "bool", "boolean", "flag", "yes/no", "on/off", "code",
 }  # fmt: skip
 _UNPRINTABLE = re.compile("[^ -~\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]+")
 
 
 def node_name(text: str) -> str:
-    """Return the node name for a text or file name: lower-case words with underscores, at most 40 characters."""
+    """Return the node name for a text or file name: lower-case words with underscores,
+    at most 40 characters.
+    """
     plain = re.sub(r"[^a-z0-9]+", "_", latin(PurePath(text).stem).lower()).strip("_")
-    plain = plain if plain[:1].isalpha() and plain not in DEVICES else f"node_{plain}".rstrip("_")
+    plain = (
+        plain
+        if plain[:1].isalpha() and plain not in DEVICES
+        else f"node_{plain}".rstrip("_")
+    )
     return plain[:40].rstrip("_")
 
 
 def line(text: str | None, longest: int = LONGEST) -> str:
-    """Return a text as a single line without unprintable characters, shortened to ``longest``."""
+    """Return a text as a single line without unprintable characters, shortened to
+    ``longest``.
+    """
     plain = " ".join(_UNPRINTABLE.sub(" ", text or "").split())
     return plain if len(plain) <= longest else plain[: longest - 4].rstrip() + " ..."
 
@@ -40,9 +49,14 @@ def summary(text: str | None) -> dict[str, str]:
 
 
 def unit(text: str | None) -> dict[str, str]:
-    """Return the key `unit`, with the spelling of icdgen for known units. Placeholders such as `none` give no key."""
+    """Return the key `unit`, with the spelling of icdgen for known units.
+
+    Placeholders such as `none` give no key.
+    """
     symbol = line(text, _LONGEST_UNIT)
-    return {} if symbol.casefold() in _NO_UNIT else {"unit": SPELLINGS.get(symbol, symbol)}
+    return (
+        {} if symbol.casefold() in _NO_UNIT else {"unit": SPELLINGS.get(symbol, symbol)}
+    )
 
 
 def printed(number: float | Decimal) -> str:
@@ -55,18 +69,26 @@ def printed(number: float | Decimal) -> str:
 
 
 def formula(factor: str, offset: str = "0") -> dict[str, str]:
-    """Return the key `formula` for decimal factor and offset, or no key for the raw value."""
+    """Return the key `formula` for decimal factor and offset, or no key for the raw
+    value.
+    """
     slope, constant = Fraction(factor), Fraction(offset)
     if slope == 1 and constant == 0:
         return {}
-    text = "raw" if slope == 1 else f"{'-' if slope < 0 else ''}raw*{factor.lstrip('-')}"
+    text = (
+        "raw" if slope == 1 else f"{'-' if slope < 0 else ''}raw*{factor.lstrip('-')}"
+    )
     if constant:
         text += f" {'-' if constant < 0 else '+'} {offset.lstrip('-')}"
     return {"formula": text}
 
 
-def limits(low: Fraction | None, high: Fraction | None, first: Fraction, last: Fraction) -> dict[str, int | float]:
-    """Return the keys `min` and `max`. Limits outside ``first`` to ``last``, the range of the field, are left out.
+def limits(
+    low: Fraction | None, high: Fraction | None, first: Fraction, last: Fraction
+) -> dict[str, int | float]:
+    """Return the keys `min` and `max`.
+
+    Limits outside ``first`` to ``last``, the range of the field, are left out.
 
     An empty intersection gives no keys.
     """
@@ -95,9 +117,16 @@ def shortest(paths: list[tuple[str, ...]]) -> list[str]:
     """Return the shortest unique suffix of each path, in words."""
     lengths = [1] * len(paths)
     while True:
-        names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
+        names = [
+            " ".join(path[-length:])
+            for path, length in zip(paths, lengths, strict=True)
+        ]
         times = Counter(names)
-        longer = [i for i, path in enumerate(paths) if times[names[i]] > 1 and lengths[i] < len(path)]
+        longer = [
+            i
+            for i, path in enumerate(paths)
+            if times[names[i]] > 1 and lengths[i] < len(path)
+        ]
         if not longer:
             return names
         for number in longer:

@@ -14,14 +14,19 @@ from icdgen.icd import curve
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.layout import integer_range
 
-NUMBER = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)\s*\Z")
+NUMBER = re.compile(
+    r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)\s*\Z"
+)
 _INTEGER = re.compile(r"\s*([-+]?[0-9]{1,40})\s*\Z")
 _MOST_POWER = 15  # of a polynomial
-_DIGITS = 15  # significant digits that a double always preserves; numbers with more may be rounded powers of two
+# Significant digits that a double always preserves; numbers with more may be rounded
+# powers of two.
+_DIGITS = 15
 
 
 def calibration(encoding: Element) -> dict[str, Any]:
-    """Return the keys of the calibration of an encoding: a formula, a lookup table, or no keys for the raw value.
+    """Return the keys of the calibration of an encoding: a formula, a lookup table, or
+    no keys for the raw value.
 
     Raises `ValueError` with the reason if the calibration is not supported.
     """
@@ -48,9 +53,15 @@ def calibrated(calibrator: Element) -> dict[str, Any] | None:
         return None
     points = spline.findall("SplinePoint")
     if {element.get("order", "1") for element in (spline, *points)} != {"1"}:
-        raise ValueError(f"it is calibrated by a table of {len(points)} points that are not joined by lines")
+        raise ValueError(
+            f"it is calibrated by a table of {len(points)} points that are not joined by lines"
+        )
     goes_on = spline.get("extrapolate", "false") == "true"
-    return _formula_key(line_through(points)) if len(points) == 2 and goes_on else _table(points, goes_on)
+    return (
+        _formula_key(line_through(points))
+        if len(points) == 2 and goes_on
+        else _table(points, goes_on)
+    )
 
 
 def _formula_key(text: str) -> dict[str, Any]:
@@ -59,16 +70,23 @@ def _formula_key(text: str) -> dict[str, Any]:
 
 
 def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
-    """Return the keys of a lookup table. XTCE allows points in any order, an ICD needs ascending raw values.
+    """Return the keys of a lookup table.
+
+    XTCE allows points in any order, an ICD needs ascending raw values.
 
     Raises `ValueError` if the points are not a valid table, or are too many.
     """
-    pairs = [[decimal(point.get(key, "")) for key in ("raw", "calibrated")] for point in points]
+    pairs = [
+        [decimal(point.get(key, "")) for key in ("raw", "calibrated")]
+        for point in points
+    ]
     pairs.sort(key=lambda point: Fraction(point[0]))
     try:
         curve.table(curve.doubles(pairs), "")
     except FormulaError as error:
-        raise ValueError(f"it is calibrated by a table that cannot be used: {error}") from None
+        raise ValueError(
+            f"it is calibrated by a table that cannot be used: {error}"
+        ) from None
     if len(pairs) > curve.MOST_POINTS:
         raise ValueError(f"it is calibrated by a table of {len(pairs):,} points")
     return {
@@ -77,30 +95,54 @@ def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
     }
 
 
-def simplified_table(table: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
-    """Return the keys of a lookup table of an integer, simplified if it covers all raw values.
+def simplified_table(
+    table: dict[str, Any], bits: int, is_signed: bool
+) -> dict[str, Any]:
+    """Return the keys of a lookup table of an integer, simplified if it covers all raw
+    values.
 
-    Horizontal segments at the ends become `outside: clamp`. A table that covers all values needs no `outside`.
+    Horizontal segments at the ends become `outside: clamp`. A table that covers all
+    values needs no `outside`.
     """
     low, high = integer_range(bits, is_signed)
     points = list(table["points"])
     (first, *_), (last, *_) = points[0], points[-1]
     if not (Fraction(first) <= low and high <= Fraction(last)):
         return table
-    starts_level = len(points) > 2 and Fraction(first) == low and Fraction(points[0][1]) == Fraction(points[1][1])
+    starts_level = (
+        len(points) > 2
+        and Fraction(first) == low
+        and Fraction(points[0][1]) == Fraction(points[1][1])
+    )
     points = points[1:] if starts_level else points
-    ends_level = len(points) > 2 and Fraction(last) == high and Fraction(points[-1][1]) == Fraction(points[-2][1])
+    ends_level = (
+        len(points) > 2
+        and Fraction(last) == high
+        and Fraction(points[-1][1]) == Fraction(points[-2][1])
+    )
     points = points[:-1] if ends_level else points
-    return {"points": points} | ({"outside": curve.CLAMP} if starts_level or ends_level else {})
+    return {"points": points} | (
+        {"outside": curve.CLAMP} if starts_level or ends_level else {}
+    )
 
 
 def _number(text: str) -> int | float | str:
-    """Return a number as a value of an ICD. Numbers with an exponent or over 30 characters stay text."""
-    return text if "e" in text.lower() or len(text) > 30 else float(text) if "." in text else int(text)
+    """Return a number as a value of an ICD.
+
+    Numbers with an exponent or over 30 characters stay text.
+    """
+    return (
+        text
+        if "e" in text.lower() or len(text) > 30
+        else float(text) if "." in text else int(text)
+    )
 
 
 def number(text: str, what: str) -> int:
-    """Return an integer of at most 40 digits. Raises `NotSupported` with ``what`` as the subject for any other text."""
+    """Return an integer of at most 40 digits.
+
+    Raises `NotSupported` with ``what`` as the subject for any other text.
+    """
     match = _INTEGER.match(text)
     if match is None:
         raise NotSupported(f"{what} is `{line(text, 60)}`")
@@ -108,7 +150,10 @@ def number(text: str, what: str) -> int:
 
 
 def decimal(text: str) -> str:
-    """Return a number in the notation of formulas. Raises `ValueError` if the text is not a number."""
+    """Return a number in the notation of formulas.
+
+    Raises `ValueError` if the text is not a number.
+    """
     match = NUMBER.match(text)
     if match is None:
         raise ValueError(f"a coefficient is `{line(text, 60)}`")
@@ -116,7 +161,9 @@ def decimal(text: str) -> str:
 
 
 def fixed(element: Element | None, default: int | None = None) -> int | None:
-    """Return the `FixedValue` of an element, ``default`` without an element, None if a parameter gives the number."""
+    """Return the `FixedValue` of an element, ``default`` without an element, None if a
+    parameter gives the number.
+    """
     if element is None:
         return default
     of = element.find("FixedValue")
@@ -124,7 +171,10 @@ def fixed(element: Element | None, default: int | None = None) -> int | None:
 
 
 def polynomial(terms: list[Element]) -> str:
-    """Return the formula of a polynomial. Raises `ValueError` for exponents above 15 and repeated ones."""
+    """Return the formula of a polynomial.
+
+    Raises `ValueError` for exponents above 15 and repeated ones.
+    """
     coefficients: dict[int, str] = {}
     for term in terms:
         power = number(term.get("exponent", ""), "an exponent")
@@ -137,7 +187,10 @@ def polynomial(terms: list[Element]) -> str:
 
 
 def formula(terms: dict[int, str]) -> str:
-    """Return the formula of coefficients by power, the highest power first. Empty if the value is the raw value."""
+    """Return the formula of coefficients by power, the highest power first.
+
+    Empty if the value is the raw value.
+    """
     text = ""
     terms = {power: value for power, value in terms.items() if Fraction(value)}
     if terms == {1: "1"}:
@@ -145,25 +198,39 @@ def formula(terms: dict[int, str]) -> str:
     for power, value in sorted(terms.items(), reverse=True):
         size, raw = _binary(value.lstrip("-")), "raw" if power == 1 else f"raw^{power}"
         part = size if not power else raw if size == "1" else f"{raw}*{size}"
-        text += f"{' - ' if value[0] == '-' else ' + '}{part}" if text else ("-" if value[0] == "-" else "") + part
+        text += (
+            f"{' - ' if value[0] == '-' else ' + '}{part}"
+            if text
+            else ("-" if value[0] == "-" else "") + part
+        )
     return text or "raw*0"
 
 
 def _binary(text: str) -> str:
-    """Return ``2^-n`` for the rounded decimal digits of a negative power of two, the text itself for other numbers."""
+    """Return ``2^-n`` for the rounded decimal digits of a negative power of two, the
+    text itself for other numbers.
+    """
     top, bottom = float(text).as_integer_ratio()
     is_rounded = len(text) > _DIGITS and Fraction(text) != Fraction(top, bottom)
     return f"2^-{bottom.bit_length() - 1}" if top == 1 and is_rounded else text
 
 
 def line_through(points: list[Element]) -> str:
-    """Return the formula of the line through two points. Raises `ValueError` if their raw values are equal."""
-    (x0, y0), (x1, y1) = ([decimal(point.get(key, "")) for key in ("raw", "calibrated")] for point in points)
+    """Return the formula of the line through two points.
+
+    Raises `ValueError` if their raw values are equal.
+    """
+    (x0, y0), (x1, y1) = (
+        [decimal(point.get(key, "")) for key in ("raw", "calibrated")]
+        for point in points
+    )
     across, up = Fraction(x1) - Fraction(x0), Fraction(y1) - Fraction(y0)
     if not across:
         raise ValueError("two points of its calibration have one raw value")
     slope, start = up / across, Fraction(y0) - Fraction(x0) * up / across
-    text = f"raw*{slope.numerator}" + (f"/{slope.denominator}" if slope.denominator != 1 else "")
+    text = f"raw*{slope.numerator}" + (
+        f"/{slope.denominator}" if slope.denominator != 1 else ""
+    )
     if start:
         text += f" {'-' if start < 0 else '+'} {abs(start.numerator)}"
         text += f"/{start.denominator}" if start.denominator != 1 else ""

@@ -1,4 +1,6 @@
-"""Grouping of XTCE files into databases: a file belongs to another if it refers to a name that only that one defines."""
+"""Grouping of XTCE files into databases: a file belongs to another if it refers to a
+name that only that one defines.
+"""
 
 from __future__ import annotations
 
@@ -14,13 +16,16 @@ _REFERENCES = (
 )  # fmt: skip
 
 
-# `Element.get(element, ...)` bypasses `AccountedElement.get`: grouping files does not import their attributes.
+# `Element.get(element, ...)` bypasses `AccountedElement.get`: grouping files does not
+# import their attributes.
 
 
 def sets(roots: Mapping[str, Element]) -> list[dict[str, Element]]:
     """Return the databases, each with its files in the order of ``roots``."""
     named = {file: _names(root) for file, root in roots.items()}
-    owner = {file: file for file in roots}  # union-find: a file leads to the first file of its set
+    owner = {
+        file: file for file in roots
+    }  # union-find: a file leads to the first file of its set
 
     def first_of(file: str) -> str:
         while owner[file] != file:
@@ -33,7 +38,9 @@ def sets(roots: Mapping[str, Element]) -> list[dict[str, Element]]:
                 continue
             for other in roots:
                 if other != file and candidates & named[other]:
-                    ends = sorted((first_of(file), first_of(other)), key=list(roots).index)
+                    ends = sorted(
+                        (first_of(file), first_of(other)), key=list(roots).index
+                    )
                     owner[ends[1]] = ends[0]
     result: dict[str, dict[str, Element]] = {}
     for file, root in roots.items():
@@ -48,13 +55,19 @@ def _systems(root: Element) -> Iterator[tuple[str, Element]]:
         above, system = left.pop()
         path = f"{above}/{Element.get(system, 'name', '')}"
         yield path, system
-        left += [(path, child) for child in system if safe_xml.local(child.tag) == "SpaceSystem"]
+        left += [
+            (path, child)
+            for child in system
+            if safe_xml.local(child.tag) == "SpaceSystem"
+        ]
 
 
 def _names(root: Element) -> set[str]:
     """Return the paths of all named elements of a file."""
     return {
-        f"{path}/{Element.get(element, 'name', '')}" for path, system in _systems(root) for element in _within(system)
+        f"{path}/{Element.get(element, 'name', '')}"
+        for path, system in _systems(root)
+        for element in _within(system)
     }
 
 
@@ -82,7 +95,8 @@ def _references(root: Element) -> Iterator[frozenset[str]]:
 def _targets(path: str, reference: str) -> Iterator[str]:
     """Yield the paths that a reference within the system ``path`` can mean.
 
-    The target can be in the system or in an enclosing one. The last names may be members of an aggregate.
+    The target can be in the system or in an enclosing one. The last names may be
+    members of an aggregate.
     """
     words = reference.split("/")
     for length in range(len(words), 0, -1):

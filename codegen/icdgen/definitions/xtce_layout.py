@@ -1,4 +1,6 @@
-"""Layout of XTCE containers: their own, inherited and included entries, and the values that restrict them."""
+"""Layout of XTCE containers: their own, inherited and included entries, and the values
+that restrict them.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,13 @@ from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
-from icdgen.definitions.xtce_types import Piece, Types, described, repeated, special_values
+from icdgen.definitions.xtce_types import (
+    Piece,
+    Types,
+    described,
+    repeated,
+    special_values,
+)
 from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
@@ -66,7 +74,9 @@ class RequiredValue(NamedTuple):
 
 @dataclass
 class Layout(Container[Part]):
-    """Parts of a container, its own and inherited ones, with the values that restrict it."""
+    """Parts of a container, its own and inherited ones, with the values that restrict
+    it.
+    """
 
     names: Names
     types: Types
@@ -76,17 +86,29 @@ class Layout(Container[Part]):
     behind: str = ""  # the previous entry, if it is optional
     size: int = 0  # bits of every frame if the container states a size, else 0
 
-    def read(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
+    def read(
+        self,
+        container: Element,
+        within: tuple[Element, ...] = (),
+        is_included: bool = False,
+    ) -> None:
         """Add the inherited entries of a container, then its own ones.
 
-        ``within`` are the enclosing containers. Positions of an included container are relative to its own start.
-        Raises `NotSupported` if an entry is not supported and the frame cannot end there.
+        ``within`` are the enclosing containers. Positions of an included container are
+        relative to its own start. Raises `NotSupported` if an entry is not supported
+        and the frame cannot end there.
         """
         if any(container is element for element in within):
-            circle = " -> ".join(element.get("name", "") for element in (*within, container))
-            raise NotSupported(f"containers contain or inherit each other in a circle: {line(circle, 200)}")
+            circle = " -> ".join(
+                element.get("name", "") for element in (*within, container)
+            )
+            raise NotSupported(
+                f"containers contain or inherit each other in a circle: {line(circle, 200)}"
+            )
         if len(within) >= _DEEPEST:
-            raise NotSupported(f"more than {_DEEPEST} containers inherit or contain each other")
+            raise NotSupported(
+                f"more than {_DEEPEST} containers inherit or contain each other"
+            )
         self.types.step()
         start = self.at if is_included else 0
         within = (*within, container)
@@ -95,7 +117,9 @@ class Layout(Container[Part]):
         if (base := container.find("BaseContainer")) is not None:
             if (criteria := base.find("RestrictionCriteria")) is not None:
                 self.required_values += self._required_values(criteria, container)
-        if not is_included and (size := fixed(container.find("BinaryEncoding/SizeInBits"))):
+        if not is_included and (
+            size := fixed(container.find("BinaryEncoding/SizeInBits"))
+        ):
             self.size = size
         entries = container.find("EntryList")
         for entry in () if entries is None else entries:
@@ -106,7 +130,9 @@ class Layout(Container[Part]):
                 self._move(entry, start)
                 self._entry(entry, container, within)
                 if (condition := entry.find("IncludeCondition")) is not None:
-                    conditions = self._conditions(condition, container, _named(entry), before)
+                    conditions = self._conditions(
+                        condition, container, _named(entry), before
+                    )
                     self._conditional(entry, conditions, before)
             except TooMuch:
                 raise
@@ -114,38 +140,67 @@ class Layout(Container[Part]):
                 if self.behind:
                     raise
                 item: Item = {}
-                self.lose(Part((_named(entry),), item, at, 0, piece=Piece(item, 0)), why, before)
+                self.lose(
+                    Part((_named(entry),), item, at, 0, piece=Piece(item, 0)),
+                    why,
+                    before,
+                )
             if len(self.parts) > MOST_FIELDS:
                 raise NotSupported(f"it has more than {MOST_FIELDS} fields")
 
-    def _conditional(self, entry: Element, conditions: list[tuple[Part, object]], before: int) -> None:
-        """Make the parts behind the first ``before`` optional. Raises `NotSupported` if their conditions are nested."""
+    def _conditional(
+        self, entry: Element, conditions: list[tuple[Part, object]], before: int
+    ) -> None:
+        """Make the parts behind the first ``before`` optional.
+
+        Raises `NotSupported` if their conditions are nested.
+        """
         self.jumps, self.behind = True, _named(entry)
         for part in self.parts[before:]:
             if "when" in part.item:
-                raise NotSupported(f"`{_named(entry)}` is present only on nested conditions")
+                raise NotSupported(
+                    f"`{_named(entry)}` is present only on nested conditions"
+                )
             part.conditions = conditions
             part.item["when"] = {of.path[-1]: values for of, values in conditions}
 
     def _move(self, entry: Element, start: int) -> None:
-        """Move to the position of an entry in a container that begins at bit ``start``. Raises `NotSupported`."""
+        """Move to the position of an entry in a container that begins at bit ``start``.
+
+        Raises `NotSupported`.
+        """
         location = entry.find("LocationInContainerInBits")
-        origin = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
+        origin = (
+            "previousEntry"
+            if location is None
+            else location.get("referenceLocation", "previousEntry")
+        )
         if self.behind and origin == "previousEntry":
-            raise NotSupported(f"`{_named(entry)}` follows `{self.behind}`, which is present only on a condition")
+            raise NotSupported(
+                f"`{_named(entry)}` follows `{self.behind}`, which is present only on a condition"
+            )
         self.behind = ""
         if location is None:
             return
         bits = fixed(location)
         if bits is None or origin not in ("previousEntry", "containerStart"):
-            raise NotSupported(f"where `{_named(entry)}` is located is not a number of bits from the previous entry")
+            raise NotSupported(
+                f"where `{_named(entry)}` is located is not a number of bits from the previous entry"
+            )
         self.at = (self.at if origin == "previousEntry" else start) + bits
         self.jumps = True
         if self.at < 0:
-            raise NotSupported(f"`{_named(entry)}` is located in front of its container")
+            raise NotSupported(
+                f"`{_named(entry)}` is located in front of its container"
+            )
 
-    def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
-        """Add the parts of an entry of a container. Raises `NotSupported` if the entry is not supported."""
+    def _entry(
+        self, entry: Element, container: Element, within: tuple[Element, ...]
+    ) -> None:
+        """Add the parts of an entry of a container.
+
+        Raises `NotSupported` if the entry is not supported.
+        """
         count = _repeats(entry)
         if entry.tag == "ContainerRefEntry":
             inner = self.names.container(entry.get("containerRef", ""), container)
@@ -157,9 +212,13 @@ class Layout(Container[Part]):
             return
         if entry.tag not in _REFERENCES:
             raise NotSupported(f"it has a `{line(entry.tag, 60)}`")
-        reference = self._parameter(_reference(entry), container, "argument" in entry.tag.lower())
+        reference = self._parameter(
+            _reference(entry), container, "argument" in entry.tag.lower()
+        )
         of, where = reference.of, f"`{reference.name}`"
-        type_ = self.names.type_of(of.get("parameterTypeRef", "") or of.get("argumentTypeRef", ""), of)
+        type_ = self.names.type_of(
+            of.get("parameterTypeRef", "") or of.get("argumentTypeRef", ""), of
+        )
         for member in reference.path:
             type_ = self.types.member(type_, member, where)
         dimensions = entry.find("DimensionList")
@@ -169,38 +228,69 @@ class Layout(Container[Part]):
             piece = self.types.piece(type_, where)
         keys = {**special_values(of), **described(of, type_)}
         keys |= {"view": True} if "view" in ancillary_data(of) else {}
-        keys |= {"const": number(constant, "a constant")} if (constant := ancillary_data(of).get("constant")) else {}
+        keys |= (
+            {"const": number(constant, "a constant")}
+            if (constant := ancillary_data(of).get("constant"))
+            else {}
+        )
         name = " ".join((name_of(of), *reference.path))
         self._place(reference, name, repeated(piece, count, where), keys)
 
     def _place(self, reference: Reference, name: str, piece: Piece, keys: Item) -> None:
-        """Add a field at the current position, or the members of an aggregate in their order. Raises `NotSupported`."""
+        """Add a field at the current position, or the members of an aggregate in their
+        order.
+
+        Raises `NotSupported`.
+        """
         of, path = reference
         if len(path) > _DEEPEST:
             raise NotSupported(f"`{name}` has members nested without end")
         for member, type_ in piece.members:
             of_member = self.types.piece(type_, f"`{name} {member}`")
-            self._place(Reference(of, (*path, member)), f"{name} {member}", of_member, described(type_))
+            self._place(
+                Reference(of, (*path, member)),
+                f"{name} {member}",
+                of_member,
+                described(type_),
+            )
             if len(self.parts) > MOST_FIELDS:
                 raise NotSupported(f"it has more than {MOST_FIELDS} fields")
         if piece.members:
             return
         if self.is_open:
-            raise NotSupported(f"`{name}` follows `{self.parts[-1].path[-1]}`, whose size is not fixed")
+            raise NotSupported(
+                f"`{name}` follows `{self.parts[-1].path[-1]}`, whose size is not fixed"
+            )
         if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
-                raise NotSupported(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
-            self.jumps = (
-                True  # little-endian within a byte: bits are counted from the least significant one, as in Yamcs
-            )
+                raise NotSupported(
+                    f"the least significant byte of the {piece.bits} bits of `{name}` is sent first"
+                )
+            # Little-endian within a byte: bits are counted from the least significant
+            # one, as in Yamcs.
+            self.jumps = True
         item = replace_keys(piece.item, {**piece.item, **keys})
-        part = Part((name,), item, self.at, piece.bits, piece.order, item.get("bits", 8), piece=piece)
+        part = Part(
+            (name,),
+            item,
+            self.at,
+            piece.bits,
+            piece.order,
+            item.get("bits", 8),
+            piece=piece,
+        )
         part.reference, part.is_reserved = reference, "reserved" in ancillary_data(of)
         self.add(part)
 
     def _fixed(self, entry: Element) -> None:
-        """Add a fixed value: the least significant `sizeInBits` bits of a hexadecimal number. Raises `NotSupported`."""
-        bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get("binaryValue", "")
+        """Add a fixed value: the least significant `sizeInBits` bits of a hexadecimal
+        number.
+
+        Raises `NotSupported`.
+        """
+        bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get(
+            "binaryValue", ""
+        )
         if not 1 <= bits <= 8 * MOST_BYTES:
             raise NotSupported(f"a fixed value has {bits} bits")
         try:
@@ -211,45 +301,83 @@ class Layout(Container[Part]):
         if bits > 64 and value:
             raise NotSupported(f"a fixed value has {bits} bits")
         item: Item = {"type": "uint", "const": value}
-        part = Part((name or f"Fixed {self.at}",), item, self.at, bits, piece=Piece(item, bits))
+        part = Part(
+            (name or f"Fixed {self.at}",), item, self.at, bits, piece=Piece(item, bits)
+        )
         part.is_reserved = not (name and bits <= 64) and not value
         self.add(part)
 
     def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Reference:
-        """Return the parameter or argument that an element refers to. Raises `NotSupported` if it does not exist."""
-        return self.argument(name) if is_argument else Reference(*self.names.parameter(name, seen_from))
+        """Return the parameter or argument that an element refers to.
+
+        Raises `NotSupported` if it does not exist.
+        """
+        return (
+            self.argument(name)
+            if is_argument
+            else Reference(*self.names.parameter(name, seen_from))
+        )
 
     def argument(self, name: str) -> Reference:
-        """Return an argument of the command, or a member of it. Raises `NotSupported` if it does not exist."""
+        """Return an argument of the command, or a member of it.
+
+        Raises `NotSupported` if it does not exist.
+        """
         first, *path = [name] if name in self.arguments else name.split("/")
         if first not in self.arguments:
             raise NotSupported(f"there is no argument `{line(name, 100)}`")
         return Reference(self.arguments[first], tuple(path))
 
-    def _required_values(self, criteria: Element, seen_from: Element) -> Iterator[RequiredValue]:
-        """Yield the equalities of a conjunction. Raises `NotSupported` for any other condition."""
+    def _required_values(
+        self, criteria: Element, seen_from: Element
+    ) -> Iterator[RequiredValue]:
+        """Yield the equalities of a conjunction.
+
+        Raises `NotSupported` for any other condition.
+        """
         for alternatives in self._all_of(criteria, seen_from, "it depends on"):
             if len(alternatives) > 1:
-                raise NotSupported("it depends on more than equalities that must all be true")
+                raise NotSupported(
+                    "it depends on more than equalities that must all be true"
+                )
             yield alternatives[0]
 
-    def _conditions(self, condition: Element, seen_from: Element, named: str, before: int) -> list[tuple[Part, object]]:
-        """Return the parts in front of an entry on which it depends, with the values that they must have. Raises `NotSupported`."""
+    def _conditions(
+        self, condition: Element, seen_from: Element, named: str, before: int
+    ) -> list[tuple[Part, object]]:
+        """Return the parts in front of an entry on which it depends, with the values
+        that they must have.
+
+        Raises `NotSupported`.
+        """
         conditions: list[tuple[Part, object]] = []
-        for alternatives in self._all_of(condition, seen_from, f"`{named}` is present only if there is"):
-            part, *other_parts = [self._part(equality, before) for equality in alternatives]
-            if any(other is not part for other in other_parts) or any(of is part for of, _ in conditions):
-                raise NotSupported(f"`{named}` is present on a condition of several fields")
+        for alternatives in self._all_of(
+            condition, seen_from, f"`{named}` is present only if there is"
+        ):
+            part, *other_parts = [
+                self._part(equality, before) for equality in alternatives
+            ]
+            if any(other is not part for other in other_parts) or any(
+                of is part for of, _ in conditions
+            ):
+                raise NotSupported(
+                    f"`{named}` is present on a condition of several fields"
+                )
             raws = [self._raw(part, equality) for equality in alternatives]
             conditions.append((part, raws if len(raws) > 1 else raws[0]))
         if not conditions:
-            raise NotSupported(f"`{named}` is present only on a condition that is empty")
+            raise NotSupported(
+                f"`{named}` is present only on a condition that is empty"
+            )
         return conditions
 
-    def _all_of(self, criteria: Iterable[Element], seen_from: Element, prefix: str) -> Iterator[list[RequiredValue]]:
+    def _all_of(
+        self, criteria: Iterable[Element], seen_from: Element, prefix: str
+    ) -> Iterator[list[RequiredValue]]:
         """Yield the terms of a conjunction, each a list of alternative equalities.
 
-        Raises `NotSupported` for any other condition, with a message that begins with ``prefix``.
+        Raises `NotSupported` for any other condition, with a message that begins with
+        ``prefix``.
         """
         for criterion in criteria:
             if criterion.tag == "Comparison":
@@ -262,26 +390,57 @@ class Layout(Container[Part]):
                         prefix,
                     )
                 ]
-            elif criterion.tag in ("ComparisonList", "BooleanExpression", "ANDedConditions"):
+            elif criterion.tag in (
+                "ComparisonList",
+                "BooleanExpression",
+                "ANDedConditions",
+            ):
                 yield from self._all_of(criterion, seen_from, prefix)
             elif criterion.tag == "ORedConditions":
-                each = [list(self._all_of([inner], seen_from, prefix)) for inner in criterion]
+                each = [
+                    list(self._all_of([inner], seen_from, prefix))
+                    for inner in criterion
+                ]
                 if any(len(alternative) != 1 for alternative in each):
-                    raise NotSupported(f"{prefix} one of several things that must hold together")
+                    raise NotSupported(
+                        f"{prefix} one of several things that must hold together"
+                    )
                 yield [equality for (alternative,) in each for equality in alternative]
             elif criterion.tag == "Condition":
-                if len([inner for inner in criterion if inner.tag.endswith("InstanceRef")]) != 1:
+                if (
+                    len(
+                        [
+                            inner
+                            for inner in criterion
+                            if inner.tag.endswith("InstanceRef")
+                        ]
+                    )
+                    != 1
+                ):
                     raise NotSupported(f"{prefix} a comparison of two parameters")
-                operator, value = criterion.findtext("ComparisonOperator", ""), criterion.findtext("Value", "")
+                operator, value = criterion.findtext(
+                    "ComparisonOperator", ""
+                ), criterion.findtext("Value", "")
                 yield [self._compared(criterion, operator, value, seen_from, prefix)]
             else:
                 raise NotSupported(f"{prefix} a `{line(criterion.tag, 60)}`")
 
     def _compared(
-        self, comparison: Element, operator: str, value: str, seen_from: Element, prefix: str
+        self,
+        comparison: Element,
+        operator: str,
+        value: str,
+        seen_from: Element,
+        prefix: str,
     ) -> RequiredValue:
-        """Return an equality of a parameter or argument and a value. Raises `NotSupported` for other operators."""
-        of = next((inner for inner in comparison if inner.tag.endswith("InstanceRef")), comparison)
+        """Return an equality of a parameter or argument and a value.
+
+        Raises `NotSupported` for other operators.
+        """
+        of = next(
+            (inner for inner in comparison if inner.tag.endswith("InstanceRef")),
+            comparison,
+        )
         is_argument = "argumentRef" in of.attrib
         name = of.get("argumentRef" if is_argument else "parameterRef", "")
         if operator.strip() != "==":
@@ -291,7 +450,10 @@ class Layout(Container[Part]):
         return RequiredValue(reference, value, of.get("useCalibratedValue") == "false")
 
     def fix_value(self, required: RequiredValue) -> int:
-        """Make the value of a parameter or argument constant, and return its raw value. Raises `NotSupported`."""
+        """Make the value of a parameter or argument constant, and return its raw value.
+
+        Raises `NotSupported`.
+        """
         part = self._part(required)
         raw = self._raw(part, required)
         check_only_value(part.item, raw, required.reference.name)
@@ -299,21 +461,36 @@ class Layout(Container[Part]):
         return raw
 
     def _part(self, required: RequiredValue, end: int | None = None) -> Part:
-        """Return the last of the first ``end`` parts that an equality refers to. Raises `NotSupported` if it does not exist."""
+        """Return the last of the first ``end`` parts that an equality refers to.
+
+        Raises `NotSupported` if it does not exist.
+        """
         part = next(
-            (candidate for candidate in reversed(self.parts[:end]) if candidate.reference == required.reference), None
+            (
+                candidate
+                for candidate in reversed(self.parts[:end])
+                if candidate.reference == required.reference
+            ),
+            None,
         )
         if part is None:
             raise self.missing(required.reference.name)
         return part
 
     def _raw(self, part: Part, required: RequiredValue) -> int:
-        """Return the raw value of an equality. Raises `NotSupported` if the part is calibrated, not an integer, or too narrow."""
+        """Return the raw value of an equality.
+
+        Raises `NotSupported` if the part is calibrated, not an integer, or too narrow.
+        """
         item, text, name = part.item, required.value.strip(), required.reference.name
         if part.piece.is_raw:
-            raise NotSupported(f"it depends on `{name}`, of which only the raw bits are imported")
+            raise NotSupported(
+                f"it depends on `{name}`, of which only the raw bits are imported"
+            )
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
-            raise NotSupported(f"it depends on `{name}`, which is of the type {item['type']}")
+            raise NotSupported(
+                f"it depends on `{name}`, which is of the type {item['type']}"
+            )
         if item.keys() & {"formula", "points"} and not required.is_raw:
             raise NotSupported(f"it depends on the calibrated value of `{name}`")
         if text in part.piece.values and not required.is_raw:
@@ -321,32 +498,57 @@ class Layout(Container[Part]):
         try:
             raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
         except ValueError:
-            raise NotSupported(f"it depends on `{name}`, which is never `{line(text, 60)}`") from None
-        if raw.bit_length() > part.bits or (raw < 0 and item["type"] in ("uint", "bool")):
+            raise NotSupported(
+                f"it depends on `{name}`, which is never `{line(text, 60)}`"
+            ) from None
+        if raw.bit_length() > part.bits or (
+            raw < 0 and item["type"] in ("uint", "bool")
+        ):
             raise NotSupported(f"it depends on `{name}`, which is never {raw}")
         return raw
 
     def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
-        """Return the message with its length and the fields from bit ``start`` on. Raises `NotSupported`."""
-        always = max((part.end for part in self.parts if part.bits and "when" not in part.item), default=start)
+        """Return the message with its length and the fields from bit ``start`` on.
+
+        Raises `NotSupported`.
+        """
+        always = max(
+            (part.end for part in self.parts if part.bits and "when" not in part.item),
+            default=start,
+        )
         always = max(always, self.size)
-        late = next((part for part in self.parts if "when" in part.item and part.end > always), None)
+        late = next(
+            (part for part in self.parts if "when" in part.item and part.end > always),
+            None,
+        )
         if late is not None:
-            raise NotSupported(f"frames end before `{late.path[-1]}` where it is not there")
+            raise NotSupported(
+                f"frames end before `{late.path[-1]}` where it is not there"
+            )
         end = always - start
-        if max((part.end for part in self.parts), default=0) - start > 8 * MOST_BYTES or end > 8 * MOST_BYTES:
+        if (
+            max((part.end for part in self.parts), default=0) - start > 8 * MOST_BYTES
+            or end > 8 * MOST_BYTES
+        ):
             raise NotSupported(f"its frames have more than {MOST_BYTES:,} bytes")
-        parts = [part for part in self.parts if part.at >= start and not part.is_reserved]
+        parts = [
+            part for part in self.parts if part.at >= start and not part.is_reserved
+        ]
         names = _numbered(parts)
         for part in parts:
             if part.conditions:  # conditions refer to the final, numbered names
-                part.item["when"] = {names.get(id(of), of.path[-1]): values for of, values in part.conditions}
+                part.item["when"] = {
+                    names.get(id(of), of.path[-1]): values
+                    for of, values in part.conditions
+                }
         closed = [part for part in parts if part.bits]
         message["length"] = -(-end // 8)
         fields: list[Item] = []
         if self.jumps:
             if len(parts) > MOST_PLACED:
-                raise NotSupported(f"more than {MOST_PLACED} fields say where they stand")
+                raise NotSupported(
+                    f"more than {MOST_PLACED} fields say where they stand"
+                )
             placed = [
                 (
                     replace_keys(part.item, {"name": names[id(part)], **part.item}),
@@ -357,25 +559,40 @@ class Layout(Container[Part]):
             message = laid_out(message, placed, order, to)
             fields = message.pop("fields", [])
         else:
-            fields = [fixed_field(part, names[id(part)], part.at - start) for part in closed]
+            fields = [
+                fixed_field(part, names[id(part)], part.at - start) for part in closed
+            ]
             last = max((part.end for part in closed), default=start) - start
-            message |= {"reserved": padding} if (padding := message["length"] - -(-last // 8)) else {}
+            message |= (
+                {"reserved": padding}
+                if (padding := message["length"] - -(-last // 8))
+                else {}
+            )
         for part in parts:
             if not part.bits:
                 if end % 8:
-                    raise NotSupported(f"`{names[id(part)]}`, whose size is not fixed, begins within a byte")
-                message.pop("reserved", 0)  # the unnamed bytes in front of the field are part of the length
+                    raise NotSupported(
+                        f"`{names[id(part)]}`, whose size is not fixed, begins within a byte"
+                    )
+                message.pop(
+                    "reserved", 0
+                )  # the unnamed bytes in front of the field are part of the length
                 at = 8 * message["length"]
                 _count(part, names[id(part)], at, parts, message["name"], to)
                 field = variable_field(part, names[id(part)], at, names)
-                is_other = part.element > 8 and part.order != message.get("byte_order", order)
+                is_other = part.element > 8 and part.order != message.get(
+                    "byte_order", order
+                )
                 field |= ORDERS[part.order] if is_other else {}
                 fields.append(field)
         return {**message, "fields": fields} if fields else message
 
 
 def _numbered(parts: Iterable[Part]) -> dict[int, str]:
-    """Return the names of parts by `id`. Repeated names get a number: ``Mode``, ``Mode 2``."""
+    """Return the names of parts by `id`.
+
+    Repeated names get a number: ``Mode``, ``Mode 2``.
+    """
     times: dict[str, int] = {}
     names: dict[int, str] = {}
     for part in parts:
@@ -385,11 +602,18 @@ def _numbered(parts: Iterable[Part]) -> dict[int, str]:
     return names
 
 
-def _count(part: Part, name: str, at: int, parts: list[Part], message: str, to: Definitions) -> None:
-    """Set the counter of a variable-length part, if another part can count it, and its maximum number of elements."""
+def _count(
+    part: Part, name: str, at: int, parts: list[Part], message: str, to: Definitions
+) -> None:
+    """Set the counter of a variable-length part, if another part can count it, and its
+    maximum number of elements.
+    """
     item, piece = part.item, part.piece
     most = min(item["up_to"], (8 * MOST_BYTES - at) // part.element)
-    if part.reference is not None and (limit := ancillary_data(part.reference.of).get("up_to")) is not None:
+    if (
+        part.reference is not None
+        and (limit := ancillary_data(part.reference.of).get("up_to")) is not None
+    ):
         most = min(most, max(1, number(limit, "a size")))
     counter = next((other for other in parts if _is_named(other, piece.size)), None)
     counted = _counted(counter, piece, most) if counter is not None else 0
@@ -402,12 +626,19 @@ def _count(part: Part, name: str, at: int, parts: list[Part], message: str, to: 
 
 
 def _is_named(part: Part, reference: str) -> bool:
-    """Whether a reference, which may include a path of systems, ends with the name of a part."""
-    return part.reference is not None and f"/{reference}".endswith(f"/{part.reference.name}")
+    """Whether a reference, which may include a path of systems, ends with the name of a
+    part.
+    """
+    return part.reference is not None and f"/{reference}".endswith(
+        f"/{part.reference.name}"
+    )
 
 
 def _counted(counter: Part, piece: Piece, most: int) -> int:
-    """Return the maximum number of elements, or bytes, that a field can count; 0 if it cannot count them."""
+    """Return the maximum number of elements, or bytes, that a field can count.
+
+    Returns 0 if it cannot count them.
+    """
     if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
         return 0
     counted = min(most, (1 << counter.bits) - 1 + piece.plus)
@@ -415,24 +646,41 @@ def _counted(counter: Part, piece: Piece, most: int) -> int:
 
 
 def _reference(entry: Element) -> str:
-    """Return the reference of an entry. XTCE 1.1 (2006) allows ``parameterRef`` for arrays of arguments."""
-    return next((entry.attrib[key] for key in ("argumentRef", "parameterRef") if key in entry.attrib), "")
+    """Return the reference of an entry.
+
+    XTCE 1.1 (2006) allows ``parameterRef`` for arrays of arguments.
+    """
+    return next(
+        (
+            entry.attrib[key]
+            for key in ("argumentRef", "parameterRef")
+            if key in entry.attrib
+        ),
+        "",
+    )
 
 
 def _named(entry: Element) -> str:
     """Return the name of an entry for messages."""
     keys = (*_REFERENCES.values(), "containerRef", "name")
-    return line(next((entry.attrib[key] for key in keys if key in entry.attrib), entry.tag), 100)
+    return line(
+        next((entry.attrib[key] for key in keys if key in entry.attrib), entry.tag), 100
+    )
 
 
 def _repeats(entry: Element) -> int:
-    """Return the number of repetitions of an entry. Raises `NotSupported` if it is not fixed, or there are gaps between."""
+    """Return the number of repetitions of an entry.
+
+    Raises `NotSupported` if it is not fixed, or there are gaps between.
+    """
     repeat = entry.find("RepeatEntry")
     if repeat is None:
         return 1
     count = fixed(repeat.find("Count"))
     if count is None or repeat.find("Offset") is not None:
-        raise NotSupported(f"how often `{_named(entry)}` is repeated, or the gap between, is not a number")
+        raise NotSupported(
+            f"how often `{_named(entry)}` is repeated, or the gap between, is not a number"
+        )
     if not 0 <= count <= MOST_ELEMENTS:
         raise NotSupported(f"`{_named(entry)}` is repeated {count} times")
     return count

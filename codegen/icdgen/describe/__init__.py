@@ -1,6 +1,7 @@
 """Decisions that all outputs share. A backend only spells them.
 
-`describe` returns the `Description` of a set of ICDs, with its nodes, messages, fields, structs and enumerations.
+`describe` returns the `Description` of a set of ICDs, with its nodes, messages, fields,
+structs and enumerations.
 
 | decisions | modules |
 |---|---|
@@ -16,7 +17,12 @@ from __future__ import annotations
 
 from icdgen.describe.description import FieldDescription, StructDescription
 from icdgen.describe.enums import EnumDescription
-from icdgen.describe.nodes import Description, MessageDescription, NodeDescription, describe
+from icdgen.describe.nodes import (
+    Description,
+    MessageDescription,
+    NodeDescription,
+    describe,
+)
 
 __all__ = [
     "Description",

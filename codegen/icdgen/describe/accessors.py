@@ -1,4 +1,5 @@
-"""Accessors of physical values: in which types a field can be read and set, with names and comments for all languages.
+"""Accessors of physical values: in which types a field can be read and set, with names
+and comments for all languages.
 
 A language generates the kinds that it has types for.
 """
@@ -9,19 +10,29 @@ from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from icdgen.describe.arithmetic import IntegerAccess
-from icdgen.describe.comments import physical_comment, physical_name, text_comment, words
+from icdgen.describe.comments import (
+    physical_comment,
+    physical_name,
+    text_comment,
+    words,
+)
 from icdgen.describe.description import FieldDescription
 from icdgen.describe.integer_scale import IntegerScale, part_of_unit
 
 Kind = Literal["text", "double", "single", "integer", "long integer"]
-"""Characters, floats of 64 and 32 bits, and whole thousandths or millionths of the unit.
+"""Characters, floats of 64 and 32 bits, and whole thousandths or millionths of the
+unit.
 
-Integers of at most 64 bits compute an ``integer``; a step for a ``long integer`` may need more.
+Integers of at most 64 bits compute an ``integer``; a step for a ``long integer`` may
+need more.
 """
 
 
 class Accessor(NamedTuple):
-    """Getter of a physical value, and setter if it is settable. Both have the index as a parameter if the field is an array."""
+    """Getter of a physical value, and setter if it is settable.
+
+    Both have the index as a parameter if the field is an array.
+    """
 
     field: FieldDescription
     kind: Kind
@@ -32,7 +43,11 @@ class Accessor(NamedTuple):
     @property
     def integers(self) -> IntegerAccess:
         """Integers of 32 or 64 bits that compute an ``integer``."""
-        access = self.field.arithmetic.integers if self.field.arithmetic is not None else None
+        access = (
+            self.field.arithmetic.integers
+            if self.field.arithmetic is not None
+            else None
+        )
         assert access is not None, f"{self.name} is no `integer`"
         return access
 
@@ -51,11 +66,17 @@ class Accessor(NamedTuple):
             return f"{self.title}, exact: {self.scale.low} to {self.scale.high}."
         if self.kind == "single":
             return f"{self.title}, the nearest float of 32 bits."
-        return text_comment(self.field.model) if self.kind == "text" else physical_comment(self.field.model)
+        return (
+            text_comment(self.field.model)
+            if self.kind == "text"
+            else physical_comment(self.field.model)
+        )
 
 
 def accessors_of(field: FieldDescription, *kinds: Kind) -> Iterator[Accessor]:
-    """List the accessors of the physical value of a field, as far as a language has these kinds of them."""
+    """List the accessors of the physical value of a field, as far as a language has
+    these kinds of them.
+    """
     if not field.has_physical:
         return
     kind: Kind = "text" if field.is_text else "double"

@@ -1,6 +1,8 @@
-"""Arithmetic of physical values: which integers and floats hold every step of it without an error.
+"""Arithmetic of physical values: which integers and floats hold every step of it
+without an error.
 
-Languages differ in how they spell a step. They do not differ in which steps are exact, so that is decided here.
+Languages differ in how they spell a step. They do not differ in which steps are exact,
+so that is decided here.
 """
 
 from __future__ import annotations
@@ -8,7 +10,13 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import NamedTuple
 
-from icdgen.describe.integer_scale import IntegerScale, computable, integer_bits, integer_scale, within
+from icdgen.describe.integer_scale import (
+    IntegerScale,
+    computable,
+    integer_bits,
+    integer_scale,
+    within,
+)
 from icdgen.describe.steps import EXACT_DOUBLE, EXACT_SINGLE, Steps
 from icdgen.describe.storage import Storage
 from icdgen.frozen import dataclass
@@ -16,7 +24,10 @@ from icdgen.once import cached_property
 
 _INT64_MAX = (1 << 63) - 1
 _BITS_IN_DOUBLE = 32
-"""The widest integers that every language converts to a double without a loss; the next ones have 64 bits."""
+"""The widest integers that every language converts to a double without a loss.
+
+The next ones have 64 bits.
+"""
 _BITS_IN_SINGLE = 16
 """The same for floats of 32 bits."""
 
@@ -32,7 +43,10 @@ class IntegerAccess(NamedTuple):
 
 
 class Int64Terms(NamedTuple):
-    """p, c and q of `Steps` as literals of 64 bits; of a negated scale p and c have the opposite signs."""
+    """p, c and q of `Steps` as literals of 64 bits.
+
+    Of a negated scale p and c have the opposite signs.
+    """
 
     p: int
     c: int
@@ -49,36 +63,61 @@ class Arithmetic:
 
     @property
     def is_exact_in_int64(self) -> bool:
-        """Whether raw*p + c is exact in a signed integer of 64 bits and as a double, so that only the division rounds.
+        """Whether raw*p + c is exact in a signed integer of 64 bits and as a double, so
+        that only the division rounds.
 
-        The integer does not overflow for any value of the storage. The double is exact for the values of the field, which
-        are fewer if the field has fewer bits than its storage.
+        The integer does not overflow for any value of the storage. The double is exact
+        for the values of the field, which are fewer if the field has fewer bits than
+        its storage.
         """
         p, c, _ = self.steps.terms
-        return not self.steps.is_wide and self.steps.exact_in_doubles and computable(self.storage, p, c, 64)
+        return (
+            not self.steps.is_wide
+            and self.steps.exact_in_doubles
+            and computable(self.storage, p, c, 64)
+        )
 
     @property
     def is_exact_in_doubles(self) -> bool:
-        """Whether the raw value, raw*p and raw*p + c are exact as doubles, so that only the division rounds."""
+        """Whether the raw value, raw*p and raw*p + c are exact as doubles, so that only
+        the division rounds.
+        """
         return self._is_exact(_BITS_IN_DOUBLE, EXACT_DOUBLE)
 
     @property
     def is_exact_in_singles(self) -> bool:
-        """Whether the raw value, raw*p and raw*p + c are exact as floats of 32 bits, so that only the division rounds."""
+        """Whether the raw value, raw*p and raw*p + c are exact as floats of 32 bits, so
+        that only the division rounds.
+        """
         return self._is_exact(_BITS_IN_SINGLE, EXACT_SINGLE)
 
     def _is_exact(self, most_bits: int, largest: int) -> bool:
-        return self.storage.bits <= most_bits and not self.steps.is_wide and self.steps.exact_up_to(largest)
+        return (
+            self.storage.bits <= most_bits
+            and not self.steps.is_wide
+            and self.steps.exact_up_to(largest)
+        )
 
     @property
     def int64_terms(self) -> Int64Terms:
-        """The terms of a scale that is not wide. An offset of 2**63 has no literal, but its negative has."""
+        """The terms of a scale that is not wide.
+
+        An offset of 2**63 has no literal, but its negative has.
+        """
         p, c, q = self.steps.terms
-        return Int64Terms(-p, -c, q, True) if c > _INT64_MAX else Int64Terms(p, c, q, False)
+        return (
+            Int64Terms(-p, -c, q, True)
+            if c > _INT64_MAX
+            else Int64Terms(p, c, q, False)
+        )
 
     @cached_property
     def integers(self) -> IntegerAccess | None:
-        """The integer accessors; None if the values are not whole thousandths or millionths, or a step may overflow."""
+        """The integer accessors.
+
+        None if the values are not whole thousandths or millionths, or a step may
+        overflow.
+        """
         return _integers(self.steps, self.storage)
 
 
@@ -90,7 +129,11 @@ def _integers(steps: Steps, storage: Storage) -> IntegerAccess | None:
         return None
     ends = Storage(bits, True)
     least, most = max(scale.least, ends.min), min(scale.most, ends.max)
-    setter_bits = 32 if bits == 32 and within(32, least - scale.offset, most - scale.offset) else 64
+    setter_bits = (
+        32
+        if bits == 32 and within(32, least - scale.offset, most - scale.offset)
+        else 64
+    )
     return IntegerAccess(
         scale,
         bits,

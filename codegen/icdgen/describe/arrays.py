@@ -1,7 +1,8 @@
 """Arrays that code reads and writes in a loop, or by a function for an element.
 
-These are arrays of structs, and arrays of numbers that are not whole words. An iteration handles one element. Of elements that
-do not end at a byte, such as flags or numbers of 12 bits, it handles as many as are whole bytes.
+These are arrays of structs, and arrays of numbers that are not whole words. An
+iteration handles one element. Of elements that do not end at a byte, such as flags or
+numbers of 12 bits, it handles as many as are whole bytes.
 """
 
 from __future__ import annotations
@@ -11,7 +12,12 @@ from dataclasses import replace
 from math import gcd
 from typing import Any, NamedTuple
 
-from icdgen.describe.description import Composite, FieldDescription, Into, StructDescription
+from icdgen.describe.description import (
+    Composite,
+    FieldDescription,
+    Into,
+    StructDescription,
+)
 
 MANY_ENOUGH = 4
 """Smallest number of elements for which a loop is shorter than a statement for each."""
@@ -26,7 +32,9 @@ class StructArray(NamedTuple):
 
     @property
     def begin(self) -> int:
-        """First byte, counted from the start of the message or element that has the array."""
+        """First byte, counted from the start of the message or element that has the
+        array.
+        """
         return self.field.model.at // 8
 
     @property
@@ -35,8 +43,14 @@ class StructArray(NamedTuple):
         return self.element_struct.model.length
 
 
-def struct_arrays_in(composite: Composite[Any], prefix: str = "") -> tuple[StructArray, ...]:
-    """Return the arrays of structs of a message or struct, without arrays in their elements. Names start with ``prefix``."""
+def struct_arrays_in(
+    composite: Composite[Any], prefix: str = ""
+) -> tuple[StructArray, ...]:
+    """Return the arrays of structs of a message or struct, without arrays in their
+    elements.
+
+    Names start with ``prefix``.
+    """
     return tuple(
         StructArray(field, field.element_struct, prefix + field.name)
         for field in composite.walk(Into.STRUCTS)
@@ -45,16 +59,26 @@ def struct_arrays_in(composite: Composite[Any], prefix: str = "") -> tuple[Struc
 
 
 def all_struct_arrays(composite: Composite[Any]) -> Iterator[StructArray]:
-    """List all arrays of structs of a message; arrays in elements of an array come before it."""
-    for field, name in named_arrays(composite, lambda field: field.element_struct is not None):
+    """List all arrays of structs of a message.
+
+    Arrays in elements of an array come before it.
+    """
+    for field, name in named_arrays(
+        composite, lambda field: field.element_struct is not None
+    ):
         if field.element_struct is not None:
             yield StructArray(field, field.element_struct, name)
 
 
 def named_arrays(
-    composite: Composite[Any], is_wanted: Callable[[FieldDescription], bool], prefix: str = ""
+    composite: Composite[Any],
+    is_wanted: Callable[[FieldDescription], bool],
+    prefix: str = "",
 ) -> Iterator[tuple[FieldDescription, str]]:
-    """List the arrays for which ``is_wanted`` holds, and their names; arrays in elements of an array come before it."""
+    """List the arrays for which ``is_wanted`` holds, and their names.
+
+    Arrays in elements of an array come before it.
+    """
     for field in composite.walk(Into.STRUCTS):
         if is_wanted(field):
             name = prefix + field.name
@@ -64,7 +88,11 @@ def named_arrays(
 
 
 class ArrayLoop(NamedTuple):
-    """Loop over an array. An iteration handles as many elements as are whole bytes. Elements behind the last one are left over."""
+    """Loop over an array.
+
+    An iteration handles as many elements as are whole bytes. Elements behind the last
+    one are left over.
+    """
 
     per_iteration: int  # elements of an iteration
     iterations: int
@@ -81,11 +109,18 @@ class ArrayLoop(NamedTuple):
         """Number of bytes of all iterations."""
         return self.iterations * self.step
 
-    def members(self, first: FieldDescription, name: Callable[[int], str]) -> tuple[FieldDescription, ...]:
-        """Return the elements of an iteration, with bits counted from its first byte. ``name`` gives their names in code."""
+    def members(
+        self, first: FieldDescription, name: Callable[[int], str]
+    ) -> tuple[FieldDescription, ...]:
+        """Return the elements of an iteration, with bits counted from its first byte.
+
+        ``name`` gives their names in code.
+        """
         elements = []
         for index in range(self.per_iteration):
-            element = first.moved(replace(first.model, at=index * first.model.bits, count=0))
+            element = first.moved(
+                replace(first.model, at=index * first.model.bits, count=0)
+            )
             element.member = name(index)
             elements.append(element)
         return tuple(elements)
@@ -94,20 +129,28 @@ class ArrayLoop(NamedTuple):
 def loop_from(first: FieldDescription, count: int) -> ArrayLoop | None:
     """Return the loop over an array of ``count`` elements, which starts with ``first``.
 
-    None if there are few elements, if the array does not start at a byte, or if its words are copied.
+    None if there are few elements, if the array does not start at a byte, or if its
+    words are copied.
     """
     at, bits = first.model.at, first.model.bits
     if at % 8 or first.is_copied or first.model.conditions:
         return None
     per_iteration = 8 // gcd(8, bits)  # the fewest elements that end at a byte
-    loop = ArrayLoop(per_iteration, count // per_iteration, at // 8, per_iteration * bits // 8)
+    loop = ArrayLoop(
+        per_iteration, count // per_iteration, at // 8, per_iteration * bits // 8
+    )
     return loop if loop.iterations > 1 and loop.elements >= MANY_ENOUGH else None
 
 
 def loop_of(field: FieldDescription) -> ArrayLoop | None:
-    """Return the loop over all elements of an array; None if they are copied, or read and written one by one."""
+    """Return the loop over all elements of an array.
+
+    Returns None if they are copied, or read and written one by one.
+    """
     if field.element_struct is not None:
-        return ArrayLoop(1, field.count, field.model.at // 8, field.element_struct.model.length)
+        return ArrayLoop(
+            1, field.count, field.model.at // 8, field.element_struct.model.length
+        )
     if not field.count or field.struct is not None:
         return None
     loop = loop_from(field, field.count)

@@ -15,7 +15,10 @@ from icdgen.icd.places import AnyScalar
 
 
 class LimitKind(NamedTuple):
-    """Kind of limit. ``holds(value, limit)`` returns whether a value is within the limit."""
+    """Kind of limit.
+
+    ``holds(value, limit)`` returns whether a value is within the limit.
+    """
 
     key: str  # as in the ICD
     sign: str
@@ -27,9 +30,15 @@ class LimitKind(NamedTuple):
 
 KINDS: Final = (
     LimitKind("min", ">=", "at least", "least value", "below the minimum", operator.ge),
-    LimitKind("above", ">", "above", "must be above this", "must be above", operator.gt),
-    LimitKind("max", "<=", "at most", "largest value", "above the maximum", operator.le),
-    LimitKind("below", "<", "below", "must be below this", "must be below", operator.lt),
+    LimitKind(
+        "above", ">", "above", "must be above this", "must be above", operator.gt
+    ),
+    LimitKind(
+        "max", "<=", "at most", "largest value", "above the maximum", operator.le
+    ),
+    LimitKind(
+        "below", "<", "below", "must be below this", "must be below", operator.lt
+    ),
 )
 KEYS: Final = tuple(kind.key for kind in KINDS)
 
@@ -64,7 +73,10 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
 
 
 def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
-    """Return the smallest and largest physical value that can be set; None if a calibration has no inverse, and for floats."""
+    """Return the smallest and largest physical value that can be set.
+
+    Returns None if a calibration has no inverse, and for floats.
+    """
     if field.type == "float" or not field.is_invertible:
         return None
     first, last = (Fraction(curve.double(raw)) for raw in field.settable_raws)
@@ -72,25 +84,36 @@ def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
 
 
 def allowed_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
-    """Return the smallest and largest physical value by type and inclusive limits; None for an end without a bound."""
+    """Return the smallest and largest physical value by type and inclusive limits.
+
+    Returns None for an end without a bound.
+    """
     least, most = _type_ends(field)
     low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
     return least if low is None else low, most if high is None else high
 
 
 def _type_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
-    """Return the smallest and largest physical value by type alone; None for floats, flags, enumerations and bytes."""
+    """Return the smallest and largest physical value by type alone.
+
+    Returns None for floats, flags, enumerations and bytes.
+    """
     ends = None
     if field.curve is not None:
         ends = span(field.curve, field)
     elif field.type in ("uint", "int"):
         scaled = steps(field)
-        ends = scaled.span if scaled else (Fraction(field.raw_min), Fraction(field.raw_max))
+        ends = (
+            scaled.span
+            if scaled
+            else (Fraction(field.raw_min), Fraction(field.raw_max))
+        )
     return ends or (None, None)
 
 
 def range_text(field: AnyScalar) -> str:
-    """Return the values that can be set, by type and limits together: ``0 to 6000 rpm``; empty if a float has no limits.
+    """Return the values that can be set, by type and limits together: ``0 to 6000
+    rpm``; empty if a float has no limits.
 
     An end that is excluded itself reads ``above 0`` or ``below 125``.
     """
@@ -110,13 +133,24 @@ _End = tuple[Fraction, bool]  # a value, and whether it is excluded itself
 
 def _least(field: AnyScalar) -> _End | None:
     limits = field.limits or Limits()
-    ends = [(value, False) for value in (_type_ends(field)[0], limits.min) if value is not None]
-    return max([*ends, *([(limits.above, True)] if limits.above is not None else [])], default=None)
+    ends = [
+        (value, False)
+        for value in (_type_ends(field)[0], limits.min)
+        if value is not None
+    ]
+    return max(
+        [*ends, *([(limits.above, True)] if limits.above is not None else [])],
+        default=None,
+    )
 
 
 def _most(field: AnyScalar) -> _End | None:
     limits = field.limits or Limits()
-    ends = [(value, False) for value in (_type_ends(field)[1], limits.max) if value is not None]
+    ends = [
+        (value, False)
+        for value in (_type_ends(field)[1], limits.max)
+        if value is not None
+    ]
     ends += [(limits.below, True)] if limits.below is not None else []
     return min(ends, key=lambda end: (end[0], not end[1]), default=None)
 

@@ -1,6 +1,8 @@
-"""Comments on messages, fields, enumerations and accessors in generated code, as paragraphs of plain text.
+"""Comments on messages, fields, enumerations and accessors in generated code, as
+paragraphs of plain text.
 
-Text in backticks is code; there is no other markup. Backticks in the ICD become apostrophes.
+Text in backticks is code; there is no other markup. Backticks in the ICD become
+apostrophes.
 """
 
 from __future__ import annotations
@@ -35,7 +37,11 @@ _LISTED = 6
 
 
 class Comment(NamedTuple):
-    """Paragraphs of a comment. ``head`` has one or two sentences; ``details`` and ``errata`` are further paragraphs."""
+    """Paragraphs of a comment.
+
+    ``head`` has one or two sentences; ``details`` and ``errata`` are further
+    paragraphs.
+    """
 
     head: str
     details: tuple[str, ...] = ()
@@ -49,7 +55,11 @@ class Comment(NamedTuple):
 
 def one_line(text: str) -> str:
     """Return a text on one line, with single blanks between its words."""
-    return text.strip() if text.isprintable() and "  " not in text else " ".join(text.split())
+    return (
+        text.strip()
+        if text.isprintable() and "  " not in text
+        else " ".join(text.split())
+    )
 
 
 @lru_cache(maxsize=8192)
@@ -64,21 +74,44 @@ def sentence(text: str) -> str:
     return text if not text or text.endswith((".", "?", "!", ":")) else f"{text}."
 
 
-def _comment(head: str, paragraphs: Iterable[str], errata: Iterable[Erratum], elsewhere: Mapping[str, str]) -> Comment:
-    """Return a comment. ``elsewhere`` has the parts that explain an erratum in place of this comment, by its id."""
-    explained = tuple(f"{e.label} {words(e.id)}{e.sureness}: {_explained(e, elsewhere.get(e.id))}" for e in errata)
+def _comment(
+    head: str,
+    paragraphs: Iterable[str],
+    errata: Iterable[Erratum],
+    elsewhere: Mapping[str, str],
+) -> Comment:
+    """Return a comment.
+
+    ``elsewhere`` has the parts that explain an erratum in place of this comment, by its
+    id.
+    """
+    explained = tuple(
+        f"{e.label} {words(e.id)}{e.sureness}: {_explained(e, elsewhere.get(e.id))}"
+        for e in errata
+    )
     return Comment(head, tuple(filter(None, paragraphs)), explained)
 
 
 def _explained(erratum: Erratum, owner: str | None) -> str:
-    """Return title and reason of an erratum, or a reference to the part whose comment has them."""
-    return f"see {words(owner)}." if owner else f"{sentence(erratum.title)} {sentence(erratum.why)}".strip()
+    """Return title and reason of an erratum, or a reference to the part whose comment
+    has them.
+    """
+    return (
+        f"see {words(owner)}."
+        if owner
+        else f"{sentence(erratum.title)} {sentence(erratum.why)}".strip()
+    )
 
 
-def message_comment(message: Message, log_bit: int | None = None, sharing: str = "") -> Comment:
-    """Return the comment of a message: name, kind, ids, length and table; summary; hazard, acknowledge and other facts.
+def message_comment(
+    message: Message, log_bit: int | None = None, sharing: str = ""
+) -> Comment:
+    """Return the comment of a message: name, kind, ids, length and table.
 
-    ``log_bit`` is the bit of the log mask that selects it; ``sharing`` is a sentence on messages with the same id.
+    Summary; hazard, acknowledge and other facts.
+
+    ``log_bit`` is the bit of the log mask that selects it; ``sharing`` is a sentence on
+    messages with the same id.
     """
     ids = str(message.id)
     if message.kind == CONFIGURATION:
@@ -92,17 +125,27 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
     if log_bit is not None:
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += [sharing] if sharing else []
-    facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
+    facts += (
+        f"Repeats {words(part.message)} from {_from(part.at)}."
+        for part in message.contains
+    )
     if message.may_end_early:
         facts.append("Trailing zeros of a frame may be omitted.")
     if message.reserved:
-        facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
+        facts.append(
+            f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved."
+        )
     head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
-    return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata, {})
+    return _comment(
+        head, (sentence(message.summary), " ".join(facts)), message.errata, {}
+    )
 
 
 def condition_text(condition: Condition, message: Message | None = None) -> str:
-    """Return ``Mode is 1 or 2``; with the message of the field, names of an enumeration instead of numbers."""
+    """Return ``Mode is 1 or 2``.
+
+    With the message of the field, names of an enumeration instead of numbers.
+    """
     nodes = {node.name: node for node in message.layout.fixed} if message else {}
     node = nodes.get(condition.field)
     values = [_value_of(node, value) for value in condition.values]
@@ -115,21 +158,34 @@ def _value_of(field: LayoutNode | None, value: int) -> str:
     if field.type == "bool":
         return "true" if value else "false"
     members = field.enum.members if field.enum is not None else ()
-    return next((words(member.name) for member in members if member.value == value and member.to is None), str(value))
+    return next(
+        (
+            words(member.name)
+            for member in members
+            if member.value == value and member.to is None
+        ),
+        str(value),
+    )
 
 
 def presence_comment(field: NodePlace, message: Message) -> str:
-    """Return the comment of the function that returns whether an optional field is present."""
+    """Return the comment of the function that returns whether an optional field is
+    present.
+    """
     return f"Return whether {words(field.name)} is present: if {_conditions(field, message)}."
 
 
 def _conditions(field: NodePlace, message: Message) -> str:
-    return " and ".join(condition_text(condition, message) for condition in field.conditions)
+    return " and ".join(
+        condition_text(condition, message) for condition in field.conditions
+    )
 
 
 def part_comment(part: Message, positions: Sequence[int]) -> str:
     """Return the comment of the function that returns a contained message."""
-    return f"{words(part.name)}, repeated from {' and from '.join(map(_from, positions))}."
+    return (
+        f"{words(part.name)}, repeated from {' and from '.join(map(_from, positions))}."
+    )
 
 
 def _from(at: int) -> str:
@@ -148,9 +204,12 @@ def struct_comment(struct: Struct) -> Comment:
 
 
 def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
-    """Return the comment of an enumeration: name and table; summary; fields with this type.
+    """Return the comment of an enumeration: name and table.
 
-    ``users`` are the messages and structs that have these fields, by the names of the fields.
+    Summary; fields with this type.
+
+    ``users`` are the messages and structs that have these fields, by the names of the
+    fields.
     """
     head = f"{words(enum.name)}: an enumeration.{_table(enum.table)}"
     return _comment(head, (sentence(enum.summary), _used(users)), enum.errata, {})
@@ -158,7 +217,10 @@ def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
 
 def _used(users: Mapping[str, Sequence[str]]) -> str:
     """Return ``Used by Mode in Status and Set Mode; Boot Mode in Status.``"""
-    fields = [f"{words(field)} in {_listed(list(map(words, owners)))}" for field, owners in users.items()]
+    fields = [
+        f"{words(field)} in {_listed(list(map(words, owners)))}"
+        for field, owners in users.items()
+    ]
     if len(fields) > _LISTED:
         fields[_LISTED - 1 :] = [f"{len(fields) - _LISTED + 1} other fields"]
     return f"Used by {'; '.join(fields)}." if fields else ""
@@ -166,17 +228,33 @@ def _used(users: Mapping[str, Sequence[str]]) -> str:
 
 def _listed(names: Sequence[str]) -> str:
     """Return a list of the first names, and the number of others if there are many."""
-    few = names if len(names) <= _LISTED else [*names[: _LISTED - 1], f"{len(names) - _LISTED + 1} others"]
+    few = (
+        names
+        if len(names) <= _LISTED
+        else [*names[: _LISTED - 1], f"{len(names) - _LISTED + 1} others"]
+    )
     return listing(few)
 
 
 def member_comment(member: Member, elsewhere: Mapping[str, str]) -> Comment:
-    """Return the comment of a member of an enumeration: name and value; summary. ``elsewhere`` as for `_comment`."""
-    return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, elsewhere)
+    """Return the comment of a member of an enumeration: name and value; summary.
+
+    ``elsewhere`` as for `_comment`.
+    """
+    return _comment(
+        f"{words(member.name)} ({member.value}).",
+        (sentence(member.summary),),
+        member.errata,
+        elsewhere,
+    )
 
 
-def field_comment(field: NodePlace, elsewhere: Mapping[str, str], message: Message) -> Comment:
-    """Return the comment of a field: name, place, range and unit; summary; conditions, limits and special values.
+def field_comment(
+    field: NodePlace, elsewhere: Mapping[str, str], message: Message
+) -> Comment:
+    """Return the comment of a field: name, place, range and unit.
+
+    Summary; conditions, limits and special values.
 
     ``elsewhere`` as for `_comment`.
     """
@@ -188,21 +266,40 @@ def field_comment(field: NodePlace, elsewhere: Mapping[str, str], message: Messa
     if field.derived is not None:
         head = f"{words(field.name)}{_unit(field)}: derived as `{words(field.formula)}`, computed in doubles; it has no setter."
         return _comment(head, (sentence(field.summary),), field.errata, elsewhere)
-    facts = ["Overlay field: reads bits of other fields and has no setter."] if field.is_read_only else []
+    facts = (
+        ["Overlay field: reads bits of other fields and has no setter."]
+        if field.is_read_only
+        else []
+    )
     if field.conditions:
         facts.append(f"Present only if {_conditions(field, message)}.")
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
         facts.append(_limits(field))
-    facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
-    for part in (part for part in message.layout.counted_parts if part.counter == field.name):
-        plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
+    facts += (
+        f"{special_text(special)}: {sentence(special.meaning)}"
+        for special in field.special
+    )
+    for part in (
+        part for part in message.layout.counted_parts if part.counter == field.name
+    ):
+        plus = (
+            f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}"
+            if part.plus
+            else ""
+        )
         facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
     own_part = next((part for part in parts if part.name == field.name), None)
-    place = _variable_place(field, message, own_part) if own_part else _place(field) + _inner_count(field)
+    place = (
+        _variable_place(field, message, own_part)
+        if own_part
+        else _place(field) + _inner_count(field)
+    )
     head = f"{words(field.name)}: {place}{_meaning(field)}."
-    return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere)
+    return _comment(
+        head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere
+    )
 
 
 def _limits(field: NodePlace) -> str:
@@ -211,7 +308,9 @@ def _limits(field: NodePlace) -> str:
 
 def limits_text(limits: Iterable[Bound], field: NodePlace) -> str:
     """Return limits in words: ``above 0 and at most 10 mA``."""
-    return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + _unit(field, " ")
+    return " and ".join(
+        f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits
+    ) + _unit(field, " ")
 
 
 def _place(field: NodePlace) -> str:
@@ -228,13 +327,22 @@ def _place(field: NodePlace) -> str:
 
 
 def _inner_count(field: NodePlace) -> str:
-    """Return the number of elements of a variable-length array in a struct; empty for any other field."""
+    """Return the number of elements of a variable-length array in a struct.
+
+    Returns empty for any other field.
+    """
     size = field.node.size if isinstance(field.node, Array) else None
-    return f", as many as {words(count_text(size.counter, size.plus))} says" if isinstance(size, Counted) else ""
+    return (
+        f", as many as {words(count_text(size.counter, size.plus))} says"
+        if isinstance(size, Counted)
+        else ""
+    )
 
 
 def _variable_place(field: NodePlace, message: Message, part: VariablePart) -> str:
-    """Return the place of a variable part: ``from byte 4 on, up to 12 elements of 16 bits``."""
+    """Return the place of a variable part: ``from byte 4 on, up to 12 elements of 16
+    bits``.
+    """
     if field.is_bytes and field.count:
         what = f"up to {octets_text(part.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
     elif field.type == "bytes":
@@ -243,34 +351,56 @@ def _variable_place(field: NodePlace, message: Message, part: VariablePart) -> s
         what = f"text of up to {part.most} character{'s' * (part.most != 1)}"
     else:
         what = f"up to {array_text(part.most, field.bits)}"
-    before = [other.name for other in message.layout.parts[:-1] if 8 * other.begin < field.at]
+    before = [
+        other.name for other in message.layout.parts[:-1] if 8 * other.begin < field.at
+    ]
     place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
     counted = "" if part.is_rest else f"as many as {words(part.counter)} says"
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 
 def orders_text(field: NodePlace) -> str:
-    """Return byte order and bit order, ``big-endian``, if the field or its message declares them; else empty."""
-    bit = {"msb0": "bit 0 of a byte is the most significant", "lsb0": "bit 0 of a byte is the least significant"}
-    orders = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(field.bit_order, "")
+    """Return byte order and bit order, ``big-endian``, if the field or its message
+    declares them; else empty.
+    """
+    bit = {
+        "msb0": "bit 0 of a byte is the most significant",
+        "lsb0": "bit 0 of a byte is the least significant",
+    }
+    orders = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(
+        field.bit_order, ""
+    )
     return ", ".join(filter(None, orders))
 
 
 def _meaning(field: NodePlace) -> str:
-    text = f", raw {field.raw_min} to {field.raw_max}" if field.type in ("uint", "int") else ""
+    text = (
+        f", raw {field.raw_min} to {field.raw_max}"
+        if field.type in ("uint", "int")
+        else ""
+    )
     if field.type == "float":
         text = f", {field.bits}-bit float"
     if not field.has_formula:
         return text + _unit(field, ", in ")
     how = f"`{words(field.formula)}`"
     if field.curve is not None:
-        how = f"by points {points_text(field.curve, 6)}" if field.curve.points else f"{how}, in doubles"
+        how = (
+            f"by points {points_text(field.curve, 6)}"
+            if field.curve.points
+            else f"{how}, in doubles"
+        )
     range = span_text(field)
-    return f"{text}; physical {how}" + (f", {range}{_unit(field, ' ')}" if range else _unit(field, ", in "))
+    return f"{text}; physical {how}" + (
+        f", {range}{_unit(field, ' ')}" if range else _unit(field, ", in ")
+    )
 
 
 def span_text(field: NodePlace) -> str:
-    """Return the range of the physical values, ``-327.68 to 327.67``; empty for a calibration without an inverse."""
+    """Return the range of the physical values, ``-327.68 to 327.67``.
+
+    Returns empty for a calibration without an inverse.
+    """
     if field.curve is not None:
         ends = span(field.curve, field)
         return " to ".join(repr(float(end)) for end in ends) if ends else ""
@@ -279,7 +409,8 @@ def span_text(field: NodePlace) -> str:
 
 
 def takes_text(field: NodePlace, is_narrow: bool) -> str:
-    """Return the values that setters and encoders accept: ``0 to 6553.5 m/s``, ``Mode, 0 to 15``.
+    """Return the values that setters and encoders accept: ``0 to 6553.5 m/s``, ``Mode,
+    0 to 15``.
 
     The raw range is included if the type can store other raw values.
     """
@@ -289,7 +420,11 @@ def takes_text(field: NodePlace, is_narrow: bool) -> str:
     raw, span = f"{field.raw_min} to {field.raw_max}", span_text(field)
     if field.enum is not None:
         return f"{words(field.enum.name)}, {raw}"
-    return f"{span}{unit}{f', raw {raw}' if is_narrow else ''}" if span else f"{raw}{'' if field.has_formula else unit}"
+    return (
+        f"{span}{unit}{f', raw {raw}' if is_narrow else ''}"
+        if span
+        else f"{raw}{'' if field.has_formula else unit}"
+    )
 
 
 @lru_cache(maxsize=4096)

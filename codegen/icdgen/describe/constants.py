@@ -16,14 +16,21 @@ MOST_WORDS = 5
 
 
 class Constant(NamedTuple):
-    """Constant of a field. Its name in snake case is unique in the message: ``timeout_no_timeout``, ``rate_deg_per_s_below``."""
+    """Constant of a field.
+
+    Its name in snake case is unique in the message: ``timeout_no_timeout``,
+    ``rate_deg_per_s_below``.
+    """
 
     key: str  # "const" | "special" | the key of a limit
     name: str
     value: int | Fraction
-    is_raw: bool  # a raw value (an int); else a physical value, or a limit beyond the raw type
+    # A raw value (an int); else a physical value, or a limit beyond the raw type.
+    is_raw: bool
     comment: str
-    number: str = ""  # of a float with the bits ``value``: `nan`, `inf`, `-inf`, or a decimal
+    number: str = (
+        ""  # of a float with the bits ``value``: `nan`, `inf`, `-inf`, or a decimal
+    )
 
     @property
     def double(self) -> float:
@@ -31,23 +38,47 @@ class Constant(NamedTuple):
         return self.value.numerator / self.value.denominator
 
 
-def constants(field: NodePlace, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
+def constants(
+    field: NodePlace, name: str, physical_name: str, vocabulary: tuple[str, ...]
+) -> Iterator[Constant]:
     """List the constants of a field with these names of its raw and physical value."""
     title = words(field.name)
     if field.const is not None:
-        yield Constant("const", f"{name}_const", field.const, True, f"{title}: the only valid raw value.")
+        yield Constant(
+            "const",
+            f"{name}_const",
+            field.const,
+            True,
+            f"{title}: the only valid raw value.",
+        )
     taken = set()
     for special in field.special:
         meaning = naming.words(special.meaning, vocabulary)
         end = naming.snake(meaning)
         if not 0 < len(meaning) <= MOST_WORDS or end in taken:
-            end = f"special_{special.number or special.value}".replace("-", "minus_").replace(".", "_").replace("+", "")
+            end = (
+                f"special_{special.number or special.value}".replace("-", "minus_")
+                .replace(".", "_")
+                .replace("+", "")
+            )
         taken.add(end)
         comment = f"{title}: {sentence(special.meaning)}"
-        yield Constant("special", f"{name}_{end}", special.value, True, comment, special.number)
+        yield Constant(
+            "special", f"{name}_{end}", special.value, True, comment, special.number
+        )
     unit = f" in {words(field.unit.symbol)}" if field.unit else ""
     for bound in bounds(field.limits):
         value, has_raw = bound.value, not field.has_formula and field.type != "float"
-        is_raw = has_raw and value.denominator == 1 and field.raw_min <= value <= field.raw_max
+        is_raw = (
+            has_raw
+            and value.denominator == 1
+            and field.raw_min <= value <= field.raw_max
+        )
         end = f"{physical_name if field.has_formula else name}_{bound.key}"
-        yield Constant(bound.key, end, int(value) if is_raw else value, is_raw, f"{title}{unit}: {bound.kind.title}.")
+        yield Constant(
+            bound.key,
+            end,
+            int(value) if is_raw else value,
+            is_raw,
+            f"{title}{unit}: {bound.kind.title}.",
+        )

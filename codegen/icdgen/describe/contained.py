@@ -1,4 +1,6 @@
-"""Messages that a composite message contains (key ``contains``), and where their values are in it."""
+"""Messages that a composite message contains (key ``contains``), and where their values
+are in it.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +12,11 @@ from icdgen.describe.nodes import MessageDescription
 
 
 class CopiedMember(NamedTuple):
-    """Member of a contained message, and the fields of the composite message that have its value.
+    """Member of a contained message, and the fields of the composite message that have
+    its value.
 
-    If both are arrays of the same size, the source is the array; else each element has a source.
+    If both are arrays of the same size, the source is the array; else each element has
+    a source.
     """
 
     member: FieldDescription
@@ -28,26 +32,48 @@ class ContainedDescription(NamedTuple):
     """Message that a composite message contains, once or several times."""
 
     message: MessageDescription
-    positions: tuple[int, ...]  # its first bit in the composite, each time, in the order of the ICD
+    positions: tuple[
+        int, ...
+    ]  # its first bit in the composite, each time, in the order of the ICD
 
-    def copies(self, composite: MessageDescription, begin: int) -> Iterator[CopiedMember]:
-        """List its members, opening structs, with their sources in a composite from bit ``begin`` on."""
+    def copies(
+        self, composite: MessageDescription, begin: int
+    ) -> Iterator[CopiedMember]:
+        """List its members, opening structs, with their sources in a composite from bit
+        ``begin`` on.
+        """
         fields = {field.model.at: field for field in composite.fields}
-        arrays = {field.model.at: field for field in composite.walk(Into.ARRAYS_OF_STRUCTS) if field.count}
-        # The composite declares the same bits in lines of its own, so its fields are found by their positions.
+        arrays = {
+            field.model.at: field
+            for field in composite.walk(Into.ARRAYS_OF_STRUCTS)
+            if field.count
+        }
+        # The composite declares the same bits in lines of its own, so its fields are
+        # found by their positions.
         for member in self.message.walk(Into.ARRAYS_OF_STRUCTS):
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
             if array is not None and array.count == member.count:
                 yield CopiedMember(member, (array,))
             else:
-                yield CopiedMember(member, tuple(fields[begin + element.model.at] for element in member.elements))
+                yield CopiedMember(
+                    member,
+                    tuple(
+                        fields[begin + element.model.at] for element in member.elements
+                    ),
+                )
 
 
-def contained_messages(composite: MessageDescription) -> tuple[ContainedDescription, ...]:
-    """Return the messages that a composite message contains, except messages without fields."""
+def contained_messages(
+    composite: MessageDescription,
+) -> tuple[ContainedDescription, ...]:
+    """Return the messages that a composite message contains, except messages without
+    fields.
+    """
     positions: dict[MessageDescription, list[int]] = {}
     for part, begin in composite.contained:
         if part.members:
             positions.setdefault(part, []).append(begin)
-    return tuple(ContainedDescription(part, tuple(bits)) for part, bits in positions.items())
+    return tuple(
+        ContainedDescription(part, tuple(bits)) for part, bits in positions.items()
+    )

@@ -1,4 +1,7 @@
-"""Derived values as statements. Each statement computes a local variable by one operation on two operands."""
+"""Derived values as statements.
+
+Each statement computes a local variable by one operation on two operands.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,8 @@ class Statement(NamedTuple):
 class Derived(NamedTuple):
     """Computation of a derived value.
 
-    ``fields`` are local variables with the physical values of fields as doubles; without a scale the raw values.
+    ``fields`` are local variables with the physical values of fields as doubles;
+    without a scale the raw values.
     """
 
     fields: tuple[tuple[str, FieldDescription], ...]
@@ -31,18 +35,25 @@ class Derived(NamedTuple):
 
 
 def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
-    """Return the computation of a derived value. No local variable has a name of ``taken``."""
+    """Return the computation of a derived value.
+
+    No local variable has a name of ``taken``.
+    """
     how = field.model.derived
     assert how is not None
     members = {member.model.name: member for member in field.message.declared_members}
     names: list[str] = []
     for name in how.fields:
         names.append(_free(members[name].name, {*taken, *names}))
-    fields = tuple((name, members[of]) for name, of in zip(names, how.fields, strict=True))
+    fields = tuple(
+        (name, members[of]) for name, of in zip(names, how.fields, strict=True)
+    )
     row: list[Operand] = [*names, *how.numbers]
     statements = []
     for number, (operator, left, right) in enumerate(how.steps, 1):
-        statements.append(Statement(_free(f"step_{number}", names), operator, row[left], row[right]))
+        statements.append(
+            Statement(_free(f"step_{number}", names), operator, row[left], row[right])
+        )
         row.append(statements[-1].name)
     result = row[-1]
     assert isinstance(result, str)

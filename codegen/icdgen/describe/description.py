@@ -1,7 +1,7 @@
 """Fields, messages and structs.
 
-A message or struct describes its members as declared. A member describes the fields below it on demand: elements of arrays,
-and members of structs.
+A message or struct describes its members as declared. A member describes the fields
+below it on demand: elements of arrays, and members of structs.
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ from icdgen.icd.places import NodePlace, places_of
 from icdgen.once import cached_property
 
 _OF_PLACE = ("needs", "elements", "instances", "element_struct", "comment")
-"""Cached attributes that depend on the place of a field. `FieldDescription.moved` drops them."""
+"""Cached attributes that depend on the place of a field.
+
+`FieldDescription.moved` drops them.
+"""
 
 
 class Into(enum.Enum):
@@ -36,22 +39,31 @@ class Into(enum.Enum):
 
 
 class Need(NamedTuple):
-    """Condition of an optional field: another field has one of these raw values, in ascending order."""
+    """Condition of an optional field: another field has one of these raw values, in
+    ascending order.
+    """
 
     field: FieldDescription
     values: tuple[int, ...]
 
 
 class FieldDescription(ScalarDescription):
-    """Field of a message or struct, or a field below one: an element of an array, or a member of a struct.
+    """Field of a message or struct, or a field below one: an element of an array, or a
+    member of a struct.
 
-    Names are computed at once: sets of ICDs have ten thousand fields, and every output needs the names of all.
+    Names are computed at once: sets of ICDs have ten thousand fields, and every output
+    needs the names of all.
     """
 
     member: str
-    """Name in an expression, in any language: ``temperatures[3]``, ``satellites[2].gnss``."""
+    """Name in an expression, in any language: ``temperatures[3]``,
+    ``satellites[2].gnss``.
+    """
     holder: str
-    """Name of the enclosing struct in an expression, ``satellites[2]``; empty for members of the message itself."""
+    """Name of the enclosing struct in an expression, ``satellites[2]``.
+
+    Empty for members of the message itself.
+    """
     declaration: FieldDescription
     """Field as the struct or message declares it; for an element, the array."""
     array: FieldDescription | None
@@ -59,9 +71,13 @@ class FieldDescription(ScalarDescription):
     member_of_message: FieldDescription
     """Member of the message that the field is, or is in."""
 
-    def __init__(self, place: NodePlace, message: Composite[Any], enum: EnumDescription | None) -> None:
+    def __init__(
+        self, place: NodePlace, message: Composite[Any], enum: EnumDescription | None
+    ) -> None:
         owner = f"field `{place.name}` of `{message.model.name}`"
-        super().__init__(place, enum, message.node.vocabulary, owner, message.node.orders)
+        super().__init__(
+            place, enum, message.node.vocabulary, owner, message.node.orders
+        )
         self.message = message
         self.struct = None if place.struct is None else message.struct_of(place.struct)
         self.member = self.name
@@ -71,12 +87,21 @@ class FieldDescription(ScalarDescription):
         """Whether the field is in an element of an array of structs."""
 
     def _element(self, place: NodePlace) -> FieldDescription:
-        """Return the description of an element of an array; for any other field the field itself."""
+        """Return the description of an element of an array.
+
+        For any other field the field itself.
+        """
         if place is self.model:
             return self
         element = self.moved(place)
-        element.name, element.member = f"{self.name}_{place.index}", f"{self.member}[{place.index}]"
-        element.array, element.is_repeated = self, self.is_repeated or self.struct is not None
+        element.name, element.member = (
+            f"{self.name}_{place.index}",
+            f"{self.member}[{place.index}]",
+        )
+        element.array, element.is_repeated = (
+            self,
+            self.is_repeated or self.struct is not None,
+        )
         return element
 
     def _inner(self, place: NodePlace) -> FieldDescription:
@@ -85,15 +110,24 @@ class FieldDescription(ScalarDescription):
         declared = self.struct.member_for[id(place.node)]
         inner = declared.moved(place)
         inner.message, inner.node_orders = self.message, self.node_orders
-        inner.member_of_message, inner.is_repeated = self.member_of_message, self.is_repeated
-        inner.name, inner.member = f"{self.name}_{declared.name}", f"{self.member}.{declared.member}"
+        inner.member_of_message, inner.is_repeated = (
+            self.member_of_message,
+            self.is_repeated,
+        )
+        inner.name, inner.member = (
+            f"{self.name}_{declared.name}",
+            f"{self.member}.{declared.member}",
+        )
         inner.holder, inner.declaration = self.member, declared
         return inner
 
     def moved(self, place: NodePlace) -> FieldDescription:
         """Return the description of a field with the same declaration at another place."""
         other = copy(self)
-        other.model, other.owner = place, f"field `{place.name}` of `{self.message.model.name}`"
+        other.model, other.owner = (
+            place,
+            f"field `{place.name}` of `{self.message.model.name}`",
+        )
         for name in _OF_PLACE:
             other.__dict__.pop(name, None)
         return other
@@ -117,14 +151,21 @@ class FieldDescription(ScalarDescription):
 
     @property
     def is_in_earlier_part(self) -> bool:
-        """Whether the field is a variable part with another one behind it, or in such a part."""
-        return any(self.member_of_message.model.node is node for node in self.message.model.layout.sequence[:-1])
+        """Whether the field is a variable part with another one behind it, or in such a
+        part.
+        """
+        return any(
+            self.member_of_message.model.node is node
+            for node in self.message.model.layout.sequence[:-1]
+        )
 
     @property
     def initial_count(self) -> int:
-        """Number of elements of an array, or of bytes of variable length, in a new message.
+        """Number of elements of an array, or of bytes of variable length, in a new
+        message.
 
-        The last variable part has its fewest. Earlier parts have all: the constants of their elements are set in advance.
+        The last variable part has its fewest. Earlier parts have all: the constants of
+        their elements are set in advance.
         """
         if self.is_in_last_part:
             assert self.message.last_part is not None
@@ -133,7 +174,9 @@ class FieldDescription(ScalarDescription):
 
     @property
     def is_initially_present(self) -> bool:
-        """Whether a new message has the field: the initial values of other fields meet its conditions."""
+        """Whether a new message has the field: the initial values of other fields meet
+        its conditions.
+        """
         return all(need.field.initial_raw in need.values for need in self.needs)
 
     @property
@@ -144,22 +187,34 @@ class FieldDescription(ScalarDescription):
 
     @property
     def is_initially_zero(self) -> bool:
-        """Whether all of it is 0 or absent in a new message. A single struct has the initial values of its own members."""
+        """Whether all of it is 0 or absent in a new message.
+
+        A single struct has the initial values of its own members.
+        """
         if self.model.conditions:
             return not self.is_initially_present
         if self.struct is not None and not self.is_in_last_part:
             return True
-        return not self.has_initial_value or (self.struct is None and self.is_in_last_part and not self.initial_count)
+        return not self.has_initial_value or (
+            self.struct is None and self.is_in_last_part and not self.initial_count
+        )
 
     @property
     def needs_range_check(self) -> bool:
-        """Whether its type can store raw values that do not fit the field; for a struct, whether that of a member can."""
+        """Whether its type can store raw values that do not fit the field.
+
+        For a struct, whether that of a member can.
+        """
         return self.is_narrow if self.struct is None else self.struct.is_narrow
 
     @cached_property
     def needs(self) -> tuple[Need, ...]:
         """Conditions of an optional field, which must all be met."""
-        members = {member.model.name: member for member in self.message.members} if self.model.conditions else {}
+        members = (
+            {member.model.name: member for member in self.message.members}
+            if self.model.conditions
+            else {}
+        )
         return tuple(
             Need(members[condition.field], tuple(sorted(condition.values)))
             for condition in self.model.conditions
@@ -173,10 +228,16 @@ class FieldDescription(ScalarDescription):
 
     @cached_property
     def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
-        """Members of a struct where it stands: once, or for each element of an array; empty without a struct."""
+        """Members of a struct where it stands: once, or for each element of an array.
+
+        Empty without a struct.
+        """
         if self.struct is None:
             return ()
-        return tuple(tuple(map(element._inner, element.model.inner())) for element in self.elements)
+        return tuple(
+            tuple(map(element._inner, element.model.inner()))
+            for element in self.elements
+        )
 
     def walk(self, into: Into) -> Iterator[FieldDescription]:
         """List the fields that it consists of, in the order of the ICD."""
@@ -191,32 +252,56 @@ class FieldDescription(ScalarDescription):
 
     @property
     def scalars(self) -> Iterator[FieldDescription]:
-        """All scalars that it consists of: itself, each element of an array, each field of a struct."""
+        """All scalars that it consists of: itself, each element of an array, each field
+        of a struct.
+        """
         return self.walk(Into.ALL_ARRAYS)
 
     @cached_property
     def element_struct(self) -> StructDescription | None:
-        """Struct of the elements of an array, in the orders in effect here; None for any other field."""
-        return None if self.struct is None or not self.count else self.message.element_struct_of(self, self.struct)
+        """Struct of the elements of an array, in the orders in effect here.
+
+        None for any other field.
+        """
+        return (
+            None
+            if self.struct is None or not self.count
+            else self.message.element_struct_of(self, self.struct)
+        )
 
     @cached_property
     def constants(self) -> tuple[Constant, ...]:
-        """Constants of the field by name: its only valid value, values with a meaning, limits."""
+        """Constants of the field by name: its only valid value, values with a meaning,
+        limits.
+        """
         field = self.model
         if self.declaration is not self:
             return self.declaration.constants
         if field.const is None and not field.special and field.limits is None:
             return ()
-        return tuple(constants(field, self.declared_name, self.physical_name, self.message.node.vocabulary))
+        return tuple(
+            constants(
+                field,
+                self.declared_name,
+                self.physical_name,
+                self.message.node.vocabulary,
+            )
+        )
 
     @cached_property
     def comment(self) -> Comment:
-        elsewhere = owners_elsewhere(self.model, self.message.first_owners) if self.model.errata else {}
+        elsewhere = (
+            owners_elsewhere(self.model, self.message.first_owners)
+            if self.model.errata
+            else {}
+        )
         return field_comment(self.model, elsewhere, self.message.model)
 
 
 class Chunk(NamedTuple):
-    """Bytes of an element that are contiguous in every frame: bytes of fixed size, then the elements of an array."""
+    """Bytes of an element that are contiguous in every frame: bytes of fixed size, then
+    the elements of an array.
+    """
 
     begin: int  # in the longest element
     fixed: int
@@ -228,7 +313,8 @@ class VariablePartDescription(NamedTuple):
 
     model: VariablePart
     field: FieldDescription  # the array, or the bytes or text
-    counter: FieldDescription  # number of elements: a field of the frame, or a count that follows from its length
+    # Number of elements: a field of the frame, or a count that follows from its length.
+    counter: FieldDescription
     inner: tuple[VariablePartDescription, ...] = ()
     """Variable-length arrays in an element, placed as in the longest element."""
 
@@ -239,18 +325,28 @@ class VariablePartDescription(NamedTuple):
 
     @property
     def is_rest(self) -> bool:
-        """Whether the length of the frame gives the number of elements, and no field of the frame."""
+        """Whether the length of the frame gives the number of elements, and no field of
+        the frame.
+        """
         return self.counter.model.is_count
 
     @property
     def counter_tests(self) -> tuple[LengthTest, ...]:
-        """Comparisons that every valid value of the counter passes and another value of its type can fail."""
+        """Comparisons that every valid value of the counter passes and another value of
+        its type can fail.
+        """
         tests = length_tests(range(self.model.low, self.model.high + 1))
-        return tuple(test for test in tests if test.kind != "at most" or test.value < self.counter.storage.max)
+        return tuple(
+            test
+            for test in tests
+            if test.kind != "at most" or test.value < self.counter.storage.max
+        )
 
     @property
     def needs_count_check(self) -> bool:
-        """Whether the type of the counter can store numbers of elements that the part cannot have."""
+        """Whether the type of the counter can store numbers of elements that the part
+        cannot have.
+        """
         return bool(self.counter_tests)
 
     @property
@@ -260,12 +356,16 @@ class VariablePartDescription(NamedTuple):
 
     @property
     def bytes_beyond_fewest(self) -> ElementBytes:
-        """Bytes up to the end of the part in the longest frame, by the number of elements beyond the fewest."""
+        """Bytes up to the end of the part in the longest frame, by the number of
+        elements beyond the fewest.
+        """
         return ElementBytes(self.model.shortest, self.model.step)
 
     @property
     def chunks(self) -> tuple[Chunk, ...]:
-        """Runs of bytes of an element that are contiguous in every frame, at their places in the longest element."""
+        """Runs of bytes of an element that are contiguous in every frame, at their
+        places in the longest element.
+        """
         chunks, begin = [], 0
         for inner in self.inner:
             chunks.append(Chunk(begin, inner.model.begin - begin, inner))
@@ -275,7 +375,10 @@ class VariablePartDescription(NamedTuple):
 
     @property
     def counter_of_text(self) -> int:
-        """Value of the counter minus number of characters of a text. The text is padded to the fewest characters."""
+        """Value of the counter minus number of characters of a text.
+
+        The text is padded to the fewest characters.
+        """
         return -self.model.plus
 
 
@@ -286,7 +389,12 @@ class Composite(Named[WithFields]):
     """Message or struct that an ICD node declares."""
 
     def __init__(
-        self, declared: Declarations, model: WithFields, node: Node, kind: str, outer: Orders = UNDECLARED
+        self,
+        declared: Declarations,
+        model: WithFields,
+        node: Node,
+        kind: str,
+        outer: Orders = UNDECLARED,
     ) -> None:
         super().__init__(model, model, node.vocabulary, f"{kind} `{model.name}`")
         self._declared, self.node = declared, node
@@ -303,11 +411,15 @@ class Composite(Named[WithFields]):
 
     @cached_property
     def declared_members(self) -> tuple[FieldDescription, ...]:
-        """Members, overlay fields and derived values as declared, in the order of the ICD."""
+        """Members, overlay fields and derived values as declared, in the order of the
+        ICD.
+        """
         return tuple(map(self._member, places_of(self.model.layout, self.outer_orders)))
 
     def _member(self, place: NodePlace) -> FieldDescription:
-        return FieldDescription(place, self, self._declared.enum(place.enum) if place.enum else None)
+        return FieldDescription(
+            place, self, self._declared.enum(place.enum) if place.enum else None
+        )
 
     def struct_of(self, layout: Layout) -> StructDescription:
         """Return the struct that has a layout."""
@@ -321,29 +433,44 @@ class Composite(Named[WithFields]):
 
     @cached_property
     def read_only_members(self) -> tuple[FieldDescription, ...]:
-        """Overlay fields and derived values: getters compute them, and nothing sets them."""
-        return tuple(member for member in self.declared_members if member.model.is_read_only)
+        """Overlay fields and derived values: getters compute them, and nothing sets
+        them.
+        """
+        return tuple(
+            member for member in self.declared_members if member.model.is_read_only
+        )
 
     @cached_property
     def overlays(self) -> tuple[FieldDescription, ...]:
         """Overlay fields, which read bits of other fields."""
-        return tuple(field for field in self.read_only_members if field.model.derived is None)
+        return tuple(
+            field for field in self.read_only_members if field.model.derived is None
+        )
 
     @cached_property
     def derived(self) -> tuple[FieldDescription, ...]:
         """Values that are computed from other fields: see `icdgen.describe.derived`."""
-        return tuple(field for field in self.read_only_members if field.model.derived is not None)
+        return tuple(
+            field for field in self.read_only_members if field.model.derived is not None
+        )
 
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:
-        """Members that own bits or count elements, in the order of the ICD; an array is one member, and so is a struct."""
+        """Members that own bits or count elements, in the order of the ICD.
+
+        An array is one member, and so is a struct.
+        """
         if not self.read_only_members:
             return self.declared_members
-        return tuple(member for member in self.declared_members if not member.model.is_read_only)
+        return tuple(
+            member for member in self.declared_members if not member.model.is_read_only
+        )
 
     @property
     def fields(self) -> tuple[FieldDescription, ...]:
-        """All scalars of `members`: each element of an array and each field of a struct."""
+        """All scalars of `members`: each element of an array and each field of a
+        struct.
+        """
         return self.walk(Into.ALL_ARRAYS)
 
     @property
@@ -352,27 +479,47 @@ class Composite(Named[WithFields]):
         return None
 
     def walk(self, into: Into) -> tuple[FieldDescription, ...]:
-        """Return the fields of `members` in the order of the ICD, as far as `into` goes."""
+        """Return the fields of `members` in the order of the ICD, as far as `into`
+        goes.
+        """
         if into not in self._walks:
-            self._walks[into] = tuple(field for member in self.members for field in member.walk(into))
+            self._walks[into] = tuple(
+                field for member in self.members for field in member.walk(into)
+            )
         return self._walks[into]
 
-    def element_struct_of(self, array: FieldDescription, struct: StructDescription) -> StructDescription:
+    def element_struct_of(
+        self, array: FieldDescription, struct: StructDescription
+    ) -> StructDescription:
         """Return the struct of the elements of an array, in the orders in effect there."""
         orders = array.model.orders_in_effect(self.node.orders)
-        element_struct = StructDescription(self._declared, struct.model, struct.node, orders)
+        element_struct = StructDescription(
+            self._declared, struct.model, struct.node, orders
+        )
         element_struct.using_node = self.using_node
         return element_struct
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:
         """Enumerations of its own members, each once, without enumerations in structs."""
-        return tuple(dict.fromkeys(member.enum for member in self.declared_members if member.enum is not None))
+        return tuple(
+            dict.fromkeys(
+                member.enum
+                for member in self.declared_members
+                if member.enum is not None
+            )
+        )
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
         """Structs of its own members, each once."""
-        return tuple(dict.fromkeys(member.struct for member in self.declared_members if member.struct is not None))
+        return tuple(
+            dict.fromkeys(
+                member.struct
+                for member in self.declared_members
+                if member.struct is not None
+            )
+        )
 
     @property
     def is_narrow(self) -> bool:
@@ -381,7 +528,9 @@ class Composite(Named[WithFields]):
 
     @property
     def range_check_bits(self) -> int:
-        """Width of the widest type that can store raw values which do not fit their field; 0 without such a type."""
+        """Width of the widest type that can store raw values which do not fit their
+        field; 0 without such a type.
+        """
         widths = (
             member.struct.range_check_bits if member.struct else member.storage.bits
             for member in self.members
@@ -393,24 +542,41 @@ class Composite(Named[WithFields]):
     def has_floats(self) -> bool:
         """Whether a member is a float, or a struct with one."""
         return any(
-            member.struct.has_floats if member.struct else member.model.type == "float" for member in self.members
+            member.struct.has_floats if member.struct else member.model.type == "float"
+            for member in self.members
         )
 
     @cached_property
     def has_wide_steps(self) -> bool:
-        """Whether the scale of one of its own members needs arithmetic of more than 128 bits."""
-        return any(field.steps is not None and field.steps.is_wide for field in self.declared_members)
+        """Whether the scale of one of its own members needs arithmetic of more than 128
+        bits.
+        """
+        return any(
+            field.steps is not None and field.steps.is_wide
+            for field in self.declared_members
+        )
 
     @cached_property
     def first_owners(self) -> dict[str, Thing]:
-        """First part with each erratum, by its id. The comment of that part explains the erratum."""
-        return first_owners((self.model, *(member.model for member in self.declared_members)))
+        """First part with each erratum, by its id.
+
+        The comment of that part explains the erratum.
+        """
+        return first_owners(
+            (self.model, *(member.model for member in self.declared_members))
+        )
 
 
 class StructDescription(Composite[Struct]):
     """Struct."""
 
-    def __init__(self, declared: Declarations, struct: Struct, node: Node, outer: Orders = UNDECLARED) -> None:
+    def __init__(
+        self,
+        declared: Declarations,
+        struct: Struct,
+        node: Node,
+        outer: Orders = UNDECLARED,
+    ) -> None:
         super().__init__(declared, struct, node, "struct", outer)
 
     @cached_property
@@ -419,14 +585,19 @@ class StructDescription(Composite[Struct]):
 
 
 class Declarations:
-    """Structs and enumerations of a set of ICDs. Each is described once, whatever uses it."""
+    """Structs and enumerations of a set of ICDs.
+
+    Each is described once, whatever uses it.
+    """
 
     def __init__(self, icd: Icd) -> None:
         self._icd = icd
         self._enum_bits = enum_widths(icd)
         self._enums: dict[tuple[str, str], EnumDescription] = {}
         self._structs = {
-            id(struct.layout): StructDescription(self, struct, node) for node in icd.nodes for struct in node.structs
+            id(struct.layout): StructDescription(self, struct, node)
+            for node in icd.nodes
+            for struct in node.structs
         }
 
     def struct_of(self, layout: Layout) -> StructDescription:
@@ -437,5 +608,7 @@ class Declarations:
         """Return the description of an enumeration."""
         key = enum.node, enum.name
         if key not in self._enums:
-            self._enums[key] = EnumDescription(enum, self._icd.node(enum.node), self._enum_bits[key], self._icd)
+            self._enums[key] = EnumDescription(
+                enum, self._icd.node(enum.node), self._enum_bits[key], self._icd
+            )
         return self._enums[key]

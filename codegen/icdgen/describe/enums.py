@@ -12,16 +12,23 @@ from icdgen.icd.node_cache import cached_by_node
 from icdgen.icd.places import places_in
 from icdgen.once import cached_property
 
-Users = dict[str, list[str]]  # name of a field -> names of the messages and structs that have it
+Users = dict[
+    str, list[str]
+]  # name of a field -> names of the messages and structs that have it
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
-    """Return the bits that each enumeration needs, by its node and name: for its members and for all fields of its type."""
-    # A field can be wider than the largest member: the type must also store values without a name.
+    """Return the bits that each enumeration needs, by its node and name: for its
+    members and for all fields of its type.
+    """
+    # A field can be wider than the largest member: the type must also store values
+    # without a name.
     widths: dict[tuple[str, str], int] = {}
     for node in icd.nodes:
         for enum in node.enums:
-            widths[enum.node, enum.name] = max(widths.get((enum.node, enum.name), 1), enum.bits)
+            widths[enum.node, enum.name] = max(
+                widths.get((enum.node, enum.name), 1), enum.bits
+            )
         composites: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
         for composite in composites:
             for place in places_in(composite.layout):
@@ -33,41 +40,69 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
 
 @cached_by_node
 def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
-    """Return the fields of a node that have an enumeration as their type, by node and name of the enumeration."""
+    """Return the fields of a node that have an enumeration as their type, by node and
+    name of the enumeration.
+    """
     users_of_enums: dict[tuple[str, str], Users] = {}
     composites: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
     for composite in composites:
         for place in places_in(composite.layout):
             if place.enum is not None:
-                users = users_of_enums.setdefault((place.enum.node, place.enum.name), {})
+                users = users_of_enums.setdefault(
+                    (place.enum.node, place.enum.name), {}
+                )
                 users.setdefault(place.name, []).append(composite.name)
     return users_of_enums
 
 
 class EnumDescription(Named[Enum]):
-    """Enumeration of ``node``. Its ``storage`` can store every value, with or without a name."""
+    """Enumeration of ``node``.
+
+    Its ``storage`` can store every value, with or without a name.
+    """
 
     def __init__(self, enum: Enum, node: Node, bits: int, icd: Icd) -> None:
         super().__init__(enum, enum, node.vocabulary, f"enumeration `{enum.name}`")
-        self.icd, self.node, self.storage = icd, node, Storage(holding(bits), enum.signed)
+        self.icd, self.node, self.storage = (
+            icd,
+            node,
+            Storage(holding(bits), enum.signed),
+        )
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
-        """Members in the order of the manual. A range has two, its ends, each with a name of its own."""
-        return tuple(MemberDescription(end, self, member) for member in self.model.members for end in member.ends)
+        """Members in the order of the manual.
+
+        A range has two, its ends, each with a name of its own.
+        """
+        return tuple(
+            MemberDescription(end, self, member)
+            for member in self.model.members
+            for end in member.ends
+        )
 
     @cached_property
     def ranges(self) -> tuple[Member, ...]:
-        """Ranges with values between their ends. Code has no constants for these values and shows the name of the range."""
-        return tuple(member for member in self.model.members if member.last - member.value > 1)
+        """Ranges with values between their ends.
+
+        Code has no constants for these values and shows the name of the range.
+        """
+        return tuple(
+            member for member in self.model.members if member.last - member.value > 1
+        )
 
     def range_name(self, member: Member) -> str:
         """Return the name of a range in snake case."""
-        return naming.snake(naming.words(member.identifier or member.name, self.node.vocabulary))
+        return naming.snake(
+            naming.words(member.identifier or member.name, self.node.vocabulary)
+        )
 
     @cached_property
     def first_owners(self) -> dict[str, Thing]:
-        """First part with each erratum, by its id. The comment of that part explains the erratum."""
+        """First part with each erratum, by its id.
+
+        The comment of that part explains the erratum.
+        """
         return first_owners((self.model, *(member.model for member in self.members)))
 
     @cached_property
@@ -76,23 +111,39 @@ class EnumDescription(Named[Enum]):
 
     @property
     def users(self) -> Users:
-        """Fields of its node that have it as their type, and the messages and structs that have these fields."""
+        """Fields of its node that have it as their type, and the messages and structs
+        that have these fields.
+        """
         return holders(self.icd, self.node).get((self.model.node, self.model.name), {})
 
     def member(self, value: int) -> MemberDescription | None:
         """Return the first member with a value; None if no member has it."""
-        return next((member for member in self.members if member.model.value == value), None)
+        return next(
+            (member for member in self.members if member.model.value == value), None
+        )
 
 
 class MemberDescription(Named[Member]):
-    """Value of an enumeration that has a name: a member, or the first or last value of a range (``declared``)."""
+    """Value of an enumeration that has a name: a member, or the first or last value of
+    a range (``declared``).
+    """
 
     def __init__(self, member: Member, enum: EnumDescription, declared: Member) -> None:
-        super().__init__(member, declared, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
+        super().__init__(
+            member,
+            declared,
+            enum.node.vocabulary,
+            f"member `{member.name}` of `{enum.model.name}`",
+        )
         self.enum = enum
 
     @cached_property
     def comment(self) -> Comment:
         return member_comment(
-            self.model, owners_elsewhere(self.model, self.enum.first_owners) if self.model.errata else {}
+            self.model,
+            (
+                owners_elsewhere(self.model, self.enum.first_owners)
+                if self.model.errata
+                else {}
+            ),
         )

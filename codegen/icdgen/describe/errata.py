@@ -13,7 +13,9 @@ Thing = Message | Struct | NodePlace | Enum | Member
 
 def errata_of_message(message: Message) -> list[Erratum]:
     """Return the errata of a message, of its structs and of its fields, each once."""
-    return _each_once((message, *places_in(message.layout), *scalars_in(message.layout)))
+    return _each_once(
+        (message, *places_in(message.layout), *scalars_in(message.layout))
+    )
 
 
 def errata_of_enum(enum: Enum) -> list[Erratum]:
@@ -26,7 +28,10 @@ def _each_once(things: Iterable[Thing]) -> list[Erratum]:
 
 
 def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
-    """Return the first part with each erratum, by its id. The comment of that part explains the erratum."""
+    """Return the first part with each erratum, by its id.
+
+    The comment of that part explains the erratum.
+    """
     owners: dict[str, Thing] = {}
     for thing in things:
         for erratum in thing.errata:
@@ -34,6 +39,14 @@ def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:
     return owners
 
 
-def owners_elsewhere(thing: NodePlace | Member, by: Mapping[str, Thing]) -> dict[str, str]:
-    """Return, for errata of a part that the comment of another part explains, the name of that part by the id of the erratum."""
-    return {erratum.id: by[erratum.id].name for erratum in thing.errata if by.get(erratum.id, thing) is not thing}
+def owners_elsewhere(
+    thing: NodePlace | Member, by: Mapping[str, Thing]
+) -> dict[str, str]:
+    """Return, for errata of a part that the comment of another part explains, the name
+    of that part by the id of the erratum.
+    """
+    return {
+        erratum.id: by[erratum.id].name
+        for erratum in thing.errata
+        if by.get(erratum.id, thing) is not thing
+    }

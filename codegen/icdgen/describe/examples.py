@@ -1,4 +1,6 @@
-"""Examples in the documentation of generated code: a field of a message, a value for it, and the frame with it."""
+"""Examples in the documentation of generated code: a field of a message, a value for
+it, and the frame with it.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ class Shown(NamedTuple):
 
 
 class Example(NamedTuple):
-    """Frame of a new message in which one field has a value, if the message has a suitable field."""
+    """Frame of a new message in which one field has a value, if the message has a
+    suitable field.
+    """
 
     shown: Shown | None
     frame: bytes
@@ -35,7 +39,9 @@ class Example(NamedTuple):
 
     @property
     def runs(self) -> Iterator[tuple[int, bytes]]:
-        """Runs of bytes of the brief frame that are not 0: the first byte, and the bytes."""
+        """Runs of bytes of the brief frame that are not 0: the first byte, and the
+        bytes.
+        """
         start = 0
         for end in range(len(self.frame) + 1):
             if end == len(self.frame) or not self.brief[end]:
@@ -45,10 +51,18 @@ class Example(NamedTuple):
 
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """Return the first field that can be set by a physical value; else the first number that is not constant."""
-    # Counters keep their smallest value, because the frame of an example has the fewest elements.
+    """Return the first field that can be set by a physical value.
+
+    Else the first number that is not constant.
+    """
+    # Counters keep their smallest value, because the frame of an example has the fewest
+    # elements.
     counters = {part.counter for part in message.model.layout.counted_parts}
-    selectors = {need.field.model.name for member in message.optional_members for need in member.needs}
+    selectors = {
+        need.field.model.name
+        for member in message.optional_members
+        for need in member.needs
+    }
     numbers = [
         member
         for member in message.members
@@ -70,27 +84,38 @@ def example(message: MessageDescription) -> Example:
     shown = _shown(field) if field else None
     owners = raw_fields_in(message.model.layout)
     raw: dict[str, int | bytes] = {
-        place.name: place.initial_value for place in owners if place.const is not None or place.smallest_raw
+        place.name: place.initial_value
+        for place in owners
+        if place.const is not None or place.smallest_raw
     }
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
     in_arrays = {
         place.name
         for place in owners
-        if place.const is not None and any(step.element is not None for step in place.steps)
+        if place.const is not None
+        and any(step.element is not None for step in place.steps)
     }
-    few = raw if len(in_arrays) <= FEW else {name: value for name, value in raw.items() if name not in in_arrays}
-    frame, brief = (codec.frame_with(message.node, message.model, values) for values in (raw, few))
+    few = (
+        raw
+        if len(in_arrays) <= FEW
+        else {name: value for name, value in raw.items() if name not in in_arrays}
+    )
+    frame, brief = (
+        codec.frame_with(message.node, message.model, values) for values in (raw, few)
+    )
     return Example(shown, frame, brief)
 
 
 def _shown(field: FieldDescription) -> Shown | None:
-    """Return the field with the first value that is within its limits and equals the raw value of its physical value."""
+    """Return the field with the first value that is within its limits and equals the
+    raw value of its physical value.
+    """
     for raw in _values(field):
         physical = codec.physical_double(field.model, raw)
-        if all(bound.holds(raw if physical is None else physical) for bound in field.bounds) and (
-            physical is None or _comes_back(field, raw, physical)
-        ):
+        if all(
+            bound.holds(raw if physical is None else physical) for bound in field.bounds
+        ) and (physical is None or _comes_back(field, raw, physical)):
             return Shown(field, raw, physical)
     return None
 
@@ -98,7 +123,11 @@ def _shown(field: FieldDescription) -> Shown | None:
 def _values(field: FieldDescription) -> list[int]:
     place = field.model
     if place.type == "float":
-        return [codec.float_bits(place, _FLOAT)] if field.curve is not None or not field.bounds else []
+        return (
+            [codec.float_bits(place, _FLOAT)]
+            if field.curve is not None or not field.bounds
+            else []
+        )
     if field.enum is not None:
         numbers = [member.model.value for member in field.enum.members[::-1]]
     else:
@@ -107,7 +136,9 @@ def _values(field: FieldDescription) -> list[int]:
 
 
 def _comes_back(field: FieldDescription, raw: int, physical: float) -> bool:
-    """Return whether setting the physical value gives the raw value: 64-bit integers can be finer than doubles."""
+    """Return whether setting the physical value gives the raw value: 64-bit integers
+    can be finer than doubles.
+    """
     try:
         return codec.raw_from_physical(field.model, physical) == raw
     except codec.CodecError:

@@ -1,6 +1,8 @@
-"""Members that code handles together: flags that share a byte, rows of words, and elements of arrays.
+"""Members that code handles together: flags that share a byte, rows of words, and
+elements of arrays.
 
-A language states the smallest group for which it has code. Which members form a group is the same in all languages.
+A language states the smallest group for which it has code. Which members form a group
+is the same in all languages.
 """
 
 from __future__ import annotations
@@ -23,7 +25,10 @@ class Thresholds(NamedTuple):
 
 
 class Flags(NamedTuple):
-    """Flags in neighbouring bits of a byte. The first has bit ``shift``; if they are falling, the last has it."""
+    """Flags in neighbouring bits of a byte.
+
+    The first has bit ``shift``; if they are falling, the last has it.
+    """
 
     fields: Fields
     byte: int
@@ -32,7 +37,9 @@ class Flags(NamedTuple):
 
 
 class Row(NamedTuple):
-    """Words of the same size and byte order, one after the other in the frame and in memory."""
+    """Words of the same size and byte order, one after the other in the frame and in
+    memory.
+    """
 
     fields: Fields
 
@@ -48,7 +55,10 @@ class Row(NamedTuple):
 
 
 class LoopElements(NamedTuple):
-    """Elements of an array that a loop reads and writes. ``first`` is the first element."""
+    """Elements of an array that a loop reads and writes.
+
+    ``first`` is the first element.
+    """
 
     array: FieldDescription
     first: FieldDescription
@@ -59,14 +69,23 @@ Group = Flags | Row | LoopElements | FieldDescription
 
 
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
-    """List the scalars that have bits in every frame, except scalars in arrays of structs."""
+    """List the scalars that have bits in every frame, except scalars in arrays of
+    structs.
+    """
     for member in composite.walk(Into.STRUCTS):
-        if member.element_struct is None and not member.model.is_count and not member.model.conditions:
+        if (
+            member.element_struct is None
+            and not member.model.is_count
+            and not member.model.conditions
+        ):
             yield from member.scalars
 
 
 def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
-    """Return the `grouped_fields` in their order, with groups in place of their fields. An array of bytes is one field."""
+    """Return the `grouped_fields` in their order, with groups in place of their fields.
+
+    An array of bytes is one field.
+    """
     fields = tuple(grouped_fields(composite))
     positions = [_position(field) for field in fields]
     result: list[Group] = []
@@ -82,7 +101,9 @@ def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
             result.append(in_loop)
             index += in_loop.loop.elements
             continue
-        group = _flags(fields, positions, index, thresholds.flags) or _row(fields, index, thresholds.row)
+        group = _flags(fields, positions, index, thresholds.flags) or _row(
+            fields, index, thresholds.row
+        )
         result.append(group or fields[index])
         index += len(group.fields) if group else 1
     return result
@@ -103,19 +124,25 @@ def _position(field: FieldDescription) -> tuple[int, int] | None:
 
 
 def _flags(
-    fields: Fields, positions: Sequence[tuple[int, int] | None], first: int, sizes: tuple[int, ...]
+    fields: Fields,
+    positions: Sequence[tuple[int, int] | None],
+    first: int,
+    sizes: tuple[int, ...],
 ) -> Flags | None:
     start = positions[first]
     if start is None:
         return None
     byte, shift = start
-    # Flags fall in manuals that number the bits of a byte from the most significant one.
+    # Flags fall in manuals that number the bits of a byte from the most significant
+    # one.
     for count in sizes:
         for step in (1, -1):
             last = shift + step * (count - 1)
             wanted = [(byte, shift + step * i) for i in range(count)]
             if 0 <= last <= 7 and list(positions[first : first + count]) == wanted:
-                return Flags(fields[first : first + count], byte, min(shift, last), step < 0)
+                return Flags(
+                    fields[first : first + count], byte, min(shift, last), step < 0
+                )
     return None
 
 
@@ -128,8 +155,12 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
-        is_next = is_next and field.holder == first.holder  # in memory, padding can follow a struct
-        if not (is_next and field.is_plain_word and field.byte_order == first.byte_order):
+        is_next = (
+            is_next and field.holder == first.holder
+        )  # in memory, padding can follow a struct
+        if not (
+            is_next and field.is_plain_word and field.byte_order == first.byte_order
+        ):
             break
         end += 1
     row = fields[begin:end]
@@ -138,11 +169,21 @@ def _row(fields: Fields, begin: int, long_enough: int) -> Row | None:
 
 
 def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
-    """Return the bytes of a frame with at least so many flags. Optional flags and flags that a loop reads do not count."""
+    """Return the bytes of a frame with at least so many flags.
+
+    Optional flags and flags that a loop reads do not count.
+    """
     members = (
-        member for member in composite.walk(Into.STRUCTS) if member.model.type == "bool" and not member.model.conditions
+        member
+        for member in composite.walk(Into.STRUCTS)
+        if member.model.type == "bool" and not member.model.conditions
     )
-    flags = (flag for member in members if loop_of(member) is None for flag in member.elements)
+    flags = (
+        flag
+        for member in members
+        if loop_of(member) is None
+        for flag in member.elements
+    )
     counts = Counter(flag.pieces[0].byte for flag in flags)
     return {byte for byte, count in counts.items() if count >= at_least}
 
@@ -150,7 +191,8 @@ def bytes_of_flags(composite: Composite[Any], at_least: int) -> set[int]:
 class Segment(NamedTuple):
     """Bytes of a frame that one statement writes.
 
-    The statement is either complete, or it combines terms for parts of a byte. With neither, no field has bits in the bytes.
+    The statement is either complete, or it combines terms for parts of a byte. With
+    neither, no field has bits in the bytes.
     """
 
     byte: int
@@ -160,11 +202,15 @@ class Segment(NamedTuple):
 
 
 class FrameBytes:
-    """Frame that is assembled from statements for whole bytes and terms for parts of bytes, added in any order."""
+    """Frame that is assembled from statements for whole bytes and terms for parts of
+    bytes, added in any order.
+    """
 
     def __init__(self, length: int) -> None:
         self._length = length
-        self._whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
+        self._whole: dict[int, tuple[int, str]] = (
+            {}
+        )  # first byte -> number of bytes, statement
         self._parts: dict[int, list[tuple[int, str]]] = {}  # byte -> bit of it, term
 
     def add_whole(self, byte: int, length: int, statement: str) -> None:
@@ -182,9 +228,15 @@ class FrameBytes:
             if byte in self._whole:
                 segment = Segment(byte, *self._whole[byte])
             elif byte in self._parts:
-                segment = Segment(byte, 1, None, tuple(term for _, term in sorted(self._parts[byte])))
+                segment = Segment(
+                    byte, 1, None, tuple(term for _, term in sorted(self._parts[byte]))
+                )
             else:
-                used = (n for n in range(byte, self._length) if n in self._whole or n in self._parts)
+                used = (
+                    n
+                    for n in range(byte, self._length)
+                    if n in self._whole or n in self._parts
+                )
                 segment = Segment(byte, next(used, self._length) - byte, None)
             yield segment
             byte += segment.length

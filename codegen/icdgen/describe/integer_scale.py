@@ -1,4 +1,6 @@
-"""Physical values as whole numbers of thousandths or millionths of a unit, for programs without floating point."""
+"""Physical values as whole numbers of thousandths or millionths of a unit, for programs
+without floating point.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,8 @@ from icdgen.describe.storage import Storage
 from icdgen.icd.places import NodePlace
 from icdgen.icd.units import STANDARD
 
-# Units that have a prefix already: names of a thousandth and a millionth. Empty if there is no usual name.
+# Units that have a prefix already: names of a thousandth and a millionth. Empty if
+# there is no usual name.
 _PREFIXED = {
     "km": ("m", "mm"), "mm": ("um", "nm"), "km_per_s": ("m_per_s", "mm_per_s"), "ms": ("us", "ns"), "us": ("ns", ""),
     "khz": ("hz", ""), "kg": ("g", "mg"), "ma": ("ua", "na"), "mv": ("uv", "nv"), "mw": ("uw", "nw"),
@@ -23,7 +26,9 @@ _PREFIXABLE = frozenset(
     """deg rad m s g n a v w j wh ah ohm t k c pa bar rpm n_m nms deg_per_s rad_per_s m_per_s deg_per_s2 rad_per_s2
     m_per_s2 a_m2""".split()
 )
-_IN_WORDS = frozenset(("deg", "c", "rpm", "deg_per_s", "deg_per_s2"))  # symbols that are not written with a prefix
+_IN_WORDS = frozenset(
+    ("deg", "c", "rpm", "deg_per_s", "deg_per_s2")
+)  # symbols that are not written with a prefix
 
 
 class IntegerScale(NamedTuple):
@@ -40,16 +45,23 @@ class IntegerScale(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def integer_scale(steps: Steps) -> IntegerScale | None:
-    """Return the scale in thousandths if every raw value is a whole number of them; else in millionths; else None."""
+    """Return the scale in thousandths if every raw value is a whole number of them.
+
+    Else in millionths; else None.
+    """
     for per in (1000, 1_000_000):
-        factor, offset = Fraction(steps.p * per, steps.q), Fraction(steps.c * per, steps.q)
+        factor, offset = Fraction(steps.p * per, steps.q), Fraction(
+            steps.c * per, steps.q
+        )
         if factor.denominator == offset.denominator == 1:
             return _integer_scale(per, int(factor), int(offset), steps)
     return None
 
 
 def _integer_scale(per: int, factor: int, offset: int, steps: Steps) -> IntegerScale:
-    low, high = sorted((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
+    low, high = sorted(
+        (raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max)
+    )
     bottom, top = low[0] - Fraction(abs(factor), 2), high[0] + Fraction(abs(factor), 2)
     least, most = -int(-bottom // 1), int(top // 1)
     least += least == bottom and low[1] % 2  # ties are rounded to the even raw value
@@ -59,17 +71,31 @@ def _integer_scale(per: int, factor: int, offset: int, steps: Steps) -> IntegerS
 
 @lru_cache(maxsize=4096)
 def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
-    """Return the bits of the integer that can store the values of all values of the storage, 32 or 64; None if none can."""
+    """Return the bits of the integer that can store the values of all values of the
+    storage, 32 or 64; None if none can.
+    """
     bits = 32 if computable(storage, scale.factor, scale.offset, 32) else 64
     ends = Storage(bits, True)
-    differences = max(scale.least, ends.min) - scale.offset, min(scale.most, ends.max) - scale.offset
-    return bits if computable(storage, scale.factor, scale.offset, bits) and within(64, *differences) else None
+    differences = (
+        max(scale.least, ends.min) - scale.offset,
+        min(scale.most, ends.max) - scale.offset,
+    )
+    return (
+        bits
+        if computable(storage, scale.factor, scale.offset, bits)
+        and within(64, *differences)
+        else None
+    )
 
 
 def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
-    """Return whether raw * factor + offset does not overflow a signed integer for any value of the storage."""
+    """Return whether raw * factor + offset does not overflow a signed integer for any
+    value of the storage.
+    """
     products = storage.min * factor, storage.max * factor
-    return within(bits, *products, *(product + offset for product in products), factor, offset)
+    return within(
+        bits, *products, *(product + offset for product in products), factor, offset
+    )
 
 
 def within(bits: int, *values: int) -> bool:
@@ -78,7 +104,9 @@ def within(bits: int, *values: int) -> bool:
 
 
 def part_of_unit(field: NodePlace, per: int) -> tuple[str, str]:
-    """Return the end of an accessor's name and the unit in words: ``mdeg``, ``thousandths of deg``; for km ``m``, ``m``."""
+    """Return the end of an accessor's name and the unit in words: ``mdeg``,
+    ``thousandths of deg``; for km ``m``, ``m``.
+    """
     prefix, part = ("milli", "thousandths") if per == 1000 else ("micro", "millionths")
     if field.unit is None:
         return prefix, part
@@ -90,5 +118,7 @@ def part_of_unit(field: NodePlace, per: int) -> tuple[str, str]:
         return shifted, base if is_known else words
     if unit in _PREFIXABLE:
         letter = "m" if per == 1000 else "u"
-        return f"{letter}{unit}", words if unit in _IN_WORDS or not is_known else f"{letter}{symbol}"
+        return f"{letter}{unit}", (
+            words if unit in _IN_WORDS or not is_known else f"{letter}{symbol}"
+        )
     return f"{prefix}_{unit}", words

@@ -1,4 +1,6 @@
-"""Lengths of frames: bytes of elements, and the comparisons by which a decoder accepts the lengths of a message."""
+"""Lengths of frames: bytes of elements, and the comparisons by which a decoder accepts
+the lengths of a message.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,18 @@ class LengthTest(NamedTuple):
 
 
 class ElementBytes(NamedTuple):
-    """Number of bytes that depends on a number of elements: ``before`` plus ``step`` for each element."""
+    """Number of bytes that depends on a number of elements: ``before`` plus ``step``
+    for each element.
+    """
 
     before: int
     step: int
 
 
 def length_tests(lengths: range, minimum: int = 0) -> tuple[LengthTest, ...]:
-    """Return the tests that only these lengths pass, among all lengths of at least ``minimum`` bytes."""
+    """Return the tests that only these lengths pass, among all lengths of at least
+    ``minimum`` bytes.
+    """
     least, most, step = lengths[0], lengths[-1], lengths.step
     tests = [LengthTest("at least", least)] if least > minimum else []
     tests.append(LengthTest("at most", most))
@@ -31,5 +37,11 @@ def length_tests(lengths: range, minimum: int = 0) -> tuple[LengthTest, ...]:
 
 
 def length_tests_of_frame(lengths: range) -> tuple[LengthTest, ...]:
-    """Return the tests for frames of a message: a single one if all have the same length."""
-    return (LengthTest("equal", lengths[0]),) if len(lengths) == 1 else length_tests(lengths)
+    """Return the tests for frames of a message: a single one if all have the same
+    length.
+    """
+    return (
+        (LengthTest("equal", lengths[0]),)
+        if len(lengths) == 1
+        else length_tests(lengths)
+    )

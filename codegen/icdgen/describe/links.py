@@ -1,4 +1,5 @@
-"""Links of nodes, for all languages: the facts of the protocol section and what follows from them.
+"""Links of nodes, for all languages: the facts of the protocol section and what follows
+from them.
 
 A backend spells the facts in the types of its runtime.
 """
@@ -41,7 +42,9 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StepDescription:
-    """Message that is a step of a procedure, and its fields with a role there, in the order of the ICD."""
+    """Message that is a step of a procedure, and its fields with a role there, in the
+    order of the ICD.
+    """
 
     message: Message
     fields: tuple[Place, ...]
@@ -61,26 +64,41 @@ class SentMessage(NamedTuple):
 
     @property
     def is_setting(self) -> bool:
-        """Whether it sets a configuration, which can be read back and so may be sent again."""
+        """Whether it sets a configuration, which can be read back and so may be sent
+        again.
+        """
         return self.message.kind == CONFIGURATION
 
 
 class Assumptions:
-    """Assumed facts of a node's protocol, with reasons. Each reason is returned once, so that code shows it in one place."""
+    """Assumed facts of a node's protocol, with reasons.
+
+    Each reason is returned once, so that code shows it in one place.
+    """
 
     def __init__(self, facts: Facts) -> None:
         self._sections = {id(part): section for section, part in facts.parts.items()}
         if facts.checksum is not None:
             self._sections[id(facts.checksum.crc)] = "crc8"
-        self._left = {(assumption.section, assumption.key): assumption.why for assumption in facts.assumptions}
+        self._left = {
+            (assumption.section, assumption.key): assumption.why
+            for assumption in facts.assumptions
+        }
 
     def why(self, section: str, key: str) -> str:
-        """Return why the value of a key is assumed; empty if it is not, or if the reason was returned before."""
+        """Return why the value of a key is assumed.
+
+        Returns empty if it is not, or if the reason was returned before.
+        """
         return self._left.pop((section, key), "")
 
     def why_fact(self, part: object, fact: Fact) -> str:
         """Return why a declared fact of a part is assumed; empty if it is not."""
-        return self.why(self._sections[id(part)], fact.key.partition(".")[0]) if fact.key else ""
+        return (
+            self.why(self._sections[id(part)], fact.key.partition(".")[0])
+            if fact.key
+            else ""
+        )
 
     def of_part(self, part: object) -> list[tuple[str, str]]:
         """Return key and reason of the other assumptions of the section of a part."""
@@ -88,19 +106,30 @@ class Assumptions:
 
     def of_section(self, section: str) -> list[tuple[str, str]]:
         """Return key and reason of the other assumptions of a section."""
-        return [(key, self.why(section, key)) for where, key in [*self._left] if where == section]
+        return [
+            (key, self.why(section, key))
+            for where, key in [*self._left]
+            if where == section
+        ]
 
     def others(self) -> list[tuple[str, str, str]]:
-        """Return section, key and reason of all assumptions that were not returned before."""
-        return [(section, key, self.why(section, key)) for section, key in [*self._left]]
+        """Return section, key and reason of all assumptions that were not returned
+        before.
+        """
+        return [
+            (section, key, self.why(section, key)) for section, key in [*self._left]
+        ]
 
 
 def byte_table(crc: Crc) -> list[int]:
-    """Return the register after each of the 256 bytes, most significant bit first, if it was 0 before."""
+    """Return the register after each of the 256 bytes, most significant bit first, if
+    it was 0 before.
+    """
     top, mask = 1 << crc.width - 1, (1 << crc.width) - 1
     table, register = [0], crc.polynomial
     for _ in range(8):
-        # `register` is the entry of the byte 1 << n, and the entry of a ^ b is entry a ^ entry b.
+        # `register` is the entry of the byte 1 << n, and the entry of a ^ b is entry a
+        # ^ entry b.
         table += [entry ^ register for entry in table]
         register = register << 1 & mask ^ (crc.polynomial if register & top else 0)
     return table
@@ -109,7 +138,12 @@ def byte_table(crc: Crc) -> list[int]:
 def links_of(description: Description) -> dict[str, LinkDescription]:
     """Return the links of all nodes that have one, by the names of the nodes."""
     linked = (node for node in description.nodes if node.is_linked)
-    return {node.name: LinkDescription(description, protocol_facts.of(description.icd, node.model)) for node in linked}
+    return {
+        node.name: LinkDescription(
+            description, protocol_facts.of(description.icd, node.model)
+        )
+        for node in linked
+    }
 
 
 class LinkDescription:
@@ -120,21 +154,35 @@ class LinkDescription:
 
     @property
     def telecommands(self) -> list[SentMessage]:
-        """Messages by ascending id; empty if the link has packets, whose format lists the messages."""
+        """Messages by ascending id.
+
+        Empty if the link has packets, whose format lists the messages.
+        """
         return self._sent(self.facts.telecommands)
 
     @property
     def telemetry(self) -> list[SentMessage]:
-        """Messages by ascending id; empty if the link has packets, whose format lists the messages."""
+        """Messages by ascending id.
+
+        Empty if the link has packets, whose format lists the messages.
+        """
         return self._sent(self.facts.telemetry)
 
     def _sent(self, messages: Mapping[int, Message]) -> list[SentMessage]:
-        return [] if self.facts.stream else [SentMessage(id, message) for id, message in sorted(messages.items())]
+        return (
+            []
+            if self.facts.stream
+            else [SentMessage(id, message) for id, message in sorted(messages.items())]
+        )
 
     @property
     def error_codes(self) -> list[tuple[str, int]]:
         """Meanings of error codes that the runtimes support, and the codes."""
-        return [(reason, code) for reason, code in self.facts.errors.items() if reason in REASONS]
+        return [
+            (reason, code)
+            for reason, code in self.facts.errors.items()
+            if reason in REASONS
+        ]
 
     @property
     def can(self) -> Can | None:
@@ -146,7 +194,11 @@ class LinkDescription:
     def time(self) -> list[tuple[str, TimePart]]:
         """Parts of a packed time, the year first; empty unless the ICD has all of them."""
         parts = self.facts.time
-        return [(name, parts[name]) for name in TIME_PARTS] if set(TIME_PARTS) <= set(parts) else []
+        return (
+            [(name, parts[name]) for name in TIME_PARTS]
+            if set(TIME_PARTS) <= set(parts)
+            else []
+        )
 
     @property
     def index(self) -> Index | None:
@@ -158,33 +210,63 @@ class LinkDescription:
     def map_pieces(self) -> list[FieldDescription]:
         """Fields that carry the pieces of the hole map, each in a message of its own."""
         form = self.facts.hole_map
-        fields = [field for message in form.messages for field in self._describe(message).fields] if form else []
+        fields = (
+            [
+                field
+                for message in form.messages
+                for field in self._describe(message).fields
+            ]
+            if form
+            else []
+        )
         return [field for field in fields if form and field.model.name == form.field]
 
     @cached_property
     def polled(self) -> StepDescription | None:
-        """Frame with the result of the last telecommand. Its roles are id, processed, error and parameter."""
+        """Frame with the result of the last telecommand.
+
+        Its roles are id, processed, error and parameter.
+        """
         polled = self.facts.polled
         names = ("id", "processed", "error", "parameter")
-        return self.step(Step(polled.message, {name: getattr(polled, name) for name in names})) if polled else None
+        return (
+            self.step(
+                Step(polled.message, {name: getattr(polled, name) for name in names})
+            )
+            if polled
+            else None
+        )
 
     @property
     def identification(self) -> StepDescription | None:
         """Frame that identifies the node."""
-        return self.step(self.facts.identification) if self.facts.identification else None
+        return (
+            self.step(self.facts.identification) if self.facts.identification else None
+        )
 
     def step(self, step: Step) -> StepDescription:
         """Return the description of a step of a procedure."""
         message = self._describe(step.message)
         fields = {field.model.name: field for field in message.fields}
-        places = tuple(Place(role, fields[name]) for role, name in step.fields.items() if name in fields)
+        places = tuple(
+            Place(role, fields[name])
+            for role, name in step.fields.items()
+            if name in fields
+        )
         return StepDescription(step.message, places, step.frame(message.node))
 
     @property
     def joined_bytes(self) -> int:
-        """Bytes of all packets of the longest message on CAN; 0 if no message has several packets."""
+        """Bytes of all packets of the longest message on CAN.
+
+        0 if no message has several packets.
+        """
         extended = self.facts.can and self.facts.can.extended
-        return -(-self.facts.longest_data // extended.data_bytes) * extended.data_bytes if extended else 0
+        return (
+            -(-self.facts.longest_data // extended.data_bytes) * extended.data_bytes
+            if extended
+            else 0
+        )
 
     @property
     def log_entry_bytes(self) -> int:
@@ -203,7 +285,9 @@ class LinkDescription:
 
     @cached_property
     def always_needed(self) -> list[Message]:
-        """Messages that the wire layer requests by itself, whichever messages a program uses."""
+        """Messages that the wire layer requests by itself, whichever messages a program
+        uses.
+        """
         return [step.message for step in (self.polled, self.identification) if step]
 
     @cached_property
@@ -213,4 +297,6 @@ class LinkDescription:
         steps = list(facts.files.steps.values()) if facts.files else []
         for operation in filter(None, (facts.program_copy, facts.program_information)):
             steps += [operation.request, operation.progress]
-        return [step.message for step in steps] + list(facts.hole_map.messages if facts.hole_map else ())
+        return [step.message for step in steps] + list(
+            facts.hole_map.messages if facts.hole_map else ()
+        )

@@ -16,12 +16,16 @@ Model = TypeVar("Model", bound=Message | Struct | NodePlace | Enum | Member)
 
 
 class Named(Generic[Model]):
-    """Part of the ICD (``model``) with a name: ``words`` of its identifier, and ``name``, the words in snake case.
+    """Part of the ICD (``model``) with a name: ``words`` of its identifier, and
+    ``name``, the words in snake case.
 
-    Findings call it ``owner``, for instance "enumeration `Mode`". ``part`` is the object of the model that declares it.
+    Findings call it ``owner``, for instance "enumeration `Mode`". ``part`` is the
+    object of the model that declares it.
     """
 
-    def __init__(self, model: Model, part: Part, vocabulary: tuple[str, ...], owner: str) -> None:
+    def __init__(
+        self, model: Model, part: Part, vocabulary: tuple[str, ...], owner: str
+    ) -> None:
         self.model: Model = model
         self.part, self.owner = part, owner
         self.words = naming.words(model.identifier or model.name, vocabulary)

@@ -1,6 +1,9 @@
-"""Description of a set of ICDs: its nodes, and the messages that they declare and use. Each is described once.
+"""Description of a set of ICDs: its nodes, and the messages that they declare and use.
 
-A node has the messages of each direction by their ids. A message has its fields, its variable parts and its ids.
+Each is described once.
+
+A node has the messages of each direction by their ids. A message has its fields, its
+variable parts and its ids.
 """
 
 from __future__ import annotations
@@ -54,7 +57,10 @@ class MessageDescription(Composite[Message]):
 
     @property
     def last_part(self) -> VariablePartDescription | None:
-        """Last part of variable length; None if all frames have the same length or may end early."""
+        """Last part of variable length.
+
+        None if all frames have the same length or may end early.
+        """
         return self.variable_parts[-1] if self.variable_parts else None
 
     @property
@@ -70,11 +76,19 @@ class MessageDescription(Composite[Message]):
         for part in self.model.layout.parts:
             field = by_name[part.name]
             inner = (
-                VariablePartDescription(model, field.struct.member_for[id(model.node)], by_name[model.counter])
+                VariablePartDescription(
+                    model,
+                    field.struct.member_for[id(model.node)],
+                    by_name[model.counter],
+                )
                 for model in (part.inner if field.struct is not None else ())
                 if field.struct is not None
             )
-            parts.append(VariablePartDescription(part, field, by_name[part.counter], tuple(inner)))
+            parts.append(
+                VariablePartDescription(
+                    part, field, by_name[part.counter], tuple(inner)
+                )
+            )
         return tuple(parts)
 
     @property
@@ -85,24 +99,42 @@ class MessageDescription(Composite[Message]):
 
     @property
     def spread_parts(self) -> tuple[VariablePartDescription, ...]:
-        """Parts after which a frame differs from the longest one: all but the last, and all with arrays in elements."""
-        return tuple(part for part in self.variable_parts if part is not self.last_part or part.inner)
+        """Parts after which a frame differs from the longest one: all but the last, and
+        all with arrays in elements.
+        """
+        return tuple(
+            part
+            for part in self.variable_parts
+            if part is not self.last_part or part.inner
+        )
 
     @property
     def length_tests(self) -> tuple[LengthTest, ...]:
-        """Tests of the length of a frame of variable length, with all parts in front of the last one in full."""
+        """Tests of the length of a frame of variable length, with all parts in front of
+        the last one in full.
+        """
         assert self.last_part is not None
         last = self.last_part.model
-        # Before these tests, a decoder with several parts has put all of the earlier ones in front of the last.
+        # Before these tests, a decoder with several parts has put all of the earlier
+        # ones in front of the last.
         return length_tests(last.lengths, last.begin if self.spread_parts else 0)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
-        """Messages that a composite message contains, each with the bit at which it starts, in the order of the ICD."""
+        """Messages that a composite message contains, each with the bit at which it
+        starts, in the order of the ICD.
+        """
         if not self.model.contains:
             return ()
-        messages = {message.model.name: message for message in self._description.node(self.node).all_messages}
-        return tuple((messages[part.message], part.at) for part in self.model.contains if part.message in messages)
+        messages = {
+            message.model.name: message
+            for message in self._description.node(self.node).all_messages
+        }
+        return tuple(
+            (messages[part.message], part.at)
+            for part in self.model.contains
+            if part.message in messages
+        )
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:
@@ -112,13 +144,25 @@ class MessageDescription(Composite[Message]):
             "set_id": "Id of the telecommand that sets it.",
             "get_id": "Id of the telemetry that gets it.",
         }
-        ids = ((name, getattr(self.model, name), comment) for name, comment in about.items())
-        return tuple(Id(name, value, comment) for name, value, comment in ids if value is not None)
+        ids = (
+            (name, getattr(self.model, name), comment)
+            for name, comment in about.items()
+        )
+        return tuple(
+            Id(name, value, comment)
+            for name, value, comment in ids
+            if value is not None
+        )
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Directions in which it is sent: ``telecommand``, ``telemetry``, or both for a configuration."""
-        ids = {"telecommand": self.model.telecommand_id, "telemetry": self.model.telemetry_id}
+        """Directions in which it is sent: ``telecommand``, ``telemetry``, or both for a
+        configuration.
+        """
+        ids = {
+            "telecommand": self.model.telecommand_id,
+            "telemetry": self.model.telemetry_id,
+        }
         return tuple(direction for direction, id in ids.items() if id is not None)
 
     @property
@@ -133,25 +177,35 @@ class MessageDescription(Composite[Message]):
 
     @property
     def is_narrow(self) -> bool:
-        """Whether the type of a field can store raw values or counts that the message cannot have."""
-        return super().is_narrow or any(part.needs_count_check for part in self.counted_parts)
+        """Whether the type of a field can store raw values or counts that the message
+        cannot have.
+        """
+        return super().is_narrow or any(
+            part.needs_count_check for part in self.counted_parts
+        )
 
     @cached_property
     def comment(self) -> Comment:
         node, telemetry_id = self._description.node(self.node), self.model.telemetry_id
         bit = None if telemetry_id is None else node.log_bits.get(telemetry_id)
-        return message_comment(self.model, bit, sharing(node.messages_by_id, self.model))
+        return message_comment(
+            self.model, bit, sharing(node.messages_by_id, self.model)
+        )
 
 
 class Direction(NamedTuple):
-    """Messages of a node in one direction, each with the name of its id there: ``id``, ``set_id`` or ``get_id``."""
+    """Messages of a node in one direction, each with the name of its id there: ``id``,
+    ``set_id`` or ``get_id``.
+    """
 
     kind: str  # "telecommand" | "telemetry"
     messages: tuple[tuple[MessageDescription, str], ...]
 
 
 class MessageOfId(NamedTuple):
-    """Message under an id, the name of that id, and the bytes by which a frame of its length is recognised."""
+    """Message under an id, the name of that id, and the bytes by which a frame of its
+    length is recognised.
+    """
 
     message: MessageDescription
     id_name: str
@@ -172,15 +226,27 @@ class MessagesOfId(NamedTuple):
 
     @property
     def is_shared(self) -> bool:
-        """Whether several messages have the id, so that a decoder has to look at the frame."""
+        """Whether several messages have the id, so that a decoder has to look at the
+        frame.
+        """
         return len(self.messages) > 1
 
     @property
     def fallback(self) -> MessageOfId | None:
-        """Message of a frame that matches no message of `tested`: only its length can be wrong. None without such a message."""
-        # Messages with more constants are tried first. If all have the same length, the last one needs no test of it.
+        """Message of a frame that matches no message of `tested`: only its length can
+        be wrong.
+
+        None without such a message.
+        """
+        # Messages with more constants are tried first. If all have the same length, the
+        # last one needs no test of it.
         last = self.messages[-1]
-        return last if not self.is_shared or (self.length is not None and not last.constant_bytes) else None
+        return (
+            last
+            if not self.is_shared
+            or (self.length is not None and not last.constant_bytes)
+            else None
+        )
 
     @property
     def tested(self) -> tuple[MessageOfId, ...]:
@@ -196,7 +262,9 @@ class NodeDescription:
 
     def identifier(self, scope: str, name: str, role: str = "") -> Identifier:
         """Return a name that generated code declares for the node."""
-        return Identifier(scope, name, f"node `{self.name}`", self.model.source, role, self.model)
+        return Identifier(
+            scope, name, f"node `{self.name}`", self.model.source, role, self.model
+        )
 
     @cached_property
     def messages(self) -> tuple[MessageDescription, ...]:
@@ -205,8 +273,16 @@ class NodeDescription:
 
     @cached_property
     def enums(self) -> tuple[EnumDescription, ...]:
-        """Enumerations that the node declares. In an ICD with errors, fields refer to the last one of a name."""
-        return tuple(map(self._description.enum, {enum.name: enum for enum in self.model.enums}.values()))
+        """Enumerations that the node declares.
+
+        In an ICD with errors, fields refer to the last one of a name.
+        """
+        return tuple(
+            map(
+                self._description.enum,
+                {enum.name: enum for enum in self.model.enums}.values(),
+            )
+        )
 
     @cached_property
     def structs(self) -> tuple[StructDescription, ...]:
@@ -215,7 +291,9 @@ class NodeDescription:
 
     @property
     def composites(self) -> tuple[Composite[Any], ...]:
-        """Structs and messages that the node declares, each after the structs of its members."""
+        """Structs and messages that the node declares, each after the structs of its
+        members.
+        """
         return (*self.structs, *self.messages)
 
     @property
@@ -233,24 +311,40 @@ class NodeDescription:
     @cached_property
     def all_messages(self) -> tuple[MessageDescription, ...]:
         """Messages of included nodes, then messages that the node declares."""
-        return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
+        return tuple(
+            map(
+                self._description.message, self._description.icd.messages_of(self.model)
+            )
+        )
 
     @property
     def telecommands(self) -> tuple[MessageDescription, ...]:
         """Messages of `all_messages` that can be sent to the node."""
-        return tuple(message for message in self.all_messages if message.model.telecommand_id is not None)
+        return tuple(
+            message
+            for message in self.all_messages
+            if message.model.telecommand_id is not None
+        )
 
     @property
     def telemetry(self) -> tuple[MessageDescription, ...]:
         """Messages of `all_messages` that can be requested from the node."""
-        return tuple(message for message in self.all_messages if message.model.telemetry_id is not None)
+        return tuple(
+            message
+            for message in self.all_messages
+            if message.model.telemetry_id is not None
+        )
 
     @property
     def directions(self) -> tuple[Direction, ...]:
         """Telecommands, then telemetry; without a direction that has no messages."""
-        telecommands = ((message, message.telecommand_id_name) for message in self.telecommands)
+        telecommands = (
+            (message, message.telecommand_id_name) for message in self.telecommands
+        )
         telemetry = ((message, message.telemetry_id_name) for message in self.telemetry)
-        both_directions = Direction("telecommand", tuple(telecommands)), Direction("telemetry", tuple(telemetry))
+        both_directions = Direction("telecommand", tuple(telecommands)), Direction(
+            "telemetry", tuple(telemetry)
+        )
         return tuple(direction for direction in both_directions if direction.messages)
 
     def ids(self, direction: str) -> tuple[MessagesOfId, ...]:
@@ -269,7 +363,12 @@ class NodeDescription:
     def _sharing(self) -> dict[str, frozenset[MessageDescription]]:
         """Messages of each direction that share their id with another one."""
         return {
-            direction: frozenset(row.message for under_id in ids if under_id.is_shared for row in under_id.messages)
+            direction: frozenset(
+                row.message
+                for under_id in ids
+                if under_id.is_shared
+                for row in under_id.messages
+            )
             for direction, ids in self._ids.items()
         }
 
@@ -280,18 +379,31 @@ class NodeDescription:
 
     @cached_property
     def _ids(self) -> dict[str, tuple[MessagesOfId, ...]]:
-        telecommands, telemetry = self.messages_by_id.telecommand, self.messages_by_id.telemetry
+        telecommands, telemetry = (
+            self.messages_by_id.telecommand,
+            self.messages_by_id.telemetry,
+        )
         return {
-            "telecommand": tuple(self._under("set_id", id, variants) for id, variants in telecommands.items()),
-            "telemetry": tuple(self._under("get_id", id, variants) for id, variants in telemetry.items()),
+            "telecommand": tuple(
+                self._under("set_id", id, variants)
+                for id, variants in telecommands.items()
+            ),
+            "telemetry": tuple(
+                self._under("get_id", id, variants)
+                for id, variants in telemetry.items()
+            ),
         }
 
-    def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> MessagesOfId:
+    def _under(
+        self, other_name: str, id: int, variants: tuple[Variant, ...]
+    ) -> MessagesOfId:
         candidates = []
         for variant in variants:
             name = "id" if variant.message.id is not None else other_name
             message = self._description.message(variant.message)
-            candidates.append(MessageOfId(message, name, layout.constant_bytes(variant)))
+            candidates.append(
+                MessageOfId(message, name, layout.constant_bytes(variant))
+            )
         return MessagesOfId(id, tuple(candidates), common_length(variants))
 
     @cached_property
@@ -301,8 +413,12 @@ class NodeDescription:
 
     @cached_property
     def has_client(self) -> bool:
-        """Whether its link has messages with an id of one byte: only these have a client, procedures and logs."""
-        return self.is_linked and "stream" not in self._description.icd.protocol_of(self.model)
+        """Whether its link has messages with an id of one byte: only these have a
+        client, procedures and logs.
+        """
+        return self.is_linked and "stream" not in self._description.icd.protocol_of(
+            self.model
+        )
 
     @property
     def id_bits(self) -> int:
@@ -323,28 +439,44 @@ class Description:
         self.declared = Declarations(icd)
         self._messages: dict[tuple[str, str], MessageDescription] = {}
         # In an ICD with errors, includes refer to the first node of a name.
-        self._nodes = {node.name: NodeDescription(self, node) for node in reversed(icd.nodes)}
+        self._nodes = {
+            node.name: NodeDescription(self, node) for node in reversed(icd.nodes)
+        }
         self.nodes = tuple(dict.fromkeys(map(self.node, icd.nodes)))
 
     @cached_property
     def id_bits(self) -> int:
         """Bits of the integer for all ids of the set: 8, 16 or 32."""
-        used = (id.bit_length() for node in self.icd.nodes for message in node.messages for id in message.ids)
-        return holding(max((*(node.id_bits for node in self.icd.nodes), *used), default=8))
+        used = (
+            id.bit_length()
+            for node in self.icd.nodes
+            for message in node.messages
+            for id in message.ids
+        )
+        return holding(
+            max((*(node.id_bits for node in self.icd.nodes), *used), default=8)
+        )
 
     def node(self, node: str | Node) -> NodeDescription:
-        """Return the description of a node, by its name or by the node itself. Raises `KeyError`."""
+        """Return the description of a node, by its name or by the node itself.
+
+        Raises `KeyError`.
+        """
         return self._nodes[node if isinstance(node, str) else node.name]
 
     def users_of(self, node: Node) -> tuple[NodeDescription, ...]:
-        """Return the nodes that can use what a node declares: those that include it, and the node itself."""
+        """Return the nodes that can use what a node declares: those that include it,
+        and the node itself.
+        """
         return self._users.get(node.name, ())
 
     @cached_property
     def _users(self) -> dict[str, tuple[NodeDescription, ...]]:
         users: dict[str, tuple[NodeDescription, ...]] = {}
         for user in self.nodes:
-            for name in dict.fromkeys((*(node.name for node in self.icd.included(user.model)), user.name)):
+            for name in dict.fromkeys(
+                (*(node.name for node in self.icd.included(user.model)), user.name)
+            ):
                 users[name] = (*users.get(name, ()), user)
         return users
 
@@ -353,7 +485,9 @@ class Description:
         key = message.node, message.name
         description = self._messages.get(key)
         if description is None or description.model is not message:
-            description = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
+            description = self._messages[key] = MessageDescription(
+                self, message, self.icd.node(message.node)
+            )
         return description
 
     def struct(self, struct: Struct) -> StructDescription:
@@ -366,11 +500,16 @@ class Description:
 
 
 _recent: list[Description] = []
-"""Descriptions of the last two sets, the older first: one run generates several languages from the same set."""
+"""Descriptions of the last two sets, the older first: one run generates several
+languages from the same set.
+"""
 
 
 def describe(icd: Icd) -> Description:
-    """Return the description of a set of ICDs. Calls with the same set share the result."""
+    """Return the description of a set of ICDs.
+
+    Calls with the same set share the result.
+    """
     for description in _recent:
         if description.icd is icd:
             return description

@@ -10,7 +10,12 @@ from icdgen.icd.model import Message, Special
 
 MOST_DIGITS = 24
 """Largest number of digits of a decimal that is shown in full."""
-_OUTSIDE = {"": "", CLAMP: "clamped outside", EXTRAPOLATE: "extrapolated outside", REFUSE: "no number outside"}
+_OUTSIDE = {
+    "": "",
+    CLAMP: "clamped outside",
+    EXTRAPOLATE: "extrapolated outside",
+    REFUSE: "no number outside",
+}
 
 
 @lru_cache(maxsize=4096)
@@ -18,7 +23,9 @@ def exact_text(value: Fraction | int) -> str:
     """Return the exact decimal if it has few digits, else the nearest double."""
     if value.denominator == 1:
         return str(int(value)) if abs(value) < 10 ** MOST_DIGITS else repr(float(value))
-    places = next((n for n in range(1, MOST_DIGITS + 1) if 10**n % value.denominator == 0), 0)
+    places = next(
+        (n for n in range(1, MOST_DIGITS + 1) if 10**n % value.denominator == 0), 0
+    )
     scaled = value * 10**places
     if not places or len(str(abs(scaled.numerator))) > MOST_DIGITS:
         return repr(value.numerator / value.denominator)
@@ -39,7 +46,8 @@ def point_text(point: tuple[float, float]) -> str:
 
 
 def points_text(curve: Curve, most: int) -> str:
-    """Return the points of a lookup table: ``0: -40, 512: 20.5, 1023: 125, clamped outside``.
+    """Return the points of a lookup table: ``0: -40, 512: 20.5, 1023: 125, clamped
+    outside``.
 
     If there are more than ``most`` points, some in the middle are left out.
     """
@@ -50,12 +58,18 @@ def points_text(curve: Curve, most: int) -> str:
 
 
 def value_text(raw: int) -> str:
-    """Return a raw value with a meaning as text: ``90 (0x5A)``; values below 10 in decimal only."""
+    """Return a raw value with a meaning as text: ``90 (0x5A)``.
+
+    Values below 10 in decimal only.
+    """
     return f"{raw} (0x{raw:X})" if raw > 9 else str(raw)
 
 
 def special_text(special: Special) -> str:
-    """Return a special value as text: ``65535 (0xFFFF)``; for floats ``NaN``, ``-infinity``, ``-99.9``."""
+    """Return a special value as text: ``65535 (0xFFFF)``.
+
+    For floats ``NaN``, ``-infinity``, ``-99.9``.
+    """
     words = {"nan": "NaN", "inf": "infinity", "-inf": "-infinity"}
     return words.get(special.number, special.number) or value_text(special.value)
 
@@ -87,7 +101,9 @@ def length_text(message: Message) -> str:
 
 
 def count_text(counter: str, plus: int) -> str:
-    """Return the number of elements of a variable part by its counter: ``Levels Count``, ``Size - 4``."""
+    """Return the number of elements of a variable part by its counter: ``Levels
+    Count``, ``Size - 4``.
+    """
     return counter + (f" {'+' if plus > 0 else '-'} {abs(plus)}" if plus else "")
 
 

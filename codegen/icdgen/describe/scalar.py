@@ -1,4 +1,6 @@
-"""Scalars: the integer that stores the raw value, the physical value, limits, and bits of the frame."""
+"""Scalars: the integer that stores the raw value, the physical value, limits, and bits
+of the frame.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,24 @@ class ScalarDescription(Named[NodePlace]):
     """Scalar at its place, or the element of an array of scalars."""
 
     storage: Storage
-    """Integer that stores the raw value: for a float its bits, for an enumeration that of its type. Not used for bytes."""
+    """Integer that stores the raw value: for a float its bits, for an enumeration that
+    of its type.
+
+    Not used for bytes.
+    """
     steps: steps.Steps | None
     """Steps of the physical value in whole numbers; None without a scale."""
     curve: Curve | None
-    """Calibration of the physical value in doubles, a polynomial or a lookup table; None without one."""
+    """Calibration of the physical value in doubles, a polynomial or a lookup table.
+
+    None without one.
+    """
     physical_name: str
     """``estimated_roll_angle_deg``"""
     declared_name: str
-    """Name in generated code: for an element that of its array, for a member of a struct that in the struct."""
+    """Name in generated code: for an element that of its array, for a member of a
+    struct that in the struct.
+    """
 
     def __init__(
         self,
@@ -41,14 +52,23 @@ class ScalarDescription(Named[NodePlace]):
     ) -> None:
         super().__init__(place, place.node, vocabulary, owner)
         self.enum, self.node_orders = enum, node_orders
-        self.storage = enum.storage if enum is not None else storage_of(place.bits, place.is_signed)
+        self.storage = (
+            enum.storage
+            if enum is not None
+            else storage_of(place.bits, place.is_signed)
+        )
         self.steps, self.curve = steps.steps(place), place.curve
         # Derived values have no raw value, only a physical one.
         if place.derived is not None and place.unit is not None:
             self.name = f"{self.name}_{place.unit.identifier}"
         self.declared_name = self.name
-        # Names carry the unit, so that code with a wrong unit is visible where it is written.
-        unit = "text" if self.is_text else place.unit.identifier if place.unit else "physical"
+        # Names carry the unit, so that code with a wrong unit is visible where it is
+        # written.
+        unit = (
+            "text"
+            if self.is_text
+            else place.unit.identifier if place.unit else "physical"
+        )
         self.physical_name = f"{self.declared_name}_{unit}"
 
     @cached_property
@@ -58,13 +78,20 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def integer_scale(self) -> IntegerScale | None:
-        """Physical value in whole thousandths or millionths of the unit; None if these are not exact."""
+        """Physical value in whole thousandths or millionths of the unit.
+
+        None if these are not exact.
+        """
         return None if self.steps is None else integer_scale(self.steps)
 
     @property
     def is_narrow(self) -> bool:
         """Whether `storage` can store raw values that do not fit the field."""
-        return self.model.bits != self.storage.bits and self.model.type in ("uint", "int", "enum")
+        return self.model.bits != self.storage.bits and self.model.type in (
+            "uint",
+            "int",
+            "enum",
+        )
 
     @property
     def allowed_text(self) -> str:
@@ -101,30 +128,46 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def is_word(self) -> bool:
-        """Whether it is a whole byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored at once."""
+        """Whether it is a whole byte, or a word of 2, 4 or 8 whole bytes that is loaded
+        and stored at once.
+        """
         place = self.model
-        return not place.is_bytes and place.at % 8 == 0 and place.bits in (8, 16, 32, 64)
+        return (
+            not place.is_bytes and place.at % 8 == 0 and place.bits in (8, 16, 32, 64)
+        )
 
     @property
     def is_plain_word(self) -> bool:
-        """Whether it is a word that has the same bits in the frame and in memory, apart from the order of its bytes."""
+        """Whether it is a word that has the same bits in the frame and in memory, apart
+        from the order of its bytes.
+        """
         return self.is_word and self.model.bits == self.storage.bits
 
     @property
     def is_copied(self) -> bool:
-        """Whether it can be copied between frame and memory: bytes, or a word whose bytes are swapped at most."""
+        """Whether it can be copied between frame and memory: bytes, or a word whose
+        bytes are swapped at most.
+        """
         return self.model.is_bytes or self.is_plain_word
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """Runs of bits in bytes of the frame that make up a number; empty for derived values."""
+        """Runs of bits in bytes of the frame that make up a number.
+
+        Empty for derived values.
+        """
         if self.model.derived:
             return ()
-        return pieces_at(self.model.at, self.model.bits, self.orders.byte, self.orders.bit)
+        return pieces_at(
+            self.model.at, self.model.bits, self.orders.byte, self.orders.bit
+        )
 
     @property
     def is_text(self) -> bool:
-        """Whether its bytes are characters. Its physical value is a text in every language."""
+        """Whether its bytes are characters.
+
+        Its physical value is a text in every language.
+        """
         return self.model.type == "text"
 
     @property
@@ -134,7 +177,9 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def has_physical(self) -> bool:
-        """Whether it has a physical value other than the raw value, and accessors for it."""
+        """Whether it has a physical value other than the raw value, and accessors for
+        it.
+        """
         return self.is_text or self.is_scaled
 
     @property

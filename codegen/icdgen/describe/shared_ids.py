@@ -1,4 +1,6 @@
-"""Comments on messages that share an id: with which messages, and how a frame is recognised."""
+"""Comments on messages that share an id: with which messages, and how a frame is
+recognised.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +12,15 @@ from icdgen.wording import listing
 
 
 def sharing(ids: Ids, message: Message) -> str:
-    """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``; empty if no message of its node has the same id."""
+    """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``.
+
+    Returns empty if no message of its node has the same id.
+    """
     sentences: dict[str, None] = {}
-    for id, groups in ((message.telecommand_id, ids.telecommand), (message.telemetry_id, ids.telemetry)):
+    for id, groups in (
+        (message.telecommand_id, ids.telecommand),
+        (message.telemetry_id, ids.telemetry),
+    ):
         group = groups[id] if id is not None else ()
         if len(group) > 1:
             own = next(variant for variant in group if variant.message is message)
@@ -24,8 +32,13 @@ def sharing(ids: Ids, message: Message) -> str:
 def _sentence(own: Variant, group: tuple[Variant, ...]) -> str:
     other_variants = [variant for variant in group if variant is not own]
     has = [length_text(own.message)] if common_length(group) is None else []
-    has += (f"{words(field.name)} {value_text(field.const or 0)}" for field in own.constants)
+    has += (
+        f"{words(field.name)} {value_text(field.const or 0)}" for field in own.constants
+    )
     clauses = [f"has {listing(has)}"] if has else []
-    if any(is_narrower((variant.message, variant.node), (own.message, own.node)) for variant in other_variants):
+    if any(
+        is_narrower((variant.message, variant.node), (own.message, own.node))
+        for variant in other_variants
+    ):
         clauses.append("is what none of the others is")
     return f"{listing([words(variant.message.name) for variant in other_variants])}, and {' and '.join(clauses)}."

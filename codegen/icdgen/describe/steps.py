@@ -17,12 +17,16 @@ EXACT_SINGLE = 1 << 24
 
 
 def wide_parts(value: int, bits: int) -> list[int]:
-    """Return a term in 256 bits of two's complement as unsigned parts of ``bits`` bits, the least significant first."""
+    """Return a term in 256 bits of two's complement as unsigned parts of ``bits`` bits,
+    the least significant first.
+    """
     return [value >> shift & (1 << bits) - 1 for shift in range(0, 256, bits)]
 
 
 class Steps(NamedTuple):
-    """Terms of physical = (raw*p + c) / q for raw values from ``raw_min`` to ``raw_max``; q > 0, p != 0."""
+    """Terms of physical = (raw*p + c) / q for raw values from ``raw_min`` to
+    ``raw_max``; q > 0, p != 0.
+    """
 
     p: int
     c: int
@@ -57,18 +61,29 @@ class Steps(NamedTuple):
 
     @property
     def exact_in_doubles(self) -> bool:
-        """Whether every step before the division is exact in doubles, so that only the division rounds."""
+        """Whether every step before the division is exact in doubles, so that only the
+        division rounds.
+        """
         return self.exact_up_to(EXACT_DOUBLE)
 
     def exact_up_to(self, most: int) -> bool:
-        """Return whether every step before the division is a whole number of this size at most."""
+        """Return whether every step before the division is a whole number of this size
+        at most.
+        """
         products = self.raw_min * self.p, self.raw_max * self.p
-        return all(abs(n) <= most for n in (*products, *(n + self.c for n in products), self.c, self.q))
+        return all(
+            abs(n) <= most
+            for n in (*products, *(n + self.c for n in products), self.c, self.q)
+        )
 
 
 def steps(field: AnyScalar) -> Steps | None:
     """Return the steps of the scale of a field; None without a scale."""
-    return None if field.scale is None else _steps(field.scale, field.raw_min, field.raw_max)
+    return (
+        None
+        if field.scale is None
+        else _steps(field.scale, field.raw_min, field.raw_max)
+    )
 
 
 @lru_cache(maxsize=4096)

@@ -1,9 +1,11 @@
-"""Symbol table: every identifier that generated code of a language declares, with the part of the ICD that it names.
+"""Symbol table: every identifier that generated code of a language declares, with the
+part of the ICD that it names.
 
-The parts of an ICD are the same for all languages, and `symbols` is the only place that goes through them. A language has
-a `NamingPolicy`: it names one kind of part in each method. The rules on names, the comparison of ICDs and the verification
-package read the table. Templates look a single name up with `NamingPolicy.symbol`, so they cannot write a name that the
-rules do not see.
+The parts of an ICD are the same for all languages, and `symbols` is the only place that
+goes through them. A language has a `NamingPolicy`: it names one kind of part in each
+method. The rules on names, the comparison of ICDs and the verification package read the
+table. Templates look a single name up with `NamingPolicy.symbol`, so they cannot write
+a name that the rules do not see.
 """
 
 from __future__ import annotations
@@ -22,9 +24,13 @@ Part = Composite[Any] | EnumDescription
 
 
 class NamingPolicy:
-    """Names of one language. A method yields the identifiers that are declared for one part of the ICD; by default none.
+    """Names of one language.
 
-    A role distinguishes the identifiers of a part. Only names that templates look up need a role.
+    A method yields the identifiers that are declared for one part of the ICD; by
+    default none.
+
+    A role distinguishes the identifiers of a part. Only names that templates look up
+    need a role.
     """
 
     reserved: frozenset[str] = frozenset()
@@ -32,7 +38,9 @@ class NamingPolicy:
 
     def __init__(self) -> None:
         self._texts: WeakKeyDictionary[object, dict[str, str]] = WeakKeyDictionary()
-        self.tables: WeakKeyDictionary[Description, tuple[Identifier, ...]] = WeakKeyDictionary()
+        self.tables: WeakKeyDictionary[Description, tuple[Identifier, ...]] = (
+            WeakKeyDictionary()
+        )
         """Results of `symbols`: rules and backends use the same table."""
 
     def fixed(self, description: Description) -> Symbols:
@@ -40,17 +48,26 @@ class NamingPolicy:
         return ()
 
     def node(self, node: NodeDescription) -> Symbols:
-        """Names of a node: its file, its types for all messages of a direction, and what these types contain."""
+        """Names of a node: its file, its types for all messages of a direction, and
+        what these types contain.
+        """
         return ()
 
     def in_node(self, node: NodeDescription, part: Part) -> Symbols:
-        """Names of a message, struct or enumeration that are declared again for each node that declares or includes it."""
+        """Names of a message, struct or enumeration that are declared again for each
+        node that declares or includes it.
+        """
         return ()
 
-    def message_of_direction(self, node: NodeDescription, direction: str, message: MessageDescription) -> Symbols:
-        """Names of a message in a type for all messages of a direction. Included nodes can declare the message.
+    def message_of_direction(
+        self, node: NodeDescription, direction: str, message: MessageDescription
+    ) -> Symbols:
+        """Names of a message in a type for all messages of a direction.
 
-        The rules report only the first equal names of two messages. Names in such types come last.
+        Included nodes can declare the message.
+
+        The rules report only the first equal names of two messages. Names in such types
+        come last.
         """
         return ()
 
@@ -70,18 +87,31 @@ class NamingPolicy:
         """Names of a message or struct. `fields` has the names of its fields."""
         return ()
 
-    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
-        """Names of fields, overlay fields and derived values: members, getters, setters and constants.
+    def fields(
+        self, composite: Composite[Any], fields: Iterable[FieldDescription]
+    ) -> Symbols:
+        """Names of fields, overlay fields and derived values: members, getters, setters
+        and constants.
 
-        ``composite`` can be another message than that of the fields: the diff compares them under the name of an old one.
+        ``composite`` can be another message than that of the fields: the diff compares
+        them under the name of an old one.
         """
         return ()
 
-    def symbol(self, part: NodeDescription | Part | MemberDescription, role: str) -> str:
-        """Return the name of a part in a role. Raises `KeyError` if the table has no such name."""
+    def symbol(
+        self, part: NodeDescription | Part | MemberDescription, role: str
+    ) -> str:
+        """Return the name of a part in a role.
+
+        Raises `KeyError` if the table has no such name.
+        """
         texts = self._texts.get(part)
         if texts is None:
-            texts = self._texts[part] = {symbol.role: symbol.text for symbol in self._symbols_of(part) if symbol.role}
+            texts = self._texts[part] = {
+                symbol.role: symbol.text
+                for symbol in self._symbols_of(part)
+                if symbol.role
+            }
         return texts[role]
 
     def _symbols_of(self, part: NodeDescription | Part | MemberDescription) -> Symbols:
@@ -89,7 +119,11 @@ class NamingPolicy:
             return (*self.node(part), *(self.link(part) if part.is_linked else ()))
         if isinstance(part, MemberDescription):
             return self.member(part.enum, part)
-        return self.enumeration(part) if isinstance(part, EnumDescription) else self.composite(part)
+        return (
+            self.enumeration(part)
+            if isinstance(part, EnumDescription)
+            else self.composite(part)
+        )
 
 
 def symbols(description: Description, policy: NamingPolicy) -> tuple[Identifier, ...]:
@@ -120,8 +154,12 @@ def _symbols(description: Description, policy: NamingPolicy) -> Iterator[Identif
                 yield from policy.message_of_direction(node, direction.kind, message)
 
 
-def symbols_of_part(description: Description, part: Part, policy: NamingPolicy) -> Iterator[Identifier]:
-    """List the identifiers of a message, struct or enumeration, without those of its fields or members."""
+def symbols_of_part(
+    description: Description, part: Part, policy: NamingPolicy
+) -> Iterator[Identifier]:
+    """List the identifiers of a message, struct or enumeration, without those of its
+    fields or members.
+    """
     users = description.users_of(part.node)
     for node in users:
         yield from policy.in_node(node, part)

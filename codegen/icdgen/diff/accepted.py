@@ -39,7 +39,9 @@ class Acceptance(NamedTuple):
         """Whether the entry accepts this change."""
         # An entry needs only the attributes that identify the change.
         attributes = {**change.where._asdict(), "was": change.was, "now": change.now}
-        return self.code == change.code and all(attributes[key] == value for key, value in self.criteria.items())
+        return self.code == change.code and all(
+            attributes[key] == value for key, value in self.criteria.items()
+        )
 
 
 Accepted = tuple[Change, Acceptance]
@@ -66,7 +68,11 @@ def read_file(path: Path, name: str) -> tuple[list[Acceptance], str]:
     data = source.contents(path, name)
     tree = source.parse(data, name)
     findings, _ = schema.check(tree, "accepted")
-    entries = [_entry(item) for item in tree.get("changes") or () if isinstance(item, Map)] if not findings else []
+    entries = (
+        [_entry(item) for item in tree.get("changes") or () if isinstance(item, Map)]
+        if not findings
+        else []
+    )
     findings += [_unknown(entry) for entry in entries if entry.code not in RULES]
     if findings:
         raise Findings(findings)
@@ -74,7 +80,9 @@ def read_file(path: Path, name: str) -> tuple[list[Acceptance], str]:
 
 
 def _entry(item: Map) -> Acceptance:
-    criteria = {key: str(item[key]) for key in (*Where._fields, "was", "now") if key in item}
+    criteria = {
+        key: str(item[key]) for key in (*Where._fields, "was", "now") if key in item
+    }
     return Acceptance(item["code"].upper(), criteria, item["reason"], item.at("code"))
 
 
@@ -90,7 +98,10 @@ def sort_changes(
     """Return the changes that are not accepted, the accepted ones with the first
     matching entry, and unused entries.
     """
-    covered = [(change, [entry for entry in entries if entry.covers(change)]) for change in changes]
+    covered = [
+        (change, [entry for entry in entries if entry.covers(change)])
+        for change in changes
+    ]
     used = {id(entry) for _, covering in covered for entry in covering}
     accepted = [(change, covering[0]) for change, covering in covered if covering]
     stale = [entry for entry in entries if id(entry) not in used]
@@ -101,4 +112,6 @@ def about_stale(entry: Acceptance) -> Finding:
     """Return the finding about an entry that no longer matches any change."""
     where = ", ".join(f"{key} {quote(value)}" for key, value in entry.criteria.items())
     text = f"this accepted change does not happen: {entry.code} at {where}"
-    return Finding(STALE, text, entry.place, "take the entry out, or correct it", "warning")
+    return Finding(
+        STALE, text, entry.place, "take the entry out, or correct it", "warning"
+    )

@@ -69,7 +69,11 @@ class Change:
         """Confidence of the match as a word; empty for a match by name."""
         if self.sure >= 1:
             return ""
-        return "certain" if self.sure >= CERTAIN else "likely" if self.sure >= LIKELY else "uncertain"
+        return (
+            "certain"
+            if self.sure >= CERTAIN
+            else "likely" if self.sure >= LIKELY else "uncertain"
+        )
 
     @property
     def notes(self) -> list[str]:

@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 from operator import itemgetter
 
 from icdgen.diff.change import Change
-from icdgen.diff.changes import (  # noqa: F401  (importing a theme registers its rules)
-    enumerations,
-    errata,
-    frames,
-    framing,
-    layout,
-    names,
-    numbers,
-    sense,
-    structs,
-    text,
+from icdgen.diff.changes import (
+    enumerations,  # noqa: F401
+    errata,  # noqa: F401
+    frames,  # noqa: F401
+    framing,  # noqa: F401
+    layout,  # noqa: F401
+    names,  # noqa: F401
+    numbers,  # noqa: F401
+    sense,  # noqa: F401
+    structs,  # noqa: F401
+    text,  # noqa: F401
 )
 from icdgen.diff.context import Context
 from icdgen.diff.layers import LAYERS
@@ -54,7 +54,10 @@ def compare(old: Icd, new: Icd) -> Comparison:
     """
     context = Context(match(old, new))
     # The sort is stable: within a layer, changes keep the order of the ICD.
-    changes = sorted(_merge_struct_changes(_all_changes(context)), key=lambda c: LAYERS.index(c.layer))
+    changes = sorted(
+        _merge_struct_changes(_all_changes(context)),
+        key=lambda c: LAYERS.index(c.layer),
+    )
     return Comparison(context.match, changes, context)
 
 
@@ -73,11 +76,16 @@ def _merge_struct_changes(changes: Iterable[Change]) -> list[Change]:
             result.append(change)
         else:
             where = change.where
-            other_places.setdefault(indexes[key], []).append(f"{quote(where.field)} of {quote(where.message)}")
+            other_places.setdefault(indexes[key], []).append(
+                f"{quote(where.field)} of {quote(where.message)}"
+            )
     for index, places in other_places.items():
         if len(places) > MOST_PLACES:
             places[MOST_PLACES - 1 :] = [f"{len(places) - MOST_PLACES + 1} more"]
-        result[index] = replace(result[index], details=(*result[index].details, f"The same of {listing(places)}."))
+        result[index] = replace(
+            result[index],
+            details=(*result[index].details, f"The same of {listing(places)}."),
+        )
     return result
 
 
@@ -88,7 +96,9 @@ def _struct_key(change: Change) -> object:
     pair: object = change.pair
     # Some checks evaluate all fields of a message at once
     if isinstance(pair, MessagePair):
-        pair = next((part for part in pair.parts if part.any.name == change.where.field), None)
+        pair = next(
+            (part for part in pair.parts if part.any.name == change.where.field), None
+        )
     if not isinstance(pair, FieldPair) or not pair.is_of_struct:
         return None
     sides = [side for side in (pair.before, pair.after) if side is not None]
@@ -106,7 +116,11 @@ def _all_changes(context: Context) -> Iterator[Change]:
         for owner in node.declared:
             if not owner.changed or (not node.both and not owner.both):
                 continue  # additions and removals of the node include it
-            of, parts = ("message", "field") if isinstance(owner, MessagePair) else ("enum", "member")
+            of, parts = (
+                ("message", "field")
+                if isinstance(owner, MessagePair)
+                else ("enum", "member")
+            )
             yield from _run(of, owner, context)
             for part in owner.parts if owner.both else ():
                 if part.changed:
@@ -117,7 +131,11 @@ def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
     # Rules are registered for pairs with both sides, or with one side only.
     when = "both" if pair.both else "gone" if pair.after is None else "come"
     checks = _CHECKS.get((of, when), {})
-    results = [(result.code or code, result) for check, code in checks.items() for result in check(pair, context)]
+    results = [
+        (result.code or code, result)
+        for check, code in checks.items()
+        for result in check(pair, context)
+    ]
     for code, result in sorted(results, key=itemgetter(0)):
         yield _change(RULES[code], pair, result)
 
@@ -147,11 +165,16 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
     """
     if isinstance(pair, NodePair):
         return ()
-    old, new = ({e.id: e for e in side.errata} if side is not None else {} for side in (pair.before, pair.after))
+    old, new = (
+        {e.id: e for e in side.errata} if side is not None else {}
+        for side in (pair.before, pair.after)
+    )
     decisions = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)
-        affected_keys = [name for entry in (before, after) if entry for name, _ in entry.held]
+        affected_keys = [
+            name for entry in (before, after) if entry for name, _ in entry.held
+        ]
         if before != after and any(name in keys for name in affected_keys):
             decisions.append(
                 f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}"

@@ -69,16 +69,24 @@ def directions(comparison: Comparison) -> tuple[Direction, ...]:
     )  # fmt: skip
 
 
-def _answer(key: str, question: str, frames: list[Frame | None], general: tuple[str, ...]) -> Direction:
+def _answer(
+    key: str, question: str, frames: list[Frame | None], general: tuple[str, ...]
+) -> Direction:
     affected = tuple(frame for frame in frames if frame is not None)
-    if affected and len(affected) == len(frames) and all(frame.verdict == NO for frame in affected):
+    if (
+        affected
+        and len(affected) == len(frames)
+        and all(frame.verdict == NO for frame in affected)
+    ):
         verdict = NO
     else:
         verdict = PARTLY if affected or general else YES
     return Direction(key, question, verdict, affected, len(frames), general)
 
 
-def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _facts(
+    comparison: Comparison, direction: str
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the changes of protocol facts that concern all frames of a direction in
     transmission, and all frames in a log.
     """
@@ -87,10 +95,14 @@ def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tup
     for change in comparison.changes:
         if change.code in ("DIF120", "DIF121", "DIF134") and change.breaks:
             fact = change.where.section
-            if isinstance(change.pair, NodePair) and not _is_of_all(comparison, change.pair, fact, direction):
+            if isinstance(change.pair, NodePair) and not _is_of_all(
+                comparison, change.pair, fact, direction
+            ):
                 continue
             steps = fact.split(".")
-            (logs if any("log" in step for step in steps[1:2]) else wires).append(change.message)
+            (logs if any("log" in step for step in steps[1:2]) else wires).append(
+                change.message
+            )
         elif change.code == "DIF116" and change.breaks:
             wires.append(change.message)
         elif change.code in ("DIF122", "DIF123"):
@@ -98,17 +110,23 @@ def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tup
     return tuple(wires), tuple(logs)
 
 
-def _is_of_all(comparison: Comparison, node: NodePair, fact: str, direction: str) -> bool:
+def _is_of_all(
+    comparison: Comparison, node: NodePair, fact: str, direction: str
+) -> bool:
     """Return whether a fact concerns all messages of a direction.
 
     For nodes with packet formats this requires a changed packet format.
     """
     if not comparison.context.have_packet_formats(node):
         return True
-    return bool(AROUND.fullmatch(fact)) and direction in comparison.context.changed_packet_formats(node)
+    return bool(
+        AROUND.fullmatch(fact)
+    ) and direction in comparison.context.changed_packet_formats(node)
 
 
-def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False) -> list[Frame | None]:
+def _frames(
+    comparison: Comparison, key: str, judge: Judge, logged: bool = False
+) -> list[Frame | None]:
     """Return an entry for each frame of the old ICD; None for fully compatible frames.
 
     A frame of a shared ICD counts once.
@@ -117,11 +135,17 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
     for node in match.nodes:
         if node.before is None:
             continue
-        old = [(number, m) for m in match.old.messages_of(node.old) if (number := getattr(m, key)) is not None]
+        old = [
+            (number, m)
+            for m in match.old.messages_of(node.old)
+            if (number := getattr(m, key)) is not None
+        ]
         new = by_id(match.new.messages_of(node.new) if node.both else (), key)
         # Empty: the node logs all frames
         wanted = {row.id for row in node.old.loggable} if logged else set()
-        changed_formats = () if logged else comparison.context.changed_packet_formats(node)
+        changed_formats = (
+            () if logged else comparison.context.changed_packet_formats(node)
+        )
         for number, message in old:
             if wanted and number not in wanted:
                 continue
@@ -133,17 +157,24 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
             if (id(message), verdict) in seen:
                 continue
             seen.add((id(message), verdict))
-            results.append(None if verdict == YES else Frame(node.old.name, message.name, number, verdict, reasons))
+            results.append(
+                None
+                if verdict == YES
+                else Frame(node.old.name, message.name, number, verdict, reasons)
+            )
     return results
 
 
-def _counterpart(comparison: Comparison, old: Message, candidates: list[Message]) -> Message | None:
+def _counterpart(
+    comparison: Comparison, old: Message, candidates: list[Message]
+) -> Message | None:
     """Return the counterpart of the old message among the messages of an id,
     otherwise the only message of this id.
     """
     after = comparison.match.messages[id(old)].after
     return next(
-        (message for message in candidates if message is after), candidates[0] if len(candidates) == 1 else None
+        (message for message in candidates if message is after),
+        candidates[0] if len(candidates) == 1 else None,
     )
 
 
@@ -162,7 +193,9 @@ def _verdict(
     return judge(pair)
 
 
-def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple[str, ...]]:
+def _read(
+    pair: MessagePair, sent: Message, reader: Message
+) -> tuple[str, tuple[str, ...]]:
     """Return the compatibility of frames with the layout ``sent`` for software with the
     layout ``reader``.
     """
@@ -173,14 +206,26 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     own = [p for p in pair.parts if not p.any.is_read_only]
     derived = [(p, "another formula") for p in pair.common if is_derived_otherwise(p)]
     # Fields that the reader expects but the sender does not have.
-    absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
+    absent = [
+        p.any
+        for p in own
+        if not p.both and (p.before if reader is pair.old else p.after) is not None
+    ]
     wrong = [(p, why) for p in pair.common if (why := _misread(p))]
     if not absent and not wrong and not derived:
         return lengths, length_reasons
-    reasons = [*length_reasons, *_group_by_reason((p.any.name, why) for p, why in (*wrong, *derived))]
+    reasons = [
+        *length_reasons,
+        *_group_by_reason((p.any.name, why) for p, why in (*wrong, *derived)),
+    ]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == sum(not line.is_read_only for line in lines(reader.layout)) else PARTLY
+    verdict = (
+        NO
+        if len(absent) + len(wrong)
+        == sum(not line.is_read_only for line in lines(reader.layout))
+        else PARTLY
+    )
     return verdict, tuple(reasons)
 
 
@@ -211,7 +256,12 @@ def _misread(pair: FieldPair) -> str:
         return "another formula"
     if old.unit_symbol != new.unit_symbol:
         return "another unit"
-    has_other_senses = old.enum and new.enum and old.enum is not new.enum and other_senses(old.enum, new.enum)
+    has_other_senses = (
+        old.enum
+        and new.enum
+        and old.enum is not new.enum
+        and other_senses(old.enum, new.enum)
+    )
     return "values of another sense" if has_other_senses else ""
 
 
@@ -232,9 +282,16 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     lengths, length_reasons = _lengths(old, new, "are sent")
     if lengths == NO:
         return NO, length_reasons
-    results = [(part, *_disobeyed(part)) for part in pair.parts if not part.any.is_read_only]
-    reasons = [*length_reasons, *_group_by_reason((part.any.name, why) for part, why, _ in results if why)]
-    return (NO if any(refused for *_, refused in results) else PARTLY if reasons else YES), tuple(reasons)
+    results = [
+        (part, *_disobeyed(part)) for part in pair.parts if not part.any.is_read_only
+    ]
+    reasons = [
+        *length_reasons,
+        *_group_by_reason((part.any.name, why) for part, why, _ in results if why),
+    ]
+    return (
+        NO if any(refused for *_, refused in results) else PARTLY if reasons else YES
+    ), tuple(reasons)
 
 
 def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
@@ -248,7 +305,10 @@ def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
         refused = bool(new.const)
         return (f"sent as 0, must be {new.const}" if refused else "sent as 0"), refused
     if new.const is not None and old.const != new.const:
-        return f"must be {new.const}, sent as {'anything' if old.const is None else old.const}", old.const is not None
+        return (
+            f"must be {new.const}, sent as {'anything' if old.const is None else old.const}",
+            old.const is not None,
+        )
     why = _misread(pair)
     if not why and not is_wider(old.limits, new.limits):
         why = "perhaps refused, the limits are narrower"

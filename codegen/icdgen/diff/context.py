@@ -8,7 +8,15 @@ from functools import cache, cached_property
 from icdgen.diff.facts import has_packet_format, packet_formats_differ
 from icdgen.diff.generated import Generated
 from icdgen.diff.moves import moves
-from icdgen.diff.pairs import DeclaredPair, FieldPair, Match, MessagePair, NodePair, Position, position
+from icdgen.diff.pairs import (
+    DeclaredPair,
+    FieldPair,
+    Match,
+    MessagePair,
+    NodePair,
+    Position,
+    position,
+)
 from icdgen.icd.lines import lines
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.envelope import DIRECTIONS
@@ -42,7 +50,9 @@ class Context:
         for message in (m for node in self.match.new.nodes for m in node.messages):
             for field in lines(message.layout):
                 if field.enum is not None:
-                    users.setdefault(id(field.enum), []).append(f"{message.name}: {field.name}")
+                    users.setdefault(id(field.enum), []).append(
+                        f"{message.name}: {field.name}"
+                    )
         return users
 
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
@@ -58,7 +68,11 @@ class Context:
         """
         if not self.have_packet_formats(node):
             return frozenset()
-        return frozenset(direction for direction in DIRECTIONS if packet_formats_differ(*self.sides(node), direction))
+        return frozenset(
+            direction
+            for direction in DIRECTIONS
+            if packet_formats_differ(*self.sides(node), direction)
+        )
 
     def pair(self, message: Message) -> MessagePair:
         """Return the pair that contains a message."""
@@ -79,20 +93,26 @@ class Context:
 
     def is_reported_for_message(self, pair: FieldPair) -> bool:
         """Return whether another change reports the addition or removal of the field."""
-        return id(pair) in self.moves(pair.owner).causes or any(p is pair for p in self.at_the_end(pair.owner))
+        return id(pair) in self.moves(pair.owner).causes or any(
+            p is pair for p in self.at_the_end(pair.owner)
+        )
 
     def is_touched_before(self, pair: MessagePair, bit: int) -> bool:
         """Return whether any field of the first ``bit`` bits was added, removed or
         moved.
         """
         unpaired = (*pair.lost, *pair.gained)
-        return any(p.any.at < bit for p in unpaired) or any(not p.same_bits for p in pair.common)
+        return any(p.any.at < bit for p in unpaired) or any(
+            not p.same_bits for p in pair.common
+        )
 
     def messages_not_used(self, node: NodePair, side: int) -> list[Message]:
         """Return the messages of one side that the node does not use on the other side,
         although they are still declared.
         """
-        messages, other = (icd.messages_of(side_of_node) for icd, side_of_node in self.sides(node))
+        messages, other = (
+            icd.messages_of(side_of_node) for icd, side_of_node in self.sides(node)
+        )
         if side:
             messages, other = other, messages
         used = {id(self.pair(m)) for m in other}
@@ -104,7 +124,10 @@ def free_before(pair: FieldPair) -> bool:
     """Return whether the bits of an added field were free in the old frame."""
     message = pair.owner
     new_bits = _bits(position(message.new_node, pair.new))
-    return not any(new_bits & _bits(position(message.old_node, f)) for f in lines(message.old.layout))
+    return not any(
+        new_bits & _bits(position(message.old_node, f))
+        for f in lines(message.old.layout)
+    )
 
 
 def _bits(position: Position) -> set[tuple[int, int]]:

@@ -22,7 +22,9 @@ NAMES = ("name", "role", "value")  # keys that identify the rows of a list
 PART = re.compile(
     r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?"
 )  # keys whose addition or removal changes the packet format
-AROUND = re.compile(r"protocol\.stream\.(delimited_by|header|trailer)\b.*|protocol\.checksums\b.*")
+AROUND = re.compile(
+    r"protocol\.stream\.(delimited_by|header|trailer)\b.*|protocol\.checksums\b.*"
+)
 
 
 class Fact(NamedTuple):
@@ -37,7 +39,9 @@ class Fact(NamedTuple):
 
 def facts(old: Node, new: Node) -> Iterator[Fact]:
     """Yield all facts that differ, in the order of the old node, then of the new node."""
-    before, after = (_Side(node.protocol, node.source.get("protocol")) for node in (old, new))
+    before, after = (
+        _Side(node.protocol, node.source.get("protocol")) for node in (old, new)
+    )
     yield from _compare("protocol", before, after, is_word=False)
 
 
@@ -51,7 +55,9 @@ class _Side(NamedTuple):
     def inside(self, step: Any) -> _Side:
         """Return the value at a key or index, empty if it does not exist."""
         value, tree = self.value, self.tree
-        if step is None or not (step in value if isinstance(value, dict) else step < len(value)):
+        if step is None or not (
+            step in value if isinstance(value, dict) else step < len(value)
+        ):
             return _Side()
         if isinstance(tree, Map) and step in tree:
             return _Side(value[step], tree[step], tree.at(step))
@@ -67,12 +73,26 @@ def _compare(path: str, before: _Side, after: _Side, is_word: bool) -> Iterator[
         return
     if isinstance(old, dict) and isinstance(new, dict):
         for key in old | new:
-            yield from _compare(f"{path}.{key}", before.inside(key), after.inside(key), is_word or key in WORDS)
+            yield from _compare(
+                f"{path}.{key}",
+                before.inside(key),
+                after.inside(key),
+                is_word or key in WORDS,
+            )
     # Lists of mappings are compared by name, so that an insertion is one difference.
-    elif isinstance(old, list) and isinstance(new, list) and any(isinstance(v, dict) for v in (*old, *new)):
+    elif (
+        isinstance(old, list)
+        and isinstance(new, list)
+        and any(isinstance(v, dict) for v in (*old, *new))
+    ):
         was, now = _row_names(old), _row_names(new)
         for name in was | now:
-            yield from _compare(f"{path}.{name}", before.inside(was.get(name)), after.inside(now.get(name)), is_word)
+            yield from _compare(
+                f"{path}.{name}",
+                before.inside(was.get(name)),
+                after.inside(now.get(name)),
+                is_word,
+            )
     else:
         yield Fact(path, old, new, (before.place, after.place), is_word)
 
@@ -85,9 +105,15 @@ def _row_names(rows: list[Any]) -> dict[str, int]:
     index_by_name: dict[str, int] = {}
     occurrences: Counter[str] = Counter()
     for index, row in enumerate(rows):
-        key = next((str(row[k]) for k in NAMES if k in row), str(index)) if isinstance(row, dict) else str(index)
+        key = (
+            next((str(row[k]) for k in NAMES if k in row), str(index))
+            if isinstance(row, dict)
+            else str(index)
+        )
         occurrences[key] += 1
-        index_by_name[f"{key}#{occurrences[key]}" if occurrences[key] > 1 else key] = index
+        index_by_name[f"{key}#{occurrences[key]}" if occurrences[key] > 1 else key] = (
+            index
+        )
     return index_by_name
 
 
@@ -112,7 +138,9 @@ def has_packet_format(side: tuple[Icd, Node]) -> bool:
     return "stream" in side[1].protocol
 
 
-def packet_formats_differ(old: tuple[Icd, Node], new: tuple[Icd, Node], direction: str) -> bool:
+def packet_formats_differ(
+    old: tuple[Icd, Node], new: tuple[Icd, Node], direction: str
+) -> bool:
     """Return whether the packet formats of a direction are incompatible, regardless of
     the data.
     """
@@ -129,7 +157,18 @@ def _form(icd: Icd, node: Node, direction: str) -> object:
     # `values` of a constant belong to one direction; defaults of other roles do not
     # change the format.
     fields = [
-        (*astuple(field)[:-1], field.values[place] if field.role == "constant" else None) for field in stream.fields
+        (
+            *astuple(field)[:-1],
+            field.values[place] if field.role == "constant" else None,
+        )
+        for field in stream.fields
     ]
     check = None if stream.check is None else astuple(stream.check)
-    return stream.delimited_by, stream.header_bytes, stream.trailer_bytes, stream.length_plus, fields, check
+    return (
+        stream.delimited_by,
+        stream.header_bytes,
+        stream.trailer_bytes,
+        stream.length_plus,
+        fields,
+        check,
+    )

@@ -19,13 +19,26 @@ from icdgen.describe import EnumDescription, FieldDescription, describe
 from icdgen.describe.description import Composite
 from icdgen.describe.named import Part
 from icdgen.describe.symbols import NamingPolicy, symbols_of_part
-from icdgen.diff.pairs import DeclaredPair, EnumPair, FieldPair, IdentifiedPair, Match, MemberPair, MessagePair, Pair
+from icdgen.diff.pairs import (
+    DeclaredPair,
+    EnumPair,
+    FieldPair,
+    IdentifiedPair,
+    Match,
+    MemberPair,
+    MessagePair,
+    Pair,
+)
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Icd, Member, Message, Struct
 from icdgen.icd.places import NodePlace
 
-POLICIES: dict[str, NamingPolicy] = {"c": C_NAMES, "python": PYTHON_NAMES, "rust": RUST_NAMES}
+POLICIES: dict[str, NamingPolicy] = {
+    "c": C_NAMES,
+    "python": PYTHON_NAMES,
+    "rust": RUST_NAMES,
+}
 """Names of each language."""
 
 Symbol = tuple[str, Identifier]  # language, and an identifier of it
@@ -52,7 +65,9 @@ class NamesOfIcd:
         self.description = describe(icd)
 
     def symbols(self, declared: DeclaredPart) -> Iterator[Symbol]:
-        """Yield the identifiers of a message, struct or enumeration, without its fields or members."""
+        """Yield the identifiers of a message, struct or enumeration, without its fields
+        or members.
+        """
         for language, policy in POLICIES.items():
             for identifier in symbols_of_part(self.description, declared, policy):
                 if identifier.part is declared.model:
@@ -62,8 +77,13 @@ class NamesOfIcd:
         """Return the names of a message or enumeration, without its fields or members."""
         return _names(self.symbols(self.owner(declared)))
 
-    def names_in_owner(self, part: Part, declared: Declared, owner: DeclaredPart | None = None) -> tuple[Name, ...]:
-        """Return the names of a field or member that is ``declared`` there; ``owner`` can be another one."""
+    def names_in_owner(
+        self, part: Part, declared: Declared, owner: DeclaredPart | None = None
+    ) -> tuple[Name, ...]:
+        """Return the names of a field or member that is ``declared`` there.
+
+        ``owner`` can be another one.
+        """
         here = self.owner(declared)
         owner = here if owner is None else owner
         type_in_rust = RUST_NAMES.symbol(owner, "type")
@@ -72,34 +92,59 @@ class NamesOfIcd:
     def owner(self, declared: Declared) -> Composite[Message] | EnumDescription:
         """Return the description of a message or enumeration."""
         description = self.description
-        return description.message(declared) if isinstance(declared, Message) else description.enum(declared)
+        return (
+            description.message(declared)
+            if isinstance(declared, Message)
+            else description.enum(declared)
+        )
 
     def field(self, message: Message, line: Line) -> FieldDescription:
         """Return the description of a field of a message."""
         return self.description.message(message).member_for[id(line.node)]
 
 
-def symbols_in(owner: DeclaredPart, declared: DeclaredPart, part: Part) -> Iterator[Symbol]:
-    """Yield the identifiers that a field or member of ``declared`` has as a part of ``owner``."""
+def symbols_in(
+    owner: DeclaredPart, declared: DeclaredPart, part: Part
+) -> Iterator[Symbol]:
+    """Yield the identifiers that a field or member of ``declared`` has as a part of
+    ``owner``.
+    """
     for language, policy in POLICIES.items():
         identifiers: Iterable[Identifier] = ()
         if isinstance(owner, EnumDescription) and isinstance(declared, EnumDescription):
             members = (member for member in declared.members if member.part is part)
-            identifiers = (identifier for member in members for identifier in policy.member(owner, member))
+            identifiers = (
+                identifier
+                for member in members
+                for identifier in policy.member(owner, member)
+            )
         elif isinstance(owner, Composite) and isinstance(declared, Composite):
             identifiers = policy.fields(owner, (declared.member_for[id(part)],))
-        yield from ((language, identifier) for identifier in identifiers if identifier.part is part)
+        yield from (
+            (language, identifier)
+            for identifier in identifiers
+            if identifier.part is part
+        )
 
 
 def _names(symbols: Iterable[Symbol], type_in_rust: str = "") -> tuple[Name, ...]:
-    """Return the names of the API among identifiers; ``type_in_rust`` is the type of the owner of a field or member."""
+    """Return the names of the API among identifiers.
+
+    ``type_in_rust`` is the type of the owner of a field or member.
+    """
     names: dict[Name, None] = {}
     for language, identifier in symbols:
         text, stem = identifier.text, _stem(language, identifier.scope)
-        is_guard = language == "c" and text.endswith("_H") and isinstance(identifier.part, Message | Enum)
+        is_guard = (
+            language == "c"
+            and text.endswith("_H")
+            and isinstance(identifier.part, Message | Enum)
+        )
         # File names, include guards and keywords are no names of the API.
         if stem is not None and not is_guard and text.isidentifier():
-            names[Name(language, text, type_in_rust if language == "rust" else stem)] = None
+            names[
+                Name(language, text, type_in_rust if language == "rust" else stem)
+            ] = None
     return tuple(names)
 
 
@@ -112,7 +157,9 @@ class Generated:
 
     def __init__(self, match: Match) -> None:
         self._match = match
-        self._old_names_of_nodes = {node.new.name: node.old.name for node in match.nodes if node.both}
+        self._old_names_of_nodes = {
+            node.new.name: node.old.name for node in match.nodes if node.both
+        }
 
     @cached_property
     def before(self) -> NamesOfIcd:
@@ -134,7 +181,11 @@ class Generated:
         names, part = (self.after, pair.after) if side else (self.before, pair.before)
         if isinstance(part, Message | Enum):
             return names.names(part)
-        if isinstance(part, Line | Member) and isinstance(pair, FieldPair | MemberPair) and not pair.is_of_struct:
+        if (
+            isinstance(part, Line | Member)
+            and isinstance(pair, FieldPair | MemberPair)
+            and not pair.is_of_struct
+        ):
             owner = pair.owner.new if side else pair.owner.old
             return names.names_in_owner(_declaration(part), owner)
         return ()
@@ -148,18 +199,28 @@ class Generated:
         real = dict(zip(new, real_names, strict=False))
         changes: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
-            before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
+            before, later = (
+                [name for name in names if _sort(name) == key] for names in (old, new)
+            )
             # Equal numbers of names correspond in order; otherwise names are added or
             # removed.
             if len(before) == len(later):
-                changes += [(a, real.get(b, b)) for a, b in zip(before, later, strict=True) if a.text != b.text]
+                changes += [
+                    (a, real.get(b, b))
+                    for a, b in zip(before, later, strict=True)
+                    if a.text != b.text
+                ]
             else:
                 changes += [(a, None) for a in before if a not in later]
                 changes += [(None, real.get(b, b)) for b in later if b not in before]
         return changes
 
-    def _under_old_owner(self, pair: IdentifiedPair, names: tuple[Name, ...]) -> tuple[Name, ...]:
-        """Return the new ``names`` of a pair as they would be if its owner and its node had their old names."""
+    def _under_old_owner(
+        self, pair: IdentifiedPair, names: tuple[Name, ...]
+    ) -> tuple[Name, ...]:
+        """Return the new ``names`` of a pair as they would be if its owner and its node
+        had their old names.
+        """
         if isinstance(pair, MessagePair | EnumPair):
             if not self._is_of_renamed_node(pair):
                 return names
@@ -171,9 +232,14 @@ class Generated:
         return self.after.names_in_owner(_declaration(pair.new), pair.owner.new, owner)
 
     def _is_of_renamed_node(self, pair: DeclaredPair) -> bool:
-        """Return whether the new node of a message or enumeration has another name than before."""
+        """Return whether the new node of a message or enumeration has another name than
+        before.
+        """
         name = pair.new_node.name
-        return not pair.is_of_another_node and self._old_names_of_nodes.get(name, name) != name
+        return (
+            not pair.is_of_another_node
+            and self._old_names_of_nodes.get(name, name) != name
+        )
 
     def _has_other_names(self, owner: DeclaredPair) -> bool:
         """Return whether a message or enumeration, or its node, was renamed."""
@@ -186,14 +252,21 @@ class Generated:
         # With --unchecked, an ICD may contain fields that backends reject.
         if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
-        before, after = self.before.field(pair.owner.old, pair.old), self.after.field(pair.owner.new, pair.new)
+        before, after = self.before.field(pair.owner.old, pair.old), self.after.field(
+            pair.owner.new, pair.new
+        )
         after = copy(after)
-        enum = None if after.enum is None else self._match.enums.get(id(after.enum.model))
+        enum = (
+            None if after.enum is None else self._match.enums.get(id(after.enum.model))
+        )
         if enum is not None and self._has_other_names(enum):
             after.enum = self.before.description.enum(enum.old)
         if self._is_of_renamed_node(pair.owner):
             after.message = before.message
-        types = ((language, type_of(language, before), type_of(language, after)) for language in POLICIES)
+        types = (
+            (language, type_of(language, before), type_of(language, after))
+            for language in POLICIES
+        )
         return [(language, old, new) for language, old, new in types if old != new]
 
 
@@ -211,7 +284,11 @@ def type_of(language: str, field: FieldDescription) -> str:
         return rust_types.raw_type(field)
     if language == "c":
         array = f"[{place.count}]" if place.count else ""
-        return f"uint8_t{array}[{place.bits // 8}]" if place.is_bytes else f"{c_types.type_of(field)}{array}"
+        return (
+            f"uint8_t{array}[{place.bits // 8}]"
+            if place.is_bytes
+            else f"{c_types.type_of(field)}{array}"
+        )
     return python_fields.annotation(field).replace("_lazy.", "")
 
 
@@ -227,7 +304,9 @@ def may_rename(pair: IdentifiedPair) -> bool:
     if not pair.both or is_renamed(pair):
         return True
     if isinstance(pair, FieldPair):
-        return pair.owner.has_another_vocabulary or _decisive(pair.old) != _decisive(pair.new)
+        return pair.owner.has_another_vocabulary or _decisive(pair.old) != _decisive(
+            pair.new
+        )
     if isinstance(pair, MemberPair):
         return pair.owner.has_another_vocabulary
     return pair.is_of_another_node or pair.has_another_vocabulary
@@ -252,7 +331,11 @@ def _is_sound(field: NodePlace) -> bool:
     """
     if field.is_bytes:
         return field.at % 8 == field.bits % 8 == 0
-    conditions = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
+    conditions = {
+        "bool": field.bits == 1,
+        "float": field.bits in (32, 64),
+        "enum": field.enum is not None,
+    }
     return field.bits <= 64 and conditions.get(field.type, True)
 
 
@@ -274,4 +357,8 @@ def _stem(language: str, scope: str) -> str | None:
     if not scope.startswith("members of "):
         return ""
     owner = scope.removeprefix("members of ")
-    return owner.removesuffix("_t").lower() if language == "c" else owner.rpartition(".")[2]
+    return (
+        owner.removesuffix("_t").lower()
+        if language == "c"
+        else owner.rpartition(".")[2]
+    )

@@ -51,15 +51,33 @@ Keys = Callable[[Thing], Iterable[object]]
 def match(old: Icd, new: Icd) -> Match:
     """Return all matched pairs of two ICDs."""
     result = Match(old, new)
-    result.nodes = [NodePair(*pair) for pair in _side_by_side(old.nodes, new.nodes, _renamed_nodes)]
+    result.nodes = [
+        NodePair(*pair) for pair in _side_by_side(old.nodes, new.nodes, _renamed_nodes)
+    ]
     for node, enum in _paired(
-        result.nodes, EnumPair, lambda node: node.enums, lambda enum: enum.name, _ENUMS_LIKELY, _members
+        result.nodes,
+        EnumPair,
+        lambda node: node.enums,
+        lambda enum: enum.name,
+        _ENUMS_LIKELY,
+        _members,
     ):
         node.enums.append(enum)
-        result.enums.update((id(side), enum) for side in (enum.before, enum.after) if side is not None)
-    for node, pair in _paired(result.nodes, MessagePair, lambda node: node.messages, _rank, _MESSAGES_LIKELY, _fields):
+        result.enums.update(
+            (id(side), enum) for side in (enum.before, enum.after) if side is not None
+        )
+    for node, pair in _paired(
+        result.nodes,
+        MessagePair,
+        lambda node: node.messages,
+        _rank,
+        _MESSAGES_LIKELY,
+        _fields,
+    ):
         node.messages.append(pair)
-        result.messages.update((id(side), pair) for side in (pair.before, pair.after) if side is not None)
+        result.messages.update(
+            (id(side), pair) for side in (pair.before, pair.after) if side is not None
+        )
     _in_order(result)
     return result
 
@@ -77,11 +95,19 @@ def _side_by_side(
     if all(remaining):
         pairs += likely(pairs, *remaining)
     taken = {id(thing) for pair in pairs for thing in pair[:2]}
-    removed, added = ([thing for thing in things if id(thing) not in taken] for things in remaining)
-    return [*pairs, *((thing, None, 1.0) for thing in removed), *((None, thing, 1.0) for thing in added)]
+    removed, added = (
+        [thing for thing in things if id(thing) not in taken] for things in remaining
+    )
+    return [
+        *pairs,
+        *((thing, None, 1.0) for thing in removed),
+        *((None, thing, 1.0) for thing in added),
+    ]
 
 
-def _by_name(old: Iterable[Named], new: Iterable[Named]) -> tuple[list[Two[Named]], Sides[Named]]:
+def _by_name(
+    old: Iterable[Named], new: Iterable[Named]
+) -> tuple[list[Two[Named]], Sides[Named]]:
     """Return pairs of equal names, and the remaining objects of each side.
 
     Repeated names are matched in order.
@@ -101,7 +127,11 @@ def _by_name(old: Iterable[Named], new: Iterable[Named]) -> tuple[list[Two[Named
 
 
 def _best_pairs(
-    old: Sequence[Thing], new: Sequence[Thing], score: Score[Thing], least: float, keys: Keys[Thing]
+    old: Sequence[Thing],
+    new: Sequence[Thing],
+    score: Score[Thing],
+    least: float,
+    keys: Keys[Thing],
 ) -> list[Two[Thing]]:
     """Return the best pairs by score, selected greedily. Ties prefer similar positions.
 
@@ -132,7 +162,9 @@ def _best_pairs(
     return pairs
 
 
-def _renamed_nodes(pairs: list[Two[Node]], old: list[Node], new: list[Node]) -> list[Two[Node]]:
+def _renamed_nodes(
+    pairs: list[Two[Node]], old: list[Node], new: list[Node]
+) -> list[Two[Node]]:
     return _best_pairs(old, new, _node_score, SAME_NODE, _node_keys)
 
 
@@ -142,7 +174,9 @@ def _node_keys(node: Node) -> frozenset[object]:
 
 def _node_score(old: Node, new: Node) -> float:
     keys = _node_keys(old), _node_keys(new)
-    return 0.9 * overlap(*keys) + 0.1 * likeness(old.name, new.name) if any(keys) else 0.0
+    return (
+        0.9 * overlap(*keys) + 0.1 * likeness(old.name, new.name) if any(keys) else 0.0
+    )
 
 
 @dataclass(eq=False)
@@ -174,16 +208,27 @@ def _paired(
     kind: Callable[..., Paired],
     declared: Callable[[Node], Sequence[Declared]],
     rank: Callable[[Declared], Any],
-    likely: Iterable[tuple[Score[_Unmatched[Declared]], Keys[_Unmatched[Declared]], float]],
+    likely: Iterable[
+        tuple[Score[_Unmatched[Declared]], Keys[_Unmatched[Declared]], float]
+    ],
     parts: Callable[[Paired], list[Any]],
 ) -> Iterator[tuple[NodePair, Paired]]:
     """Yield pairs of declarations with the node of their new side: by name within a
     node, then by each score in turn.
     """
 
-    def paired(home: NodePair, node: NodePair, old: object, new: object, sure: float = 1.0) -> tuple[NodePair, Paired]:
+    def paired(
+        home: NodePair, node: NodePair, old: object, new: object, sure: float = 1.0
+    ) -> tuple[NodePair, Paired]:
         elsewhere = home is not node
-        pair = kind(old, new, sure, old_node=home.before or home.any, new_node=node.any, is_of_another_node=elsewhere)
+        pair = kind(
+            old,
+            new,
+            sure,
+            old_node=home.before or home.any,
+            new_node=node.any,
+            is_of_another_node=elsewhere,
+        )
         if not pair.both or pair.changed:
             pair.parts = parts(pair)
         return node, pair
@@ -192,7 +237,10 @@ def _paired(
     left_new: list[_Unmatched[Declared]] = []
     for node in nodes:
         pairs, (old, new) = _by_name(
-            *(declared(side) if side is not None else () for side in (node.before, node.after))
+            *(
+                declared(side) if side is not None else ()
+                for side in (node.before, node.after)
+            )
         )
         yield from (paired(node, node, *pair) for pair in pairs)
         left_old += [_Unmatched(node, thing) for thing in sorted(old, key=rank)]
@@ -200,8 +248,12 @@ def _paired(
     # Each score only sees the objects that earlier scores left unmatched.
     for score, keys, least in likely:
         taken: set[_Unmatched[Declared]] = set()
-        for old_item, new_item, sure in _best_pairs(left_old, left_new, score, least, keys):
-            yield paired(old_item.home, new_item.home, old_item.thing, new_item.thing, sure)
+        for old_item, new_item, sure in _best_pairs(
+            left_old, left_new, score, least, keys
+        ):
+            yield paired(
+                old_item.home, new_item.home, old_item.thing, new_item.thing, sure
+            )
             taken |= {old_item, new_item}
         left_old = [left for left in left_old if left not in taken]
         left_new = [left for left in left_new if left not in taken]
@@ -214,7 +266,11 @@ def _name(left: _Unmatched[Any]) -> Iterable[object]:
 
 
 def _moved_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
-    return 1.0 if old.thing.name == new.thing.name and overlap(old.members, new.members) >= 0.3 else 0.0
+    return (
+        1.0
+        if old.thing.name == new.thing.name and overlap(old.members, new.members) >= 0.3
+        else 0.0
+    )
 
 
 def _member_keys(left: _Unmatched[Enum]) -> Iterable[object]:
@@ -224,10 +280,15 @@ def _member_keys(left: _Unmatched[Enum]) -> Iterable[object]:
 def _renamed_enum(old: _Unmatched[Enum], new: _Unmatched[Enum]) -> float:
     if old.home is not new.home:
         return 0.0
-    return 0.85 * overlap(old.members, new.members) + 0.15 * likeness(old.thing.name, new.thing.name)
+    return 0.85 * overlap(old.members, new.members) + 0.15 * likeness(
+        old.thing.name, new.thing.name
+    )
 
 
-_ENUMS_LIKELY = ((_moved_enum, _name, SAME_ENUM), (_renamed_enum, _member_keys, SAME_ENUM))
+_ENUMS_LIKELY = (
+    (_moved_enum, _name, SAME_ENUM),
+    (_renamed_enum, _member_keys, SAME_ENUM),
+)
 
 
 def _members(pair: EnumPair) -> list[MemberPair]:
@@ -235,7 +296,11 @@ def _members(pair: EnumPair) -> list[MemberPair]:
     new = list(pair.after.members) if pair.after else []
     pairs: list[MemberPair] = []
     # From the most to the least reliable key; ambiguous keys match nothing.
-    keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.values, m.name), lambda m: m.name, lambda m: m.value)
+    keys: tuple[Callable[[Member], object], ...] = (
+        lambda m: (m.values, m.name),
+        lambda m: m.name,
+        lambda m: m.value,
+    )
     for key in keys:
         for member in list(old):
             same_key = [m for m in old if key(m) == key(member)]
@@ -258,14 +323,23 @@ def _rank(message: Message) -> object:
 
 def _moved_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> float:
     same = left.thing.name == right.thing.name and left.thing.kind == right.thing.kind
-    return 1.0 if same and (left.thing.ids == right.thing.ids or _layouts_alike(left, right) > 0.5) else 0.0
+    return (
+        1.0
+        if same
+        and (left.thing.ids == right.thing.ids or _layouts_alike(left, right) > 0.5)
+        else 0.0
+    )
 
 
 def _message_keys(left: _Unmatched[Message]) -> Iterable[object]:
     """Yield the keys of a message: ids, field names (None without fields), and the
     layout with the letters of the name.
     """
-    yield from ((left.home, place, id) for place, id in enumerate(_ids(left.thing)) if id is not None)
+    yield from (
+        (left.home, place, id)
+        for place, id in enumerate(_ids(left.thing))
+        if id is not None
+    )
     yield from ((left.home, name) for name in left.field_names or (None,))
     yield left.home, left.shape, letters(left.thing.name)
 
@@ -275,7 +349,9 @@ def _renamed_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> f
     old, new = left.thing, right.thing
     if left.home is not right.home or not _same_direction(old, new):
         return 0.0
-    same_id = any(a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True))
+    same_id = any(
+        a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True)
+    )
     names = overlap(left.field_names, right.field_names)
     # The layout counts most, then the id: names change more often than both.
     layout = 0.4 * _layouts_alike(left, right) + 0.2 * names + 0.25 * same_id
@@ -283,7 +359,11 @@ def _renamed_message(left: _Unmatched[Message], right: _Unmatched[Message]) -> f
         # Even equal names could not reach the minimum; their comparison is slow
         return 0.0
     alike = likeness(old.name, new.name)
-    if not same_id and min(len(lines(old.layout)), len(lines(new.layout))) < 2 and alike < 0.6:
+    if (
+        not same_id
+        and min(len(lines(old.layout)), len(lines(new.layout))) < 2
+        and alike < 0.6
+    ):
         return 0.0  # too few fields for a match by layout alone
     return layout + 0.15 * alike
 
@@ -303,7 +383,10 @@ def _layouts_alike(old: _Unmatched[Message], new: _Unmatched[Message]) -> float:
     return 0.75 if old.thing.length == new.thing.length else 0.0
 
 
-_MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _message_keys, SAME_MESSAGE))
+_MESSAGES_LIKELY = (
+    (_moved_message, _name, SAME_MESSAGE),
+    (_renamed_message, _message_keys, SAME_MESSAGE),
+)
 
 
 # Fields
@@ -314,10 +397,21 @@ def _fields(pair: MessagePair) -> list[FieldPair]:
     each use of it.
     """
     old, new = (
-        sorted((line for line in lines(message.layout) if not line.is_count), key=_place) if message else []
+        (
+            sorted(
+                (line for line in lines(message.layout) if not line.is_count),
+                key=_place,
+            )
+            if message
+            else []
+        )
         for message in (pair.before, pair.after)
     )
-    pairs = _side_by_side(old, new, lambda pairs_by_name, *left: _renamed_fields(pair, pairs_by_name, *left))
+    pairs = _side_by_side(
+        old,
+        new,
+        lambda pairs_by_name, *left: _renamed_fields(pair, pairs_by_name, *left),
+    )
     field_pairs = [FieldPair(*sides, owner=pair) for sides in pairs]
     return sorted(field_pairs, key=lambda p: _place(p.before or p.new))
 
@@ -331,7 +425,10 @@ def _renamed_fields(
 ) -> list[Two[Line]]:
     spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
                             ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
-    spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
+    spans = {
+        id(f): span
+        for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)
+    }
     shifts = _Shifts(pairs_by_name)
 
     def sense(line: Line) -> object:
@@ -342,7 +439,10 @@ def _renamed_fields(
         return spans[id(line)], (line.bits, sense(line))
 
     def score(old_line: Line, new_line: Line) -> float:
-        same_kind, same_span = kind(old_line) == kind(new_line), spans[id(old_line)] == spans[id(new_line)]
+        same_kind, same_span = (
+            kind(old_line) == kind(new_line),
+            spans[id(old_line)] == spans[id(new_line)],
+        )
         # A field that changed both position and size has no evidence left but its name.
         if not same_span and (old_line.bits != new_line.bits or not same_kind):
             return 0.0
@@ -387,8 +487,14 @@ def _in_order(result: Match) -> None:
     old order.
     """
     nodes = (*result.old.nodes, *result.new.nodes)
-    rows = (declarations for node in nodes for declarations in (node.messages, node.enums))
-    places = {id(thing): number for declarations in rows for number, thing in enumerate(declarations)}
+    rows = (
+        declarations for node in nodes for declarations in (node.messages, node.enums)
+    )
+    places = {
+        id(thing): number
+        for declarations in rows
+        for number, thing in enumerate(declarations)
+    }
 
     def rank(pair: DeclaredPair) -> tuple[bool, int]:
         return pair.after is None, places[id(pair.any)]

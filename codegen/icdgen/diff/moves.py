@@ -44,7 +44,9 @@ class Moves:
 class _Order:
     """Fields that exist in both ICDs, in the order of one frame."""
 
-    def __init__(self, pairs: list[FieldPair], side: Callable[[FieldPair], Line]) -> None:
+    def __init__(
+        self, pairs: list[FieldPair], side: Callable[[FieldPair], Line]
+    ) -> None:
         self.rows = sorted(pairs, key=lambda pair: (side(pair).at, side(pair).name))
         self.rank = {id(pair): number for number, pair in enumerate(self.rows)}
 
@@ -58,7 +60,9 @@ def moves(message: MessagePair) -> Moves:
     result = Moves()
     if not any(pair.moved for pair in message.common):
         return result
-    old, new = _Order(message.common, lambda pair: pair.old), _Order(message.common, lambda pair: pair.new)
+    old, new = _Order(message.common, lambda pair: pair.old), _Order(
+        message.common, lambda pair: pair.new
+    )
     groups: dict[int, list[FieldPair]] = {}
     # Fields that moved by the same distance may belong to one move.
     for pair in old.rows:
@@ -95,11 +99,18 @@ def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
     # Only fields between the previous common field and the move can have caused it.
     start_old = before_old.old.at if before_old else -1
     start_new = before_new.new.at if before_new else -1
-    lost, gained = ([pair for pair in side if not pair.any.is_read_only] for side in (message.lost, message.gained))
+    lost, gained = (
+        [pair for pair in side if not pair.any.is_read_only]
+        for side in (message.lost, message.gained)
+    )
     move.lost = [pair for pair in lost if start_old <= pair.old.at < first.old.at]
     move.gained = [pair for pair in gained if start_new <= pair.new.at < first.new.at]
     # A field that only changed its width shifts all fields behind it.
-    if before_old is not None and before_old is before_new and before_old.old.width != before_old.new.width:
+    if (
+        before_old is not None
+        and before_old is before_new
+        and before_old.old.width != before_old.new.width
+    ):
         move.resized = [before_old]
     longer = (message.new.layout.length - message.old.layout.length) * 8
     at_the_end = last is old.rows[-1] or last is new.rows[-1]

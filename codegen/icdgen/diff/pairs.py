@@ -18,7 +18,8 @@ from icdgen.icd.lines import Line
 from icdgen.icd.model import Enum, Erratum, Icd, Member, Message, Node, Struct
 from icdgen.icd.pieces import Piece, pieces_at
 
-# Names of ICD keys in the output of ``icdgen show``, which is a possible input of the diff.
+# Names of ICD keys in the output of ``icdgen show``, which is a possible input of the
+# diff.
 _SHOWN = {
     "at": ("offset",),
     "formula": ("scale", "coefficients", "points"),
@@ -131,7 +132,11 @@ class FieldPair(SideBySide[Line]):
 
     @property
     def changed(self) -> bool:
-        return not self.both or self.old.content != self.new.content or self.owner.has_another_vocabulary
+        return (
+            not self.both
+            or self.old.content != self.new.content
+            or self.owner.has_another_vocabulary
+        )
 
     @cached_property
     def same_bits(self) -> bool:
@@ -141,7 +146,10 @@ class FieldPair(SideBySide[Line]):
         """
         was, now = (
             position(node, line, self.is_open)
-            for node, line in ((self.owner.old_node, self.old), (self.owner.new_node, self.new))
+            for node, line in (
+                (self.owner.old_node, self.old),
+                (self.owner.new_node, self.new),
+            )
         )
         return was == now
 
@@ -149,7 +157,11 @@ class FieldPair(SideBySide[Line]):
     def is_open(self) -> bool:
         """Whether the field belongs to a variable-length part on either side."""
         sides = (self.owner.old, self.old), (self.owner.new, self.new)
-        return any(line.levels[0].node is node for message, line in sides for node in message.layout.sequence)
+        return any(
+            line.levels[0].node is node
+            for message, line in sides
+            for node in message.layout.sequence
+        )
 
     @property
     def is_of_struct(self) -> bool:
@@ -175,7 +187,9 @@ class EnumPair(_DeclaredPair[Enum, MemberPair]):
 class MessagePair(_DeclaredPair[Message, FieldPair]):
     @cached_property
     def changed(self) -> bool:
-        return self.before != self.after or self.reordered or self.has_another_vocabulary
+        return (
+            self.before != self.after or self.reordered or self.has_another_vocabulary
+        )
 
     def where(self) -> Where:
         return Where(self.node.name, message=self.any.name)
@@ -262,7 +276,9 @@ def position(node: Node, line: Line, first_only: bool = False) -> Position:
         bits = 8 if first_only and line.scalar.length is not None else line.bits
         return tuple(range(at // 8, (at + bits + 7) // 8) for at in starts)
     own = line.orders_in_effect(node.orders)
-    return tuple(piece for at in starts for piece in pieces_at(at, line.bits, own.byte, own.bit))
+    return tuple(
+        piece for at in starts for piece in pieces_at(at, line.bits, own.byte, own.bit)
+    )
 
 
 def kind(line: Line) -> str:
@@ -289,7 +305,18 @@ def differing(
 
 
 def place_of(
-    thing: Node | Message | Line | LayoutNode | Struct | Enum | Member | Loggable | Erratum | None,
+    thing: (
+        Node
+        | Message
+        | Line
+        | LayoutNode
+        | Struct
+        | Enum
+        | Member
+        | Loggable
+        | Erratum
+        | None
+    ),
     keys: tuple[str, ...],
 ) -> Place | None:
     """Return the place of the first existing key, otherwise of the object itself.
@@ -298,7 +325,11 @@ def place_of(
     """
     if thing is None:
         return None
-    source = thing.source.get("node", thing.source) if isinstance(thing, Node) else thing.source
+    source = (
+        thing.source.get("node", thing.source)
+        if isinstance(thing, Node)
+        else thing.source
+    )
     for key in keys:
         for name in (key, *_SHOWN.get(key, ())):
             if name in source.spots:

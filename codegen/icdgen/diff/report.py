@@ -53,13 +53,19 @@ class Report:
 
         Additions count only if ``additions`` is given.
         """
-        return [c for c in self.changes if (ADDITIONS if c.addition else c.layer) in layers]
+        return [
+            c for c in self.changes if (ADDITIONS if c.addition else c.layer) in layers
+        ]
 
 
 def _placed(change: Change, old: Side, new: Side) -> Change:
     """Return the change with places in files as the user named them."""
     places = old.place(change.old), new.place(change.new)
-    return change if places == (change.old, change.new) else replace(change, old=places[0], new=places[1])
+    return (
+        change
+        if places == (change.old, change.new)
+        else replace(change, old=places[0], new=places[1])
+    )
 
 
 def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report:
@@ -67,4 +73,11 @@ def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report
     comparison = compare(old.icd, new.icd)
     comparison.changes = [_placed(change, old, new) for change in comparison.changes]
     sorted_changes = sort_changes(comparison.changes, acceptances)
-    return Report(old, new, comparison, *sorted_changes, directions(comparison), step(comparison.changes))
+    return Report(
+        old,
+        new,
+        comparison,
+        *sorted_changes,
+        directions(comparison),
+        step(comparison.changes),
+    )

@@ -69,7 +69,11 @@ REGISTERED: dict[str, Rule] = {}
 
 
 def rule(
-    code: str, *of: str, severity: str = "error", addition: bool = False, when: str = "both"
+    code: str,
+    *of: str,
+    severity: str = "error",
+    addition: bool = False,
+    when: str = "both",
 ) -> Callable[[Check], Check]:
     """Register the decorated function as check of a rule. The name of its module is the
     theme.
@@ -82,7 +86,9 @@ def rule(
         if code in REGISTERED:
             raise ValueError(f"two rules are called {code}")
         theme = check.__module__.rpartition(".")[2]
-        REGISTERED[code] = Rule(code, LAYERS[int(code[3]) - 1], of, theme, check, severity, addition, when)
+        REGISTERED[code] = Rule(
+            code, LAYERS[int(code[3]) - 1], of, theme, check, severity, addition, when
+        )
         return check
 
     return register
@@ -94,4 +100,6 @@ def explain(code: str) -> str:
     Raises `KeyError`.
     """
     rule = REGISTERED[code]
-    return pages.text(rule.code, f"{rule.layer}, {rule.severity}", rule.page, ("Before", "After"))
+    return pages.text(
+        rule.code, f"{rule.layer}, {rule.severity}", rule.page, ("Before", "After")
+    )

@@ -17,14 +17,20 @@ def likeness(first_name: str, second_name: str) -> float:
     """
     first, second = letters(first_name), letters(second_name)
     # Sørensen–Dice coefficient of bigrams: tolerant of inserted words and plural forms.
-    return 2 * len(first & second) / (len(first) + len(second)) if first or second else 1.0
+    return (
+        2 * len(first & second) / (len(first) + len(second)) if first or second else 1.0
+    )
 
 
 @lru_cache(maxsize=1 << 18)
 def letters(name: str) -> frozenset[str]:
     """Return the pairs of letters of the words of a name, as compared by `likeness`."""
     text = f" {' '.join(words(name))} "
-    return frozenset(text[i : i + 2] for i in range(len(text) - 1)) if text.strip() else frozenset()
+    return (
+        frozenset(text[i : i + 2] for i in range(len(text) - 1))
+        if text.strip()
+        else frozenset()
+    )
 
 
 def overlap(first: frozenset[object], second: frozenset[object]) -> float:
@@ -38,9 +44,20 @@ def other_senses(old: Enum, new: Enum) -> list[int]:
     """Return the values whose names have different meanings; for ranges, their first
     and last value.
     """
-    ends = sorted({value for enum in (old, new) for member in enum.members for value in (member.value, member.last)})
+    ends = sorted(
+        {
+            value
+            for enum in (old, new)
+            for member in enum.members
+            for value in (member.value, member.last)
+        }
+    )
     named = ((value, old.member_of(value), new.member_of(value)) for value in ends)
-    return [value for value, was, now in named if was and now and not same_sense(was.name, now.name)]
+    return [
+        value
+        for value, was, now in named
+        if was and now and not same_sense(was.name, now.name)
+    ]
 
 
 @lru_cache(maxsize=1 << 18)
@@ -65,11 +82,17 @@ def extends(first_name: str, second_name: str) -> bool:
     """
     first, second = sorted((words(first_name), words(second_name)), key=len)
     remaining_words = iter(second)
-    return bool(first) and not _NEGATIONS.intersection(second) and all(word in remaining_words for word in first)
+    return (
+        bool(first)
+        and not _NEGATIONS.intersection(second)
+        and all(word in remaining_words for word in first)
+    )
 
 
 # Additional words that reverse the meaning.
-_NEGATIONS = frozenset("no not non un in dis de off without anti negative inverse inverted".split())
+_NEGATIONS = frozenset(
+    "no not non un in dis de off without anti negative inverse inverted".split()
+)
 
 
 def _is_slip(first: str, second: str) -> bool:
@@ -79,10 +102,16 @@ def _is_slip(first: str, second: str) -> bool:
     Numbers and first letters must be equal.
     """
     # "roll" and "poll" differ by a letter but are different words.
-    if min(len(first), len(second)) < _SHORTEST or first[0] != second[0] or any(c.isdigit() for c in first + second):
+    if (
+        min(len(first), len(second)) < _SHORTEST
+        or first[0] != second[0]
+        or any(c.isdigit() for c in first + second)
+    ):
         return False
     if len(first) == len(second):
-        differences = [i for i, (a, b) in enumerate(zip(first, second, strict=True)) if a != b]
+        differences = [
+            i for i, (a, b) in enumerate(zip(first, second, strict=True)) if a != b
+        ]
         if len(differences) == 1:
             return {first[differences[0]], second[differences[0]]} == {"s", "z"}
         return (
@@ -91,4 +120,6 @@ def _is_slip(first: str, second: str) -> bool:
             and first[differences[1]] == second[differences[0]]
         )
     short, long = sorted((first, second), key=len)
-    return len(long) - len(short) == 1 and any(long[:i] + long[i + 1 :] == short for i in range(len(long)))
+    return len(long) - len(short) == 1 and any(
+        long[:i] + long[i + 1 :] == short for i in range(len(long))
+    )

@@ -17,7 +17,9 @@ from icdgen.diff.pairs import EnumPair, MessagePair, Pair
 from icdgen.errors import UserError
 
 SUFFIXES = {
-    **dict.fromkeys((".c", ".h", ".cc", ".cpp", ".cxx", ".hh", ".hpp", ".hxx", ".inc", ".ino"), "c"),
+    **dict.fromkeys(
+        (".c", ".h", ".cc", ".cpp", ".cxx", ".hh", ".hpp", ".hxx", ".inc", ".ino"), "c"
+    ),
     **dict.fromkeys((".py", ".pyi"), "python"),
     ".rs": "rust",
 }
@@ -25,14 +27,19 @@ SUFFIXES = {
 MARK = "enerated by icdgen"
 _HEAD = 400
 _MOST = 8_000_000  # bytes of a source file that are searched
-_SKIPPED = frozenset((".git", ".hg", ".svn", "node_modules", "__pycache__", ".venv", "target"))
+_SKIPPED = frozenset(
+    (".git", ".hg", ".svn", "node_modules", "__pycache__", ".venv", "target")
+)
 
 _NAME = r"(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
-_C_LIKE = re.compile(rf'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|{_NAME}', re.DOTALL)
-_TEXT = (
-    r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
+_C_LIKE = re.compile(
+    rf'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|{_NAME}', re.DOTALL
 )
-_PYTHON = re.compile(rf"#[^\n]*|(?P<format>[rR]?[fF][rR]?{_TEXT})|[rbuRBU]{{0,2}}{_TEXT}|{_NAME}", re.DOTALL)
+_TEXT = r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
+_PYTHON = re.compile(
+    rf"#[^\n]*|(?P<format>[rR]?[fF][rR]?{_TEXT})|[rbuRBU]{{0,2}}{_TEXT}|{_NAME}",
+    re.DOTALL,
+)
 _FORMATTED = re.compile(r"(?<!\{)\{(?!\{)[^{}]*")  # expressions of an f-string
 _INNER = re.compile(_NAME)
 _LEXERS = {"c": _C_LIKE, "rust": _C_LIKE, "python": _PYTHON}
@@ -63,7 +70,9 @@ class Use(NamedTuple):
 _ChangesByName = dict[str, dict[str, list[Change]]]
 
 
-def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]) -> list[Use]:
+def uses(
+    comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]
+) -> list[Use]:
     """Return all uses of changed names, by file and line.
 
     Comments and strings are ignored. Raises `UserError`.
@@ -77,7 +86,9 @@ def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path
     return results
 
 
-def _changed_names(comparison: Comparison, changes: Iterable[Change]) -> dict[str, _ChangesByName]:
+def _changed_names(
+    comparison: Comparison, changes: Iterable[Change]
+) -> dict[str, _ChangesByName]:
     """Return the changed names by language.
 
     Changes of the text layer affect no sources.
@@ -87,14 +98,22 @@ def _changed_names(comparison: Comparison, changes: Iterable[Change]) -> dict[st
         if not change.breaks:
             continue
         for name in _names(change, comparison.context.generated):
-            result[name.language].setdefault(name.text, {}).setdefault(name.stem, []).append(change)
+            result[name.language].setdefault(name.text, {}).setdefault(
+                name.stem, []
+            ).append(change)
     return result
 
 
 def _names(change: Change, generated: Generated) -> Iterator[Name]:
     pair: Pair = change.pair
     yield from generated.old(pair)
-    if isinstance(pair, EnumPair | MessagePair) and change.code in ("DIF101", "DIF301", "DIF303", "DIF306", "DIF310"):
+    if isinstance(pair, EnumPair | MessagePair) and change.code in (
+        "DIF101",
+        "DIF301",
+        "DIF303",
+        "DIF306",
+        "DIF310",
+    ):
         for part in pair.parts:
             yield from (name for name in generated.old(part) if not name.stem)
 
@@ -102,7 +121,10 @@ def _names(change: Change, generated: Generated) -> Iterator[Name]:
 def _sources(top: Path) -> Iterator[Path]:
     if os.path.isfile(top):
         if top.suffix.lower() not in SUFFIXES:
-            raise UserError(f"{top} is no C, Python or Rust source", f"known are {', '.join(SUFFIXES)}")
+            raise UserError(
+                f"{top} is no C, Python or Rust source",
+                f"known are {', '.join(SUFFIXES)}",
+            )
         yield top
         return
     if not os.path.isdir(top):
@@ -110,7 +132,11 @@ def _sources(top: Path) -> Iterator[Path]:
     for folder, folders, files in os.walk(top):
         # Assignment to the slice makes `os.walk` skip the other folders.
         folders[:] = sorted(name for name in folders if name not in _SKIPPED)
-        yield from (Path(folder, name) for name in sorted(files) if Path(name).suffix.lower() in SUFFIXES)
+        yield from (
+            Path(folder, name)
+            for name in sorted(files)
+            if Path(name).suffix.lower() in SUFFIXES
+        )
 
 
 def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterator[Use]:
@@ -118,7 +144,9 @@ def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterat
         with open(path, "rb") as file:
             text = file.read(_MOST).decode("utf-8", "replace")
     except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}", "make it readable, or leave it out") from None
+        raise UserError(
+            f"cannot read {path}: {error.strerror}", "make it readable, or leave it out"
+        ) from None
     # Generated code is regenerated, so its uses are not the user's concern.
     if MARK in text[:_HEAD]:
         return
@@ -127,11 +155,22 @@ def _in_file(path: Path, language: str, changed_names: _ChangesByName) -> Iterat
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
     for name, start in tokens:
         touched = changed_names.get(name, {}).items()
-        rows = [changes for stem, changes in touched if not stem or _mentions(language, mentioned, stem)]
+        rows = [
+            changes
+            for stem, changes in touched
+            if not stem or _mentions(language, mentioned, stem)
+        ]
         if rows:
             number = bisect_right(starts, start)
             line = text[starts[number - 1] :].split("\n", 1)[0].rstrip("\r")
-            yield Use(str(path), number, start - starts[number - 1] + 1, name, line, tuple(dict.fromkeys(chain(*rows))))
+            yield Use(
+                str(path),
+                number,
+                start - starts[number - 1] + 1,
+                name,
+                line,
+                tuple(dict.fromkeys(chain(*rows))),
+            )
 
 
 def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:
@@ -141,7 +180,10 @@ def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:
             yield match["name"], match.start("name")
         elif match.groupdict().get("format"):
             for part in _FORMATTED.finditer(text, match.start(), match.end()):
-                yield from ((m["name"], m.start()) for m in _INNER.finditer(text, part.start(), part.end()))
+                yield from (
+                    (m["name"], m.start())
+                    for m in _INNER.finditer(text, part.start(), part.end())
+                )
 
 
 def _mentions(language: str, mentioned: set[str], stem: str) -> bool:
@@ -150,4 +192,6 @@ def _mentions(language: str, mentioned: set[str], stem: str) -> bool:
     # `DEMO_STATUS_LENGTH`).
     if language != "c":
         return stem in mentioned
-    return any(name == stem or name.lower().startswith(f"{stem}_") for name in mentioned)
+    return any(
+        name == stem or name.lower().startswith(f"{stem}_") for name in mentioned
+    )

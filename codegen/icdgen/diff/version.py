@@ -31,17 +31,32 @@ def step(changes: list[Change]) -> Step:
     # https://semver.org: an incompatible change of any layer is a major step.
     if breaking:
         counts = Counter(change.layer for change in breaking)
-        counts_by_layer = [f"{count(counts[layer], 'change')} of {_OF[layer]}" for layer in LAYERS if counts[layer]]
-        return Step(MAJOR, f"{listing(counts_by_layer)}, the first: {breaking[0].message}", _codes(breaking))
+        counts_by_layer = [
+            f"{count(counts[layer], 'change')} of {_OF[layer]}"
+            for layer in LAYERS
+            if counts[layer]
+        ]
+        return Step(
+            MAJOR,
+            f"{listing(counts_by_layer)}, the first: {breaking[0].message}",
+            _codes(breaking),
+        )
     if additions:
         reason = f"nothing breaks, {count(len(additions), 'addition')}, the first: {additions[0].message}"
         return Step(MINOR, reason, _codes(additions))
     if changes:
-        return Step(PATCH, f"{count(len(changes), 'change')} of words only", _codes(changes))
+        return Step(
+            PATCH, f"{count(len(changes), 'change')} of words only", _codes(changes)
+        )
     return Step(NONE, "nothing changed")
 
 
-_OF = {"wire": "the wire format", "meaning": "meaning", "source": "generated names or types", "text": "words"}
+_OF = {
+    "wire": "the wire format",
+    "meaning": "meaning",
+    "source": "generated names or types",
+    "text": "words",
+}
 
 
 def _codes(changes: list[Change]) -> tuple[str, ...]:

@@ -23,4 +23,6 @@ class Where(NamedTuple):
     def __str__(self) -> str:
         owner, part = self.message or self.enum, self.field or self.member
         words = [self.node, *(f"`{name}`" for name in (owner, part) if name)]
-        return " ".join([*words, *(word for word in (self.section, self.erratum) if word)])
+        return " ".join(
+            [*words, *(word for word in (self.section, self.erratum) if word)]
+        )

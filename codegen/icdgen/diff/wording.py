@@ -21,13 +21,19 @@ def some(names: Sequence[str], what: str = "") -> str:
     """
     shown = [quote(name) for name in names[:MOST]]
     remaining = len(names) - len(shown)
-    text = listing([*shown, f"{remaining} more"] if remaining else shown) if shown else ""
+    text = (
+        listing([*shown, f"{remaining} more"] if remaining else shown) if shown else ""
+    )
     return f"{text} ({count(len(names), what)})" if what and remaining else text
 
 
 def bits(number: int) -> str:
     """Return a size: ``16 bits``, ``2 bytes``."""
-    return count(number // 8, "byte") if number and number % 8 == 0 else count(number, "bit")
+    return (
+        count(number // 8, "byte")
+        if number and number % 8 == 0
+        else count(number, "bit")
+    )
 
 
 def span(field: Line) -> str:
@@ -49,7 +55,9 @@ def formula(scale: Scale | Curve | None) -> str:
     if scale is None:
         return "raw"
     if isinstance(scale, Curve):
-        return f"a table ({points_text(scale, 6)})" if scale.points else _polynomial(scale)
+        return (
+            f"a table ({points_text(scale, 6)})" if scale.points else _polynomial(scale)
+        )
     text = "raw" if scale.factor == 1 else f"raw*{number(scale.factor)}"
     if scale.offset:
         text += f" {'+' if scale.offset > 0 else '-'} {number(abs(scale.offset))}"
@@ -62,7 +70,11 @@ def _polynomial(curve: Curve) -> str:
         raw = "" if power == 0 else "raw" if power == 1 else f"raw^{power}"
         if factor or (not power and not text):
             sign = ("-" if factor < 0 else "+") if text else "-" * (factor < 0)
-            size = f"{abs(factor):g}" if float(f"{factor:g}") == factor else repr(abs(factor))
+            size = (
+                f"{abs(factor):g}"
+                if float(f"{factor:g}") == factor
+                else repr(abs(factor))
+            )
             term = raw if raw and size == "1" else "*".join(filter(None, (size, raw)))
             text += f" {sign} {term}" if text else f"{sign}{term}"
     return text
@@ -72,18 +84,30 @@ def type_of(field: Line) -> str:
     """Return the type of a field: ``16-bit int``, ``4-bit enum Mode``, ``4-bit signed
     enum Mode``, ``6 elements, 16-bit int``.
     """
-    return f"{count(field.count, 'element')}, {_type_of(field)}" if field.count else _type_of(field)
+    return (
+        f"{count(field.count, 'element')}, {_type_of(field)}"
+        if field.count
+        else _type_of(field)
+    )
 
 
 def _type_of(field: Line) -> str:
     if field.type == "enum":
         return f"{field.bits}-bit {'signed ' if field.is_signed else ''}enum {field.enum.name if field.enum else '?'}"
-    return "bool" if field.type == "bool" and field.bits == 1 else f"{field.bits}-bit {field.type}"
+    return (
+        "bool"
+        if field.type == "bool" and field.bits == 1
+        else f"{field.bits}-bit {field.type}"
+    )
 
 
 def read_as(field: Line) -> str:
     """Return the type as which a field is read: ``int``, ``enum``, ``signed enum``."""
-    return f"signed {field.type}" if field.type == "enum" and field.is_signed else field.type
+    return (
+        f"signed {field.type}"
+        if field.type == "enum" and field.is_signed
+        else field.type
+    )
 
 
 def ids(values: Iterable[int | None]) -> str:

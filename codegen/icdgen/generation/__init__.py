@@ -1,1 +1,3 @@
-"""Generation of files from a checked model: rendering, comparison with the disk, and writing."""
+"""Generation of files from a checked model: rendering, comparison with the disk, and
+writing.
+"""

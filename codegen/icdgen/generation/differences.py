@@ -1,4 +1,6 @@
-"""Output of ``--check``: the files that are not current, and their first differing lines."""
+"""Output of ``--check``: the files that are not current, and their first differing
+lines.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ _FILES, _LINES = 5, 12
 
 
 def short_diff(plans: list[Plan]) -> str:
-    """Return a unified diff of the first files that differ, and the number of further files."""
+    """Return a unified diff of the first files that differ, and the number of further
+    files.
+    """
     lines: list[str] = []
     for plan in plans:
         for index, name in enumerate(plan.write):
@@ -23,8 +27,14 @@ def short_diff(plans: list[Plan]) -> str:
                 continue
             old = path.read_bytes().decode("utf-8", "replace").splitlines(keepends=True)
             new = plan.files[name].decode("utf-8").splitlines(keepends=True)
-            diff = list(difflib.unified_diff(old, new, f"{path} (on disk)", f"{path} (generated)", n=1))
-            lines += [line if line.endswith("\n") else line + "\n" for line in diff[:_LINES]]
+            diff = list(
+                difflib.unified_diff(
+                    old, new, f"{path} (on disk)", f"{path} (generated)", n=1
+                )
+            )
+            lines += [
+                line if line.endswith("\n") else line + "\n" for line in diff[:_LINES]
+            ]
             if len(diff) > _LINES:
                 lines.append(f"... {len(diff) - _LINES} more lines\n")
         lines += [f"stale: {plan.out / name}\n" for name in plan.remove]

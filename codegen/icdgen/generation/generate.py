@@ -21,7 +21,10 @@ Files = Iterable[tuple[PurePosixPath, str | bytes]]
 
 @dataclass(eq=False, repr=False)
 class Job:
-    """Options of a run. With several languages, each has its own subfolder of ``out``."""
+    """Options of a run.
+
+    With several languages, each has its own subfolder of ``out``.
+    """
 
     languages: list[str]
     out: Path
@@ -56,11 +59,20 @@ class Outcome:
 
 
 def run(job: Job) -> Outcome:
-    """Generate. Writes nothing if the ICDs have errors or if ``job.check`` is set. Raises `UserError`."""
+    """Generate.
+
+    Writes nothing if the ICDs have errors or if ``job.check`` is set. Raises
+    `UserError`.
+    """
     chosen = [backends.get(name) for name in dict.fromkeys(job.languages)]
     if job.templates is not None and not os.path.isdir(job.templates):
-        raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
-    if job.measured is not None and not any(hasattr(backend, "measured") for backend in chosen):
+        raise UserError(
+            f"there is no folder {job.templates}",
+            "--templates names a folder of templates",
+        )
+    if job.measured is not None and not any(
+        hasattr(backend, "measured") for backend in chosen
+    ):
         help = "add `--lang assurance`, or leave --measured out"
         raise UserError("measurements go into the assurance pack only", help)
     # A plug-in can read other files, and a backend can need the places of lines, which
@@ -68,7 +80,8 @@ def run(job: Job) -> Outcome:
     plug_ins = [backend for backend in chosen if backend.name not in backends.names()]
     lined = any(getattr(backend, "needs_lines", False) for backend in chosen)
     outcome = Outcome(
-        load_checked(job.icds, backends.named_in(chosen), plug_ins, lined), may_be_remembered=not plug_ins and not lined
+        load_checked(job.icds, backends.named_in(chosen), plug_ins, lined),
+        may_be_remembered=not plug_ins and not lined,
     )
     if not outcome.loaded.ok:
         return outcome
@@ -80,7 +93,11 @@ def run(job: Job) -> Outcome:
         if hasattr(backend, "packages"):
             backend.packages = job.packages
         out = job.out / backend.name if len(chosen) > 1 else job.out
-        outcome.plans.append(write.plan(out, backend.name, job.watch(backend.files(outcome.loaded.icd, render))))
+        outcome.plans.append(
+            write.plan(
+                out, backend.name, job.watch(backend.files(outcome.loaded.icd, render))
+            )
+        )
         outcome.inputs |= render.looked_at
     if not job.check:
         for plan in outcome.plans:
@@ -91,48 +108,85 @@ def run(job: Job) -> Outcome:
 
 
 def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
-    """Return the content of a dependency file in the syntax of Make, and the files that it names."""
-    targets = [os.path.join(plan.out, name) for plan in outcome.plans for name in plan.files]
+    """Return the content of a dependency file in the syntax of Make, and the files that
+    it names.
+    """
+    targets = [
+        os.path.join(plan.out, name) for plan in outcome.plans for name in plan.files
+    ]
     needs = [str(path) for path in outcome.inputs if path.is_file()]
-    text = " \\\n  ".join(map(_escape, targets)) + ": \\\n  " + " \\\n  ".join(map(_escape, needs)) + "\n"
-    return text.encode("utf-8", "surrogateescape"), {os.path.realpath(path) for path in (*targets, *needs)}
+    text = (
+        " \\\n  ".join(map(_escape, targets))
+        + ": \\\n  "
+        + " \\\n  ".join(map(_escape, needs))
+        + "\n"
+    )
+    return text.encode("utf-8", "surrogateescape"), {
+        os.path.realpath(path) for path in (*targets, *needs)
+    }
 
 
 def _write_depfile(path: Path, outcome: Outcome) -> None:
-    """Write the dependency file. Raises `UserError` if it is also an input or an output."""
+    """Write the dependency file.
+
+    Raises `UserError` if it is also an input or an output.
+    """
     data, named = _depfile(outcome)
     depfile = Path(os.path.realpath(path))
     if str(depfile) in named:
-        raise UserError(f"{path} is an input or an output", "give the dependency file a name of its own")
+        raise UserError(
+            f"{path} is an input or an output",
+            "give the dependency file a name of its own",
+        )
     if write.read(depfile) != data:
         try:
             write.replace(depfile, data)
         except OSError as error:
-            raise UserError(f"cannot write {path}: {error.strerror}", "choose another place for it") from None
+            raise UserError(
+                f"cannot write {path}: {error.strerror}", "choose another place for it"
+            ) from None
 
 
 def _escape(path: str) -> str:
-    """Return a path in the syntax of Make. Raises `UserError` for a path with a line break."""
+    """Return a path in the syntax of Make.
+
+    Raises `UserError` for a path with a line break.
+    """
     if "\n" in path:
-        raise UserError(f"{path} cannot be named in a dependency file", "rename what has a line end in its name")
-    return path.replace("\\", "\\\\").replace(" ", "\\ ").replace("#", "\\#").replace("$", "$$").replace(":", "\\:")
+        raise UserError(
+            f"{path} cannot be named in a dependency file",
+            "rename what has a line end in its name",
+        )
+    return (
+        path.replace("\\", "\\\\")
+        .replace(" ", "\\ ")
+        .replace("#", "\\#")
+        .replace("$", "$$")
+        .replace(":", "\\:")
+    )
 
 
 def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
-    """Store a record of the run, with which the same command ends at once if its inputs and outputs are unchanged.
+    """Store a record of the run, with which the same command ends at once if its inputs
+    and outputs are unchanged.
 
     ``note`` is the text that the command then prints.
     """
     if not name or outcome.loaded.findings or not outcome.may_be_remembered:
         return
-    files = {os.path.abspath(path): fingerprint for path, fingerprint in outcome.inputs.items()}
+    files = {
+        os.path.abspath(path): fingerprint
+        for path, fingerprint in outcome.inputs.items()
+    }
     # The record is valid only while all outputs, manifests and the dependency file are
     # unchanged, too.
     for plan in outcome.plans:
         out = os.path.abspath(plan.out)
         for file, digest in plan.digests.items():
             files[os.path.join(out, file)] = digest
-        files[os.path.abspath(manifest.path(plan.out, plan.language))] = manifest.digest(plan.manifest.encode())
+        files[os.path.abspath(manifest.path(plan.out, plan.language))] = (
+            manifest.digest(plan.manifest.encode())
+        )
     if job.depfile is not None and not job.check:
         files[os.path.abspath(job.depfile)] = manifest.digest(_depfile(outcome)[0])
     cache.remember("runs", name, note.encode("utf-8", "surrogateescape"), files)

@@ -1,4 +1,6 @@
-"""Manifest of a folder: the files that icdgen wrote there for a language, so that it changes no other files."""
+"""Manifest of a folder: the files that icdgen wrote there for a language, so that it
+changes no other files.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,10 @@ def path(out: Path, language: str) -> Path:
 
 
 def read(out: Path, language: str) -> dict[str, str]:
-    """Return the SHA-256 of each file that icdgen wrote, by relative path; empty without a readable manifest."""
+    """Return the SHA-256 of each file that icdgen wrote, by relative path.
+
+    Returns empty without a readable manifest.
+    """
     try:
         data = json.loads(path(out, language).read_text(encoding="utf-8"))
         files = data["files"]
@@ -21,12 +26,21 @@ def read(out: Path, language: str) -> dict[str, str]:
         return {}
     if not isinstance(files, dict):
         return {}
-    return {str(name): str(digest) for name, digest in files.items() if _is_inside(str(name))}
+    return {
+        str(name): str(digest)
+        for name, digest in files.items()
+        if _is_inside(str(name))
+    }
 
 
 def text(files: dict[str, str]) -> str:
     """Return the text of a manifest; equal for equal files."""
-    return json.dumps({"generator": "icdgen", "files": dict(sorted(files.items()))}, indent=1) + "\n"
+    return (
+        json.dumps(
+            {"generator": "icdgen", "files": dict(sorted(files.items()))}, indent=1
+        )
+        + "\n"
+    )
 
 
 def digest(data: bytes) -> str:
@@ -35,6 +49,14 @@ def digest(data: bytes) -> str:
 
 
 def _is_inside(name: str) -> bool:
-    """Return whether a path of a manifest is in the folder; a manipulated manifest must not remove other files."""
+    """Return whether a path of a manifest is in the folder.
+
+    Returns a manipulated manifest must not remove other files.
+    """
     parts = Path(name).parts
-    return bool(parts) and "\0" not in name and ".." not in parts and not Path(name).is_absolute()
+    return (
+        bool(parts)
+        and "\0" not in name
+        and ".." not in parts
+        and not Path(name).is_absolute()
+    )

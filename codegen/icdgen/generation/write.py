@@ -1,4 +1,6 @@
-"""Writes generated files to a folder: atomically, only if their content changes, and never over files of others."""
+"""Writes generated files to a folder: atomically, only if their content changes, and
+never over files of others.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from icdgen.generation import manifest
 
 @dataclass(eq=False, repr=False)
 class Plan:
-    """Changes in the folder ``out`` after which it has exactly the generated files of a language."""
+    """Changes in the folder ``out`` after which it has exactly the generated files of a
+    language.
+    """
 
     out: Path
     language: str
@@ -33,10 +37,13 @@ class Plan:
         return bool(self.write or self.remove)
 
 
-def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | bytes]]) -> Plan:
+def plan(
+    out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | bytes]]
+) -> Plan:
     """Compare generated files with a folder.
 
-    Raises `UserError` if a file would overwrite a file that icdgen did not write, or if two names differ only in case.
+    Raises `UserError` if a file would overwrite a file that icdgen did not write, or if
+    two names differ only in case.
     """
     result = Plan(out, language, {})
     folded: dict[str, str] = {}
@@ -49,10 +56,14 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | by
                 "names that differ only in case clash on some systems: give one of them an `identifier:`",
             )
         try:
-            result.files[name] = content if isinstance(content, bytes) else content.encode("utf-8")
+            result.files[name] = (
+                content if isinstance(content, bytes) else content.encode("utf-8")
+            )
         except UnicodeEncodeError as error:
             character = f"U+{ord(error.object[error.start]):04X}, which is no character"
-            raise UserError(f"{name} would hold {character}", "correct the template") from None
+            raise UserError(
+                f"{name} would hold {character}", "correct the template"
+            ) from None
     written = manifest.read(out, language)
     for name, data in result.files.items():
         current = read(os.path.join(out, name))
@@ -68,8 +79,14 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str | by
         if name not in result.files:
             current = read(out / name) if os.path.isfile(out / name) else None
             if current is not None:
-                (result.remove if manifest.digest(current) == digest else result.edited).append(name)
-    result.digests = {name: manifest.digest(data) for name, data in result.files.items()}
+                (
+                    result.remove
+                    if manifest.digest(current) == digest
+                    else result.edited
+                ).append(name)
+    result.digests = {
+        name: manifest.digest(data) for name, data in result.files.items()
+    }
     result.manifest = manifest.text(result.digests)
     return result
 
@@ -98,7 +115,11 @@ def apply(changes: Plan) -> None:
 
 
 def replace(target: str | Path, data: bytes) -> None:
-    """Write a file so that other processes see the old or the new content, never a part. Preserves its mode."""
+    """Write a file so that other processes see the old or the new content, never a
+    part.
+
+    Preserves its mode.
+    """
     target = os.fspath(target)
     try:
         mode = os.stat(target).st_mode
@@ -129,20 +150,35 @@ def _new_file(folder: str) -> tuple[int, str]:
     """Create a file with a unique name; return its handle and name."""
     # Like `tempfile.mkstemp`, whose import and calls take longer than writing a file.
     name = os.path.join(folder, f".icdgen-{os.urandom(8).hex()}")
-    return os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
+    return (
+        os.open(
+            name,
+            os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0),
+            0o666,
+        ),
+        name,
+    )
 
 
 def read(path: str | Path) -> bytes | None:
-    """Return the content of a file; None if it does not exist. Raises `UserError` if it cannot be read."""
+    """Return the content of a file; None if it does not exist.
+
+    Raises `UserError` if it cannot be read.
+    """
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
-            raise UserError(f"{path} is in the way: it is not a file", "move it away, or choose another place")
+            raise UserError(
+                f"{path} is in the way: it is not a file",
+                "move it away, or choose another place",
+            )
         with open(path, "rb") as file:
             return file.read()
     except (FileNotFoundError, NotADirectoryError):
         return None
     except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}", "choose another folder with --out") from None
+        raise UserError(
+            f"cannot read {path}: {error.strerror}", "choose another folder with --out"
+        ) from None
 
 
 def _remove_empty(top: Path, folder: Path) -> None:

@@ -1,4 +1,6 @@
-"""Parts of an ICD other than messages: bits of the log mask, and messages that the manual does not describe."""
+"""Parts of an ICD other than messages: bits of the log mask, and messages that the
+manual does not describe.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from icdgen.icd.located import Map, unread
 
 @dataclass(frozen=True, slots=True)
 class Loggable:
-    """One bit of the log mask (bit 0: least significant bit of the first byte) and the frame it selects."""
+    """One bit of the log mask (bit 0: least significant bit of the first byte) and the
+    frame it selects.
+    """
 
     bit: int
     id: int

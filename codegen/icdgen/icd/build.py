@@ -1,6 +1,7 @@
 """Build the model from the tree of a file.
 
-Reports nothing: mappings with errors are left out of the model, and the rules in `icdgen.icd.rules` report them.
+Reports nothing: mappings with errors are left out of the model, and the rules in
+`icdgen.icd.rules` report them.
 """
 
 from __future__ import annotations
@@ -49,7 +50,9 @@ from icdgen.icd.units import STANDARD, Unit
 
 
 class Scope:
-    """Enumerations, structs, units and vocabulary that a node and the nodes it includes declare."""
+    """Enumerations, structs, units and vocabulary that a node and the nodes it includes
+    declare.
+    """
 
     def __init__(self, included: Iterable[model.Node]) -> None:
         self.enums: dict[str, model.Enum] = {}
@@ -64,9 +67,15 @@ class Scope:
 
 
 class Builder:
-    """Builds one node. ``broken`` has the `id()` of each mapping that violates the schema; the model omits these."""
+    """Builds one node.
 
-    def __init__(self, tree: Map, applied: Applied, broken: set[int], scope: Scope) -> None:
+    ``broken`` has the `id()` of each mapping that violates the schema; the model omits
+    these.
+    """
+
+    def __init__(
+        self, tree: Map, applied: Applied, broken: set[int], scope: Scope
+    ) -> None:
         self.tree, self.applied, self.broken, self.scope = tree, applied, broken, scope
         self.name = ""
 
@@ -84,7 +93,11 @@ class Builder:
         self.scope.enums.update((enum.name, enum) for enum in enums)
         structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
-        words = tuple(w for w in (listed if isinstance(listed, list) else ()) if isinstance(w, str) and w.isalnum())
+        words = tuple(
+            w
+            for w in (listed if isinstance(listed, list) else ())
+            if isinstance(w, str) and w.isalnum()
+        )
         return model.Node(
             name=self.name,
             title=head["title"],
@@ -111,7 +124,9 @@ class Builder:
         )
 
     def items(self, key: str, owner: Map | None = None) -> list[Map]:
-        """Return the mappings listed under a key of a mapping, by default of the file, without broken mappings."""
+        """Return the mappings listed under a key of a mapping, by default of the file,
+        without broken mappings.
+        """
         listed = mappings((self.tree if owner is None else owner).get(key))
         return [item for item in listed if id(item) not in self.broken]
 
@@ -128,7 +143,12 @@ class Builder:
 
     def enum(self, item: Map) -> model.Enum:
         members = tuple(map(self.member, self.items("members", item)))
-        return model.Enum(members=members, table=_printed(item).get("table"), node=self.name, **self.named(item))
+        return model.Enum(
+            members=members,
+            table=_printed(item).get("table"),
+            node=self.name,
+            **self.named(item),
+        )
 
     def member(self, item: Map) -> model.Member:
         return model.Member(value=item["value"], to=item.get("to"), **self.named(item))
@@ -155,7 +175,9 @@ class Builder:
                 add(name)
         # A rule reports duplicate names. The first struct of a name is the one that
         # fields refer to.
-        structs += (self.struct(item) for item in listed if item is not items[item["name"]])
+        structs += (
+            self.struct(item) for item in listed if item is not items[item["name"]]
+        )
         return tuple(structs)
 
     def struct(self, item: Map) -> model.Struct:
@@ -167,7 +189,9 @@ class Builder:
         )
 
     def struct_layout(self, item: Map) -> Layout:
-        """Return the layout of a struct, with the nodes behind a variable-length array as in the longest element."""
+        """Return the layout of a struct, with the nodes behind a variable-length array
+        as in the longest element.
+        """
         fixed, length = self.fixed_nodes(item), item["length"]
         nodes: list[FixedNode] = []
         for row in self.sequence_of_struct(item):
@@ -183,12 +207,24 @@ class Builder:
         return Layout(item["name"], length, (*fixed, *nodes), owner=self.name)
 
     def sequence_of_struct(self, item: Map) -> list[Map]:
-        """Return the variable-length arrays of a struct and the fields behind them; none if one has an error."""
+        """Return the variable-length arrays of a struct and the fields behind them.
+
+        None if one has an error.
+        """
         rows, structs = variable_structs.sequence_of_struct(item), self.scope.structs
         lengths = {name: struct.length for name, struct in structs.items()}
-        variable = {name for name, struct in structs.items() if struct.layout.inner_parts}
-        is_valid = variable_structs.is_variable_struct(item) and not any(id(row) in self.broken for row in rows)
-        return rows if is_valid and not any(variable_structs.faults_in_struct(item, lengths, variable)) else []
+        variable = {
+            name for name, struct in structs.items() if struct.layout.inner_parts
+        }
+        is_valid = variable_structs.is_variable_struct(item) and not any(
+            id(row) in self.broken for row in rows
+        )
+        return (
+            rows
+            if is_valid
+            and not any(variable_structs.faults_in_struct(item, lengths, variable))
+            else []
+        )
 
     def message(self, item: Map) -> model.Message:
         return model.Message(
@@ -203,8 +239,13 @@ class Builder:
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             hazard=item.get("hazard", ""),
-            assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
-            contains=tuple(model.Part(part["message"], part["at"]) for part in self.items("contains", item)),
+            assumptions=tuple(
+                (key, str(why)) for key, why in (item.get("assumptions") or {}).items()
+            ),
+            contains=tuple(
+                model.Part(part["message"], part["at"])
+                for part in self.items("contains", item)
+            ),
             reserved=item.get("reserved", 0),
             may_end_early=item.get("may_end_early", ""),
             node=self.name,
@@ -226,23 +267,37 @@ class Builder:
         for row in self.items("derived", item):
             with suppress(formula.FormulaError):
                 derivation = derivation_of(row["formula"], layout.nodes)
-                node = derived_node(row, derivation, self.scope.units.get(row.get("unit", "")))
+                node = derived_node(
+                    row, derivation, self.scope.units.get(row.get("unit", ""))
+                )
                 layout = replace(layout, derived=(*layout.derived, node))
         return layout
 
     def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
-        """Return the nodes at fixed positions of a message or struct; a split field has one node per part."""
+        """Return the nodes at fixed positions of a message or struct.
+
+        Returns a split field has one node per part.
+        """
         nodes: list[FixedNode] = []
         # These rows of a struct are nodes behind the others.
         rows = variable_structs.sequence_of_struct(owner) if "kind" not in owner else ()
-        sequence = set(map(id, rows)) if any(map(variable_length.is_variable, rows)) else ()
+        sequence = (
+            set(map(id, rows)) if any(map(variable_length.is_variable, rows)) else ()
+        )
         for item in self.items("fields", owner):
-            is_broken = any(id(item.get(key)) in self.broken for key in ("when", "count", "size"))
+            is_broken = any(
+                id(item.get(key)) in self.broken for key in ("when", "count", "size")
+            )
             if is_broken or variable_length.is_variable(item) or id(item) in sequence:
                 continue
             if "when" in item and item.keys().isdisjoint(("struct", "count")):
                 present_if = conditions.conditions_of(owner, item, self.scope.enums)
-                nodes.append(_overlaid(replace(self.scalar(item, item["at"]), present_if=present_if), item))
+                nodes.append(
+                    _overlaid(
+                        replace(self.scalar(item, item["at"]), present_if=present_if),
+                        item,
+                    )
+                )
             elif "struct" in item or "count" in item or "bitfields" not in item:
                 node = self.node_of(item, item["at"], item.get("count"))
                 nodes += () if node is None else (node,)
@@ -252,12 +307,19 @@ class Builder:
         return tuple(nodes)
 
     def parts_of_split_field(self, owner: Map, item: Map) -> Iterator[FixedNode]:
-        """Yield the parts of a split field at their positions in the frame; the field itself if it cannot be split."""
+        """Yield the parts of a split field at their positions in the frame.
+
+        The field itself if it cannot be split.
+        """
         head = self.tree["node"]
         declared = orders(item, orders(owner))
         effective = declared[0] or head["byte_order"], declared[1] or head["bit_order"]
         parts = division.parts_of(item)
-        if not parts or any(id(part) in self.broken for part in parts) or any(division.faults(item, *effective)):
+        if (
+            not parts
+            or any(id(part) in self.broken for part in parts)
+            or any(division.faults(item, *effective))
+        ):
             yield _overlaid(self.scalar(item, item["at"]), item)
             return
         for part in parts:
@@ -270,7 +332,11 @@ class Builder:
             yield _overlaid(scalar, part)
 
     def variable_nodes(self, message: Map) -> tuple[VariableNode, ...]:
-        """Return the nodes of variable length; an empty tuple if one has an error, because their positions are dependent."""
+        """Return the nodes of variable length.
+
+        Returns an empty tuple if one has an error, because their positions are
+        dependent.
+        """
         items = variable_length.variable_fields(message)
         lengths = {name: struct.length for name, struct in self.scope.structs.items()}
         counters = [variable_length.counter_of(message, item) for item in items]
@@ -280,24 +346,41 @@ class Builder:
             return ()
         structs = {name: struct.source for name, struct in self.scope.structs.items()}
         uses = (item for item in items if "struct" in item)
-        if any(any(variable_structs.faults_of_inner_counts(message, item, structs)) for item in uses):
+        if any(
+            any(variable_structs.faults_of_inner_counts(message, item, structs))
+            for item in uses
+        ):
             return ()
         nodes: list[VariableNode] = []
         for item in items:
-            counter, counting = variable_length.counter_of(message, item), variable_length.counting(item)
+            counter, counting = variable_length.counter_of(
+                message, item
+            ), variable_length.counting(item)
             if counter is None:
                 most, is_array = item["up_to"], "count" in item
-                size: Size = Rest(counter_of_rest(item["name"], item.get("identifier"), is_array, most, item), most)
+                size: Size = Rest(
+                    counter_of_rest(
+                        item["name"], item.get("identifier"), is_array, most, item
+                    ),
+                    most,
+                )
             else:
                 size = Counted(counter["name"], item["up_to"], counting.plus)
             node = self.node_of(item, item["at"], size)
-            if not isinstance(node, Array | Scalar) or not stride(node) or _is_without_fields(node):
+            if (
+                not isinstance(node, Array | Scalar)
+                or not stride(node)
+                or _is_without_fields(node)
+            ):
                 return ()
             nodes.append(node)
         return tuple(nodes)
 
     def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
-        """Return the node of a line; None if it refers to an unknown struct, or to one of variable length without a counter.
+        """Return the node of a line.
+
+        Returns None if it refers to an unknown struct, or to one of variable length
+        without a counter.
 
         With a size, the node is an array, or bytes or text of variable length.
         """
@@ -305,22 +388,34 @@ class Builder:
         node: Scalar | StructRef
         if "struct" in item:
             struct = self.scope.structs.get(item["struct"])
-            if struct is None or (struct.layout.inner_parts and not isinstance(size, Counted)):
+            if struct is None or (
+                struct.layout.inner_parts and not isinstance(size, Counted)
+            ):
                 return None
-            node = StructRef(layout=struct.layout, at=0 if is_array else at, **self.named(item))
+            node = StructRef(
+                layout=struct.layout, at=0 if is_array else at, **self.named(item)
+            )
         else:
             node = self.scalar(item, 0 if is_array else at)
             if isinstance(size, Counted | Rest) and "size" in item:
                 node = replace(node, bits=8, length=size)
         if size is not None and is_array:
-            return Array(at=at, item=node, size=size, orders=node.orders, **self.named(item))
+            return Array(
+                at=at, item=node, size=size, orders=node.orders, **self.named(item)
+            )
         return _overlaid(node, item) if isinstance(node, Scalar) else node
 
     def scalar(self, item: Map, at: int) -> Scalar:
-        """Return the scalar of a line that begins at bit `at` of its layout or array element."""
+        """Return the scalar of a line that begins at bit `at` of its layout or array
+        element.
+        """
         get = item.get
         kind = get("type", "uint")  # optional for parts of a split field
-        scale, curve = calibration(get("formula"), kind) if "points" not in item else (None, table(item, kind))
+        scale, curve = (
+            calibration(get("formula"), kind)
+            if "points" not in item
+            else (None, table(item, kind))
+        )
         return Scalar(
             at=at,
             bits=get("bits", 0),  # variable-length bytes and text have no `bits`
@@ -339,24 +434,37 @@ class Builder:
         )
 
     def special(self, item: Map, kind: str) -> tuple[Special, ...]:
-        """Return the special values of a field, without values that its type cannot represent."""
+        """Return the special values of a field, without values that its type cannot
+        represent.
+        """
         bits = item.get("bits", 0)
-        values = (special(kind, bits, row["value"], row["meaning"]) for row in self.items("special", item))
+        values = (
+            special(kind, bits, row["value"], row["meaning"])
+            for row in self.items("special", item)
+        )
         return tuple(value for value in values if value is not None)
 
     def loggable(self, item: Map) -> annex.Loggable:
         errata = self.applied.about(item)
-        return annex.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
+        return annex.Loggable(
+            item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item
+        )
 
 
 def unit(item: Map) -> Unit:
     """Return a unit that the file declares."""
-    return Unit(item["symbol"], item["identifier"], item["quantity"], item.get("summary", ""))
+    return Unit(
+        item["symbol"], item["identifier"], item["quantity"], item.get("summary", "")
+    )
 
 
 def missing(item: Map) -> annex.Missing:
-    """Return an entry of `missing`: a message that the manual names but does not describe."""
-    return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+    """Return an entry of `missing`: a message that the manual names but does not
+    describe.
+    """
+    return annex.Missing(
+        item["kind"], wire_ids.number(item["id"]), item["name"], item["why"]
+    )
 
 
 def _printed(item: Map) -> Map:
@@ -388,7 +496,11 @@ def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:
 
 def _is_without_fields(node: Array | Scalar) -> bool:
     """Return whether a node is an array of structs without readable fields."""
-    return isinstance(node, Array) and isinstance(node.item, StructRef) and not node.item.layout.fixed
+    return (
+        isinstance(node, Array)
+        and isinstance(node.item, StructRef)
+        and not node.item.layout.fixed
+    )
 
 
 def _id(item: Map, key: str) -> int | None:
@@ -396,7 +508,10 @@ def _id(item: Map, key: str) -> int | None:
 
 
 def orders(item: Map, outer: tuple[str, str] = ("", "")) -> tuple[str, str]:
-    """Return the byte order and bit order that a mapping declares; `outer` if it declares none."""
+    """Return the byte order and bit order that a mapping declares.
+
+    `outer` if it declares none.
+    """
     return item.get("byte_order", outer[0]), item.get("bit_order", outer[1])
 
 
@@ -406,11 +521,15 @@ def declared_orders(item: Map) -> Orders:
     return Orders(*declared) if any(declared) else UNDECLARED
 
 
-def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curve.Curve | None]:
-    """Return the scale or the curve that the text of a formula means for a field of a type.
+def calibration(
+    text: str | None, kind: str
+) -> tuple[formula.Scale | None, curve.Curve | None]:
+    """Return the scale or the curve that the text of a formula means for a field of a
+    type.
 
-    Linear formulas of integers give an exact `Scale`; polynomials, and all formulas of floats, a `Curve` in doubles.
-    Returns (None, None) without a formula or if the formula has an error.
+    Linear formulas of integers give an exact `Scale`; polynomials, and all formulas of
+    floats, a `Curve` in doubles. Returns (None, None) without a formula or if the
+    formula has an error.
     """
     if not text or kind not in ("uint", "int", "float"):
         return None, None
@@ -423,7 +542,10 @@ def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curv
 
 
 def table(item: Map, kind: str) -> curve.Curve | None:
-    """Return the lookup table of a field; None if it has an error. Without ``outside``, no value outside is valid."""
+    """Return the lookup table of a field; None if it has an error.
+
+    Without ``outside``, no value outside is valid.
+    """
     if kind not in ("uint", "int", "float"):
         return None
     with suppress(formula.FormulaError):

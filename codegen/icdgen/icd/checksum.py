@@ -1,15 +1,33 @@
-"""Checksum algorithms, bit by bit, for the rules and for the reference implementation of links."""
+"""Checksum algorithms, bit by bit, for the rules and for the reference implementation
+of links.
+"""
 
 from __future__ import annotations
 
 from functools import reduce
 from operator import xor
 
-CRC, FLETCHER, FLETCHER_255, SUM, XOR = KINDS = ("crc", "fletcher", "fletcher_255", "sum", "xor")
+CRC, FLETCHER, FLETCHER_255, SUM, XOR = KINDS = (
+    "crc",
+    "fletcher",
+    "fletcher_255",
+    "sum",
+    "xor",
+)
 
 
-def crc(data: bytes, width: int, polynomial: int, init: int, reflect_in: bool, reflect_out: bool, xor_out: int) -> int:
-    """Return the CRC of ``data``, with the parameters of the Rocksoft model, which CRC catalogues use."""
+def crc(
+    data: bytes,
+    width: int,
+    polynomial: int,
+    init: int,
+    reflect_in: bool,
+    reflect_out: bool,
+    xor_out: int,
+) -> int:
+    """Return the CRC of ``data``, with the parameters of the Rocksoft model, which CRC
+    catalogues use.
+    """
     value, top = init, 1 << (width - 1)
     for byte in data:
         for position in range(8):
@@ -24,7 +42,8 @@ def crc(data: bytes, width: int, polynomial: int, init: int, reflect_in: bool, r
 def plain(kind: str, data: bytes, width: int, init: int, xor_out: int) -> int:
     """Return a Fletcher checksum, a sum or an XOR of ``data``.
 
-    The high half of a Fletcher checksum is the second sum; ``init`` and ``xor_out`` have the same layout.
+    The high half of a Fletcher checksum is the second sum; ``init`` and ``xor_out``
+    have the same layout.
     """
     if kind in (FLETCHER, FLETCHER_255):
         modulus = 255 if kind == FLETCHER_255 else 256

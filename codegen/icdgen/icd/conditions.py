@@ -1,4 +1,7 @@
-"""Optional fields. The key `when` names other fields and the values that they have if the field is present."""
+"""Optional fields.
+
+The key `when` names other fields and the values that they have if the field is present.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,7 @@ from icdgen.icd.roles import CONDITION, INTEGERS, reasons_against
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
-_REQUIREMENT = (
-    "`when` names a field that every frame has: an integer without a formula, an enumeration value, or a flag"
-)
+_REQUIREMENT = "`when` names a field that every frame has: an integer without a formula, an enumeration value, or a flag"
 _TYPES = (*INTEGERS, "float", "bytes", "text")
 
 
@@ -24,7 +25,9 @@ def _when(item: Map) -> Map:
     return when if isinstance(when, Map) else unread()
 
 
-def conditions_of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[Condition, ...]:
+def conditions_of(
+    message: Map, item: Map, enums: Mapping[str, Enum]
+) -> tuple[Condition, ...]:
     """Return the valid conditions of a field."""
     fields = _fields(message)
     conditions = []
@@ -34,14 +37,22 @@ def conditions_of(message: Map, item: Map, enums: Mapping[str, Enum]) -> tuple[C
             continue
         values = [_raw_value(field, value, enums) for value in _as_list(listed)]
         if values and None not in values:
-            conditions.append(Condition(name, tuple(dict.fromkeys(value for value in values if value is not None))))
+            conditions.append(
+                Condition(
+                    name,
+                    tuple(
+                        dict.fromkeys(value for value in values if value is not None)
+                    ),
+                )
+            )
     return tuple(conditions)
 
 
 def are_valid(node: LayoutNode) -> bool:
     """Return whether all conditions of a node are valid.
 
-    Each invalid condition has a finding. Further rules skip such a node, to avoid findings that only follow from it.
+    Each invalid condition has a finding. Further rules skip such a node, to avoid
+    findings that only follow from it.
     """
     return len(_when(node.source)) == len(node.present_if)
 
@@ -52,22 +63,39 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
     for name in when:
         if name not in fields:
             text = f"`{item['name']}` depends on `{name}`, but the message `{message['name']}` has no such field"
-            names = (other for other, field in fields.items() if field is not item and _can_decide(field))
+            names = (
+                other
+                for other, field in fields.items()
+                if field is not item and _can_decide(field)
+            )
             yield Fault.at_key(when, name, text, *suggestion(name, names, _REQUIREMENT))
         elif not _is_sound(fields[name]):
             continue  # another rule reports the type or the width
         elif name == item["name"]:
-            yield Fault.at_key(when, name, f"`{name}` cannot depend on itself", _REQUIREMENT)
+            yield Fault.at_key(
+                when, name, f"`{name}` cannot depend on itself", _REQUIREMENT
+            )
         elif reasons := reasons_against(fields[name], CONDITION):
-            yield Fault.at_key(when, name, f"`{item['name']}` cannot depend on `{name}`: it {reasons[0]}", _REQUIREMENT)
+            yield Fault.at_key(
+                when,
+                name,
+                f"`{item['name']}` cannot depend on `{name}`: it {reasons[0]}",
+                _REQUIREMENT,
+            )
 
 
-def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iterator[Fault]:
+def faults_of_values(
+    message: Map, item: Map, enums: Mapping[str, Enum]
+) -> Iterator[Fault]:
     """Yield the faults of the values that other fields must have."""
     when, fields = _when(item), _fields(message)
     for name, listed in when.items():
         field = fields.get(name)
-        if field is None or not _can_decide(field) or (field["type"] == "enum" and field.get("enum", "") not in enums):
+        if (
+            field is None
+            or not _can_decide(field)
+            or (field["type"] == "enum" and field.get("enum", "") not in enums)
+        ):
             continue  # `faults_of_names` or another rule reports it
         raws: list[int] = []
         for value in _as_list(listed):
@@ -79,13 +107,23 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
                 yield Fault.at_key(when, name, text, "list the values as numbers")
             elif raw is None:
                 help = f"`{name}` {_possible_values(field, enums)}"
-                help += ", never a text" if isinstance(value, str) and field["type"] != "enum" else ""
-                yield Fault.at_key(when, name, f"`{name}` is never {_shown(value)}", help)
+                help += (
+                    ", never a text"
+                    if isinstance(value, str) and field["type"] != "enum"
+                    else ""
+                )
+                yield Fault.at_key(
+                    when, name, f"`{name}` is never {_shown(value)}", help
+                )
             elif "const" in field and raw != field["const"]:
                 text = f"`{name}` is always {field['const']}, so `{item['name']}` is never present"
-                yield Fault.at_key(when, name, text, "correct the value, or remove the field")
+                yield Fault.at_key(
+                    when, name, text, "correct the value, or remove the field"
+                )
         if len(set(raws)) < len(raws):
-            yield Fault.at_key(when, name, f"a value of `{name}` is given twice", "remove one of them")
+            yield Fault.at_key(
+                when, name, f"a value of `{name}` is given twice", "remove one of them"
+            )
 
 
 def _as_list(value: object) -> list[object]:
@@ -95,7 +133,11 @@ def _as_list(value: object) -> list[object]:
 
 def _shown(value: object) -> str:
     """Return a value in the syntax of an ICD; text in backticks."""
-    return str(value).lower() if isinstance(value, bool) else f"`{value}`" if isinstance(value, str) else str(value)
+    return (
+        str(value).lower()
+        if isinstance(value, bool)
+        else f"`{value}`" if isinstance(value, str) else str(value)
+    )
 
 
 def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | None:
@@ -105,7 +147,14 @@ def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | No
         enum = enums.get(field.get("enum", ""))
         if isinstance(value, str):
             members = enum.members if enum else ()
-            return next((member.value for member in members if member.name == value and member.to is None), None)
+            return next(
+                (
+                    member.value
+                    for member in members
+                    if member.name == value and member.to is None
+                ),
+                None,
+            )
         if type(value) is not int:
             return None
         low, high = integer_range(bits, enum is not None and enum.signed)
@@ -120,7 +169,9 @@ def _raw_value(field: Map, value: object, enums: Mapping[str, Enum]) -> int | No
 def _is_range(field: Map, value: object, enums: Mapping[str, Enum]) -> bool:
     """Return whether a value is the name of a member that stands for a range of values."""
     enum = enums.get(field.get("enum", ""))
-    return enum is not None and any(member.name == value and member.to is not None for member in enum.members)
+    return enum is not None and any(
+        member.name == value and member.to is not None for member in enum.members
+    )
 
 
 def _possible_values(field: Map, enums: Mapping[str, Enum]) -> str:
@@ -129,7 +180,11 @@ def _possible_values(field: Map, enums: Mapping[str, Enum]) -> str:
         return "is true or false"
     if field["type"] == "enum":
         enum = enums.get(field.get("enum", ""))
-        names = ", ".join(f"`{member.name}`" for member in enum.members[:5]) if enum else "nothing"
+        names = (
+            ", ".join(f"`{member.name}`" for member in enum.members[:5])
+            if enum
+            else "nothing"
+        )
         return f"has a value of `{field.get('enum')}`: {names}{' ...' if enum and len(enum.members) > 5 else ''}"
     low, high = integer_range(field["bits"], field["type"] == "int")
     return f"is {low:,} to {high:,}"
@@ -143,19 +198,32 @@ def _can_decide(field: Map) -> bool:
 def _is_sound(field: Map) -> bool:
     """Return whether type, width and enumeration of a field are valid."""
     kind, bits = field.get("type"), field.get("bits", 1 if "size" in field else 0)
-    if kind not in _TYPES or type(bits) is not int or not isinstance(field.get("enum", ""), str):
+    if (
+        kind not in _TYPES
+        or type(bits) is not int
+        or not isinstance(field.get("enum", ""), str)
+    ):
         return False
     return 0 < bits <= 64 or (bits > 64 and kind not in INTEGERS)
 
 
 def _fields(message: Map) -> dict[str, Map]:
-    """Return the fields of a message by name, without structs. If a name occurs twice, the first field is used."""
-    named = [item for item in mappings(message.get("fields")) if isinstance(item.get("name"), str)]
+    """Return the fields of a message by name, without structs.
+
+    If a name occurs twice, the first field is used.
+    """
+    named = [
+        item
+        for item in mappings(message.get("fields"))
+        if isinstance(item.get("name"), str)
+    ]
     return {item["name"]: item for item in reversed(named) if "struct" not in item}
 
 
 def are_exclusive(first: tuple[Condition, ...], second: tuple[Condition, ...]) -> bool:
-    """Return whether two fields with these conditions are never present in the same frame."""
+    """Return whether two fields with these conditions are never present in the same
+    frame.
+    """
     return any(
         condition.field == other.field and not set(condition.values) & set(other.values)
         for condition in first

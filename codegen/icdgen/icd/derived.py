@@ -1,7 +1,9 @@
-"""Derived values: converts a formula over several fields of a message to steps in doubles.
+"""Derived values: converts a formula over several fields of a message to steps in
+doubles.
 
-This module defines the result to the last bit for all languages. Subexpressions without fields are computed exactly and
-rounded once to a double. Each step takes two doubles, which can be results of earlier steps, and rounds its result to a double.
+This module defines the result to the last bit for all languages. Subexpressions without
+fields are computed exactly and rounded once to a double. Each step takes two doubles,
+which can be results of earlier steps, and rounds its result to a double.
 """
 
 from __future__ import annotations
@@ -32,8 +34,8 @@ class Operation(NamedTuple):
 class Derivation(NamedTuple):
     """Computation of a derived value.
 
-    It works on a row of values, which begins with the values of the fields and the numbers. Each step appends a value. The last
-    value is the result.
+    It works on a row of values, which begins with the values of the fields and the
+    numbers. Each step appends a value. The last value is the result.
     """
 
     # Names of the operands: physical values, or raw values without a formula, as
@@ -50,11 +52,14 @@ class Derivation(NamedTuple):
         return row[-1] if row[-1] == row[-1] else math.nan
 
     def sense(self, names: Mapping[str, str]) -> str:
-        """Return a canonical text, equal for formulas that differ only in the order of terms or factors.
+        """Return a canonical text, equal for formulas that differ only in the order of
+        terms or factors.
 
         ``names`` has new names of fields that were renamed.
         """
-        row = [f"`{names.get(name, name)}`" for name in self.fields] + list(map(repr, self.numbers))
+        row = [f"`{names.get(name, name)}`" for name in self.fields] + list(
+            map(repr, self.numbers)
+        )
         for operator, *places in self.steps:
             sides = [row[place] for place in places]
             # Sums and products of two doubles commute.
@@ -64,7 +69,9 @@ class Derivation(NamedTuple):
 
 
 def quotient(dividend: float, divisor: float) -> float:
-    """Return a quotient as IEEE 754 defines it, also for a divisor of zero, for which Python raises."""
+    """Return a quotient as IEEE 754 defines it, also for a divisor of zero, for which
+    Python raises.
+    """
     if divisor:
         return dividend / divisor
     if not dividend or dividend != dividend:
@@ -73,10 +80,12 @@ def quotient(dividend: float, divisor: float) -> float:
 
 
 def power(base: float, exponent: float) -> float:
-    """Return a power with an integer exponent, by repeated squaring from the lowest bit of the exponent on.
+    """Return a power with an integer exponent, by repeated squaring from the lowest bit
+    of the exponent on.
 
-    Every language uses this algorithm, because the `pow` of C libraries is not correctly rounded. A negative exponent gives
-    the reciprocal of the power with the positive exponent.
+    Every language uses this algorithm, because the `pow` of C libraries is not
+    correctly rounded. A negative exponent gives the reciprocal of the power with the
+    positive exponent.
     """
     bits, result = abs(int(exponent)), 1.0
     while bits:
@@ -100,7 +109,9 @@ _Tree: TypeAlias = "Fraction | str | tuple[str, _Tree, _Tree]"
 
 
 def parse(text: str, names: Collection[str]) -> Derivation:
-    """Return the derivation of a formula over fields of these names. Raises `icdgen.icd.formula.FormulaError`.
+    """Return the derivation of a formula over fields of these names.
+
+    Raises `icdgen.icd.formula.FormulaError`.
 
     Examples: ``Lon + Lon HP*1e-2``, ``W*10^W_SF``.
     """
@@ -116,7 +127,9 @@ def _parse_cached(text: str, names: frozenset[str]) -> Derivation:
 
 
 class _Trees(Arithmetic[_Tree]):
-    """Arithmetic that builds a tree of the operations on fields, and computes operations on numbers exactly."""
+    """Arithmetic that builds a tree of the operations on fields, and computes
+    operations on numbers exactly.
+    """
 
     def __init__(self, names: frozenset[str]) -> None:
         # The longest name first, because names can contain spaces and operators, and
@@ -124,17 +137,27 @@ class _Trees(Arithmetic[_Tree]):
         self.names = sorted(sorted(filter(None, names)), key=len, reverse=True)
 
     def name_at(self, text: str, at: int) -> str:
-        """Return the longest name of a field that begins at an index of the text; empty if none does."""
+        """Return the longest name of a field that begins at an index of the text.
+
+        Returns empty if none does.
+        """
         matches = (name for name in self.names if text.startswith(name, at))
-        return next((name for name in matches if not _continues(text, at + len(name), name)), "")
+        return next(
+            (name for name in matches if not _continues(text, at + len(name), name)), ""
+        )
 
     def unreadable(self, text: str, at: int) -> FormulaError:
-        """Return the error for an unknown name, or for a character that is not part of a formula."""
+        """Return the error for an unknown name, or for a character that is not part of
+        a formula.
+        """
         words = _WORDS.match(text, at)
         if words is None:
             return FormulaError(f"`{text[at]}` is not part of a formula")
         close = close_to(words.group(), sorted(self.names))
-        return FormulaError(f"there is no field `{words.group()}`" + (f"; did you mean `{close}`?" if close else ""))
+        return FormulaError(
+            f"there is no field `{words.group()}`"
+            + (f"; did you mean `{close}`?" if close else "")
+        )
 
     def number(self, number: Fraction) -> _Tree:
         """Return the number."""
@@ -163,18 +186,32 @@ class _Trees(Arithmetic[_Tree]):
         """Return a power; the exponent is an integer or the name of a field."""
         if exponent.is_name:
             if is_negative:
-                raise FormulaError(f"`^-{exponent.text}` has a sign before a field; divide by the power instead")
+                raise FormulaError(
+                    f"`^-{exponent.text}` has a sign before a field; divide by the power instead"
+                )
             return "^", base, exponent.text
         most = MAX_EXPONENT if isinstance(base, Fraction) else MAX_DEGREE
         if not exponent.text.isdigit() or int(exponent.text) > most:
-            raise FormulaError(f"the exponent after `^` is neither a field nor a whole number up to {most}")
+            raise FormulaError(
+                f"the exponent after `^` is neither a field nor a whole number up to {most}"
+            )
         number = -int(exponent.text) if is_negative else int(exponent.text)
-        return power_of_number(base, number) if isinstance(base, Fraction) else ("^", base, Fraction(number))
+        return (
+            power_of_number(base, number)
+            if isinstance(base, Fraction)
+            else ("^", base, Fraction(number))
+        )
 
 
 def _continues(text: str, end: int, name: str) -> bool:
-    """Return whether the text continues the last word of a name, or indexes it: ``Volt`` in ``Voltage``, ``V`` in ``V[0]``."""
-    return _is_of_word(name[-1]) and end < len(text) and (_is_of_word(text[end]) or text[end] == "[")
+    """Return whether the text continues the last word of a name, or indexes it:
+    ``Volt`` in ``Voltage``, ``V`` in ``V[0]``.
+    """
+    return (
+        _is_of_word(name[-1])
+        and end < len(text)
+        and (_is_of_word(text[end]) or text[end] == "[")
+    )
 
 
 def _is_of_word(letter: str) -> bool:
@@ -182,7 +219,10 @@ def _is_of_word(letter: str) -> bool:
 
 
 def _in_steps(tree: _Tree) -> Derivation:
-    """Return the steps that compute a tree. The steps of a left operand come before the steps of the right operand."""
+    """Return the steps that compute a tree.
+
+    The steps of a left operand come before the steps of the right operand.
+    """
     fields: dict[str, int] = {}
     numbers: dict[float, int] = {}
     steps: list[tuple[str, Any, Any]] = []
@@ -201,12 +241,18 @@ def _in_steps(tree: _Tree) -> Derivation:
 
     place(tree)
     begin = {"field": 0, "number": len(fields), "step": len(fields) + len(numbers)}
-    rows = (Operation(operator, *(begin[kind] + at for kind, at in sides)) for operator, *sides in steps)
+    rows = (
+        Operation(operator, *(begin[kind] + at for kind, at in sides))
+        for operator, *sides in steps
+    )
     return Derivation(tuple(fields), tuple(numbers), tuple(rows))
 
 
 def _double(number: Fraction) -> float:
-    """Return the nearest double. Raises `FormulaError` if the number overflows or underflows to 0."""
+    """Return the nearest double.
+
+    Raises `FormulaError` if the number overflows or underflows to 0.
+    """
     try:
         double = number.numerator / number.denominator
     except OverflowError:

@@ -12,7 +12,10 @@ from icdgen.icd.roles import EXPONENT, OPERAND, reasons_against
 
 
 def derivation_of(text: str, nodes: Iterable[LayoutNode]) -> Derivation:
-    """Return the derivation of a formula over nodes of a layout. Raises `icdgen.icd.formula.FormulaError`."""
+    """Return the derivation of a formula over nodes of a layout.
+
+    Raises `icdgen.icd.formula.FormulaError`.
+    """
     nodes = list(nodes)
     derivation = derived.parse(text, {node.name for node in nodes})
     check_operands(derivation, nodes)
@@ -20,7 +23,9 @@ def derivation_of(text: str, nodes: Iterable[LayoutNode]) -> Derivation:
 
 
 def check_operands(derivation: Derivation, nodes: Iterable[LayoutNode]) -> None:
-    """Raise `icdgen.icd.formula.FormulaError` if a node cannot be an operand or an exponent, or is declared later."""
+    """Raise `icdgen.icd.formula.FormulaError` if a node cannot be an operand or an
+    exponent, or is declared later.
+    """
     by_name = {node.name: node for node in nodes}
     for name in derivation.fields:
         if name not in by_name:
@@ -32,4 +37,6 @@ def check_operands(derivation: Derivation, nodes: Iterable[LayoutNode]) -> None:
             name = derivation.fields[step.right]
             if reasons := reasons_against(by_name[name], EXPONENT):
                 wanted = f"an exponent is a `uint` or `int` of up to {EXPONENT.most_bits} bits without a formula"
-                raise FormulaError(f"`{name}` cannot be an exponent: it {reasons[0]}, and {wanted}")
+                raise FormulaError(
+                    f"`{name}` cannot be an exponent: it {reasons[0]}, and {wanted}"
+                )

@@ -1,4 +1,7 @@
-"""Display format of a field in documents and tools. It changes neither the value nor generated code."""
+"""Display format of a field in documents and tools.
+
+It changes neither the value nor generated code.
+"""
 
 from __future__ import annotations
 
@@ -34,8 +37,18 @@ class Display:
 
 
 def display_of(value: Any) -> Display | None:
-    """Return the display format of a value of the key `display`; None if the value is absent or invalid."""
+    """Return the display format of a value of the key `display`.
+
+    Returns None if the value is absent or invalid.
+    """
     if value in OF_BITS:
         return Display(value)
     items = value.items() if isinstance(value, dict) else ()
-    return next((Display(kind, n) for kind, n in items if kind in (DECIMALS, DIGITS) and isinstance(n, int)), None)
+    return next(
+        (
+            Display(kind, n)
+            for kind, n in items
+            if kind in (DECIMALS, DIGITS) and isinstance(n, int)
+        ),
+        None,
+    )

@@ -1,4 +1,7 @@
-"""Split fields: a field whose parts are listed under ``bitfields``; each part becomes a field of the message."""
+"""Split fields: a field whose parts are listed under ``bitfields``.
+
+Each part becomes a field of the message.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,19 @@ from icdgen.icd.trees import mappings
 
 # Keys for the meaning of a value. The parts of a split field have them instead of the
 # field.
-VALUE_KEYS = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below", "display")
+VALUE_KEYS = (
+    "unit",
+    "formula",
+    "points",
+    "outside",
+    "const",
+    "special",
+    "min",
+    "max",
+    "above",
+    "below",
+    "display",
+)
 
 _WITHIN = "correct `at` or `bits`: `at` counts from the start of the split field"
 
@@ -23,20 +38,33 @@ def parts_of(field: Map) -> list[Map]:
 
 
 def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
-    """Yield the faults of a split field: its own keys, and gaps and overlaps of its parts."""
+    """Yield the faults of a split field: its own keys, and gaps and overlaps of its
+    parts.
+    """
     name, bits = f"`{field['name']}`", field["bits"]
     if reasons := reasons_against(field, SPLIT):
         help = "write a field for each element, or " if "count" in field else ""
         message = f"{name} cannot have `bitfields`: it {reasons[0]}"
-        yield Fault.at(field, "bitfields", message, f"{help}make the parts fields of the message")
+        yield Fault.at(
+            field, "bitfields", message, f"{help}make the parts fields of the message"
+        )
         return
     for key in VALUE_KEYS:
         if key in field:
-            message = f"{name} is a split field, so it cannot have `{key}`; its parts can"
-            yield Fault.at(field, key, message, "move it to the parts; an erratum removes what is printed")
+            message = (
+                f"{name} is a split field, so it cannot have `{key}`; its parts can"
+            )
+            yield Fault.at(
+                field,
+                key,
+                message,
+                "move it to the parts; an erratum removes what is printed",
+            )
     if field.get("view"):
         message = f"{name} is a split field, so it cannot be an overlay field"
-        yield Fault.at(field, "view", message, "write each part as an overlay field of the message")
+        yield Fault.at(
+            field, "view", message, "write each part as an overlay field of the message"
+        )
     taken: dict[int, str] = {}
     for part in parts_of(field):
         at, size, title = part.get("at"), part.get("bits"), f"`{part.get('name')}`"
@@ -55,7 +83,9 @@ def faults(field: Map, byte_order: str, bit_order: str) -> Iterator[Fault]:
     unassigned = [bit for bit in range(bits) if bit not in taken]
     if unassigned:
         message = f"bit {unassigned[0]} of {name} belongs to no part"
-        yield Fault.at(field, "bitfields", message, "describe it as a part, or mark it as reserved")
+        yield Fault.at(
+            field, "bitfields", message, "describe it as a part, or mark it as reserved"
+        )
 
 
 def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
@@ -64,9 +94,11 @@ def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
 
 
 def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
-    """Return whether a field at the position of a part has the bits of the part, in the same order.
+    """Return whether a field at the position of a part has the bits of the part, in the
+    same order.
 
-    This fails if a part crosses a byte boundary and the byte order does not continue the bit order.
+    This fails if a part crosses a byte boundary and the byte order does not continue
+    the bit order.
     """
     bits = _bits_of_part(field, part, byte_order, bit_order)
     return bits_of(min(bits), part["bits"], byte_order, bit_order) == bits
@@ -74,11 +106,15 @@ def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> boo
 
 def _bits_of_part(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
     """Return the bits of a part in the frame, the least significant first."""
-    return bits_of(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
+    return bits_of(field["at"], field["bits"], byte_order, bit_order)[
+        part["at"] : part["at"] + part["bits"]
+    ]
 
 
 def described(field: Map, part: Map) -> str:
-    """Return the summary of a part: its position in the split field, and its own summary or that of the field."""
+    """Return the summary of a part: its position in the split field, and its own
+    summary or that of the field.
+    """
     first, last = part["at"], part["at"] + part["bits"] - 1
     bits = f"Bit {first}" if first == last else f"Bits {first} to {last}"
     return f"{bits} of {field['name']}. {part.get('summary') or field.get('summary', '')}".rstrip()

@@ -34,12 +34,17 @@ class Member:
 
     @property
     def ends(self) -> tuple[Member, ...]:
-        """Members that generated code has constants for: the member, or the first and the last value of a range."""
+        """Members that generated code has constants for: the member, or the first and
+        the last value of a range.
+        """
         if self.to is None:
             return (self,)
         words = self.identifier or self.name
         ends = ((self.value, "first"), (self.to, "last"))
-        return tuple(replace(self, value=value, to=None, identifier=f"{words} {end}") for value, end in ends)
+        return tuple(
+            replace(self, value=value, to=None, identifier=f"{words} {end}")
+            for value, end in ends
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,18 +63,30 @@ class Enum:
 
     @property
     def signed(self) -> bool:
-        """Whether a value is negative, so that fields of the enumeration are two's complement numbers."""
+        """Whether a value is negative, so that fields of the enumeration are two's
+        complement numbers.
+        """
         return any(member.value < 0 for member in self.members)
 
     def member_of(self, value: int | bytes) -> Member | None:
-        """Return the member of a value; None if the enumeration does not name the value."""
+        """Return the member of a value.
+
+        Returns None if the enumeration does not name the value.
+        """
         if isinstance(value, bytes):
             return None
-        return next((member for member in self.members if member.value <= value <= member.last), None)
+        return next(
+            (member for member in self.members if member.value <= value <= member.last),
+            None,
+        )
 
     def bits_for(self, value: int) -> int:
         """Return the number of bits that a field of the enumeration needs for a value."""
-        return (~value if value < 0 else value).bit_length() + 1 if self.signed else value.bit_length()
+        return (
+            (~value if value < 0 else value).bit_length() + 1
+            if self.signed
+            else value.bit_length()
+        )
 
     @property
     def widest(self) -> Member | None:
@@ -78,7 +95,11 @@ class Enum:
             return None
         largest = max(self.members, key=lambda member: member.last)
         smallest = min(self.members, key=lambda member: member.value)
-        return smallest if self.bits_for(smallest.value) > self.bits_for(largest.last) else largest
+        return (
+            smallest
+            if self.bits_for(smallest.value) > self.bits_for(largest.last)
+            else largest
+        )
 
     @property
     def bits(self) -> int:
@@ -88,7 +109,21 @@ class Enum:
 
     @property
     def unnamed(self) -> int | None:
-        """Smallest number from 0 on without a member; None if every 64-bit number has one."""
+        """Smallest number from 0 on without a member.
+
+        None if every 64-bit number has one.
+        """
         # The number is 0 or directly follows a member.
-        candidates = sorted(end for end in (0, *(member.last + 1 for member in self.members)) if end >= 0)
-        return next((value for value in candidates if self.member_of(value) is None and value < 1 << 64), None)
+        candidates = sorted(
+            end
+            for end in (0, *(member.last + 1 for member in self.members))
+            if end >= 0
+        )
+        return next(
+            (
+                value
+                for value in candidates
+                if self.member_of(value) is None and value < 1 << 64
+            ),
+            None,
+        )

@@ -1,4 +1,6 @@
-"""Errata overlays: decisions about faults of the manual, which change the tree of an ICD before the model is built."""
+"""Errata overlays: decisions about faults of the manual, which change the tree of an
+ICD before the model is built.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +12,7 @@ from icdgen.icd.located import Map, Seq, unread, yaml_text
 from icdgen.icd.suggestions import suggestion
 from icdgen.icd.trees import mappings
 
-_AGAIN = (
-    "compare with the manual: update the ICD if it does not have the printed value, or else update or remove the entry"
-)
+_AGAIN = "compare with the manual: update the ICD if it does not have the printed value, or else update or remove the entry"
 _MOST_LISTED = 6  # lines of places in a help
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
 
@@ -30,15 +30,22 @@ class Applied:
         self.findings: list[Finding] = []
 
     def about(self, item: object) -> tuple[Erratum, ...]:
-        """Return the entries, then the notes, about the object that was read from a mapping."""
+        """Return the entries, then the notes, about the object that was read from a
+        mapping.
+        """
         errata = self.of.get(id(item))
-        return tuple(sorted(errata, key=lambda erratum: erratum.is_note)) if errata else ()
+        return (
+            tuple(sorted(errata, key=lambda erratum: erratum.is_note)) if errata else ()
+        )
 
 
 def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
-    """Apply an overlay to ``tree``, in place. Entries without a matching place are findings.
+    """Apply an overlay to ``tree``, in place.
 
-    Entries that violate the schema are ignored; ``broken`` has the id() of such mappings.
+    Entries without a matching place are findings.
+
+    Entries that violate the schema are ignored; ``broken`` has the id() of such
+    mappings.
     """
     applied = Applied()
     if overlay is None:
@@ -59,14 +66,23 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
             continue
         if entry["id"] in seen:
             message = f"the id `{entry['id']}` is used twice, first in line {seen[entry['id']].line}"
-            applied.findings.append(Finding(DOUBLE_ID, message, entry.at("id"), "give this entry an id of its own"))
+            applied.findings.append(
+                Finding(
+                    DOUBLE_ID,
+                    message,
+                    entry.at("id"),
+                    "give this entry an id of its own",
+                )
+            )
         seen[entry["id"]] = entry.at("id")
         _apply_entry(tree, entry, applied, named)
     return applied
 
 
 def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> None:
-    """Apply an entry or a note to all places that its `where` names, and add findings about stale or unknown places."""
+    """Apply an entry or a note to all places that its `where` names, and add findings
+    about stale or unknown places.
+    """
     printed: Map = entry.get("printed") or unread()
     changes: Map = entry.get("held") or unread()
     erratum = _erratum(entry)
@@ -90,7 +106,10 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
             matched.append(target)
             _change(target, changes)
             # The index has the old names and lists.
-            if any(key == "name" or isinstance(value, Seq) for key, value in changes.items()):
+            if any(
+                key == "name" or isinstance(value, Seq)
+                for key, value in changes.items()
+            ):
                 named.forget()
             applied.of.setdefault(id(target), []).append(erratum)
             for code, place in entry["accept"].placed() if "accept" in entry else ():
@@ -99,13 +118,19 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
     # without being meant.
     expected = entry.get("places")
     if wildcard and len(matched) != expected:
-        message = f"`printed` matches {len(matched)} places" + (f", not {expected}" if expected else "")
+        message = f"`printed` matches {len(matched)} places" + (
+            f", not {expected}" if expected else ""
+        )
         help = _AGAIN
         if matched:
-            lines = ", ".join(str(place.line) for place in map(_place, matched[:_MOST_LISTED]))
+            lines = ", ".join(
+                str(place.line) for place in map(_place, matched[:_MOST_LISTED])
+            )
             more = ", ..." if len(matched) > _MOST_LISTED else ""
             help = f"check lines {lines}{more} of {_place(matched[0]).file}, then write `places: {len(matched)}`"
-        applied.findings.append(Finding(STALE, message, entry.at("places" if expected else "where"), help))
+        applied.findings.append(
+            Finding(STALE, message, entry.at("places" if expected else "where"), help)
+        )
 
 
 def _place(target: Map) -> Place:
@@ -116,7 +141,9 @@ def _place(target: Map) -> Place:
 def _is_broken(value: object, broken: Set[int]) -> bool:
     """Return whether a mapping at any depth of a value violates the schema."""
     if isinstance(value, Map):
-        return id(value) in broken or any(_is_broken(item, broken) for item in value.values())
+        return id(value) in broken or any(
+            _is_broken(item, broken) for item in value.values()
+        )
     return isinstance(value, Seq) and any(_is_broken(item, broken) for item in value)
 
 
@@ -128,7 +155,9 @@ def _erratum(entry: Map) -> Erratum:
         why=str(entry.get("what" if "what" in entry else "why", "")),
         evidence=str(entry.get("evidence", "")),
         confidence=str(entry.get("confidence", "")),
-        tables=tuple(table for table in entry.get("tables") or () if isinstance(table, int)),
+        tables=tuple(
+            table for table in entry.get("tables") or () if isinstance(table, int)
+        ),
         printed=tuple((entry.get("printed") or {}).items()),
         held=tuple((entry.get("held") or {}).items()),
         changes=bool(entry.get("held")),
@@ -147,9 +176,17 @@ def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
                 yield enum
             else:
                 members = mappings(enum.get("members"))
-                yield from (member for member in members if member.get("value") == where["member"])
+                yield from (
+                    member
+                    for member in members
+                    if member.get("value") == where["member"]
+                )
     elif "loggable" in where:
-        yield from (row for row in mappings(tree.get("loggable")) if row.get("bit") == where["loggable"])
+        yield from (
+            row
+            for row in mappings(tree.get("loggable"))
+            if row.get("bit") == where["loggable"]
+        )
     elif "message" in where or "struct" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
         kind = "message" if "message" in where else "struct"
@@ -157,17 +194,25 @@ def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
             if names is None:
                 yield owner
             else:
-                yield from (field for name in names for field in named.of(owner, "fields", name))
+                yield from (
+                    field for name in names for field in named.of(owner, "fields", name)
+                )
 
 
 class _ByName:
-    """Index of lists in an ICD by name. Without it, each entry would search the complete list again."""
+    """Index of lists in an ICD by name.
+
+    Without it, each entry would search the complete list again.
+    """
 
     def __init__(self) -> None:
         self._rows: dict[tuple[int, str], dict[str, list[Map]]] = {}
 
     def of(self, owner: Map, key: str, name: str) -> Iterable[Map]:
-        """Return the mappings of a name in the list of a key; all mappings for the name ``*``."""
+        """Return the mappings of a name in the list of a key.
+
+        All mappings for the name ``*``.
+        """
         if name == "*":
             return mappings(owner.get(key))
         rows = self._rows.get((id(owner), key))
@@ -184,7 +229,9 @@ class _ByName:
 
 
 def section(tree: Map, path: str) -> Iterator[Map]:
-    """Yield the mapping at a path of keys and list indices, such as ``protocol.uart``, if it exists."""
+    """Yield the mapping at a path of keys and list indices, such as ``protocol.uart``,
+    if it exists.
+    """
     node: object = tree
     for step in path.split("."):
         if isinstance(node, Map) and step in node:
@@ -222,19 +269,27 @@ def _change(target: Map, changes: Map) -> None:
 
 def _stale(entry: Map, target: Map, printed: Map) -> Finding:
     """Return the finding for an entry whose `printed` differs from the ICD."""
-    key, value = next((key, value) for key, value in printed.items() if not _same(target.get(key), value))
+    key, value = next(
+        (key, value)
+        for key, value in printed.items()
+        if not _same(target.get(key), value)
+    )
     stale = f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {yaml_text(value)}`"
     now = f"the ICD now has `{key}: {yaml_text(target.get(key))}` ({target.at(key)})"
     return Finding(STALE, f"{stale}, {now}", printed.at(key), _AGAIN)
 
 
 def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
-    """Return the finding for a `where` that names no place of the ICD, with a similar name as fix."""
+    """Return the finding for a `where` that names no place of the ICD, with a similar
+    name as fix.
+    """
     target, names, key = "", [], ""
     if "section" in where:
         target = f"section `{where['section']}`"
     elif "enum" in where:
-        target = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
+        target = f"enumeration `{where['enum']}`" + (
+            f" with value {where['member']}" if "member" in where else ""
+        )
         enum_names = [enum.get("name") for enum in mappings(tree.get("enums"))]
         names, key = [] if where["enum"] in enum_names else enum_names, "enum"
     elif "loggable" in where:
@@ -246,7 +301,19 @@ def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
         owners = list(named.of(tree, f"{kind}s", where[kind]))
         if owners:
             target = f"field `{where.get('field') or where.get('fields')}` in {target}"
-            names, key = [field.get("name") for owner in owners for field in mappings(owner.get("fields"))], "field"
+            names, key = [
+                field.get("name")
+                for owner in owners
+                for field in mappings(owner.get("fields"))
+            ], "field"
     candidates = (name for name in names if isinstance(name, str))
-    help, fix = suggestion(str(where.get(key, "")), candidates, "names are the manual's, to the letter")
-    return Finding(NOWHERE, f"there is no {target}", where.place, help, fix=Fix(where.at(key), fix) if fix else None)
+    help, fix = suggestion(
+        str(where.get(key, "")), candidates, "names are the manual's, to the letter"
+    )
+    return Finding(
+        NOWHERE,
+        f"there is no {target}",
+        where.place,
+        help,
+        fix=Fix(where.at(key), fix) if fix else None,
+    )

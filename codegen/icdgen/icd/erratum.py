@@ -10,7 +10,10 @@ from icdgen.icd.located import Map, unread
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """A decision about a fault of the manual, or a note. A note changes and accepts nothing; ``why`` is its text."""
+    """A decision about a fault of the manual, or a note.
+
+    A note changes and accepts nothing; ``why`` is its text.
+    """
 
     id: str
     title: str
@@ -31,5 +34,8 @@ class Erratum:
 
     @property
     def sureness(self) -> str:
-        """Confidence in parentheses with a leading space, to append to a name; empty without a confidence."""
+        """Confidence in parentheses with a leading space, to append to a name.
+
+        Empty without a confidence.
+        """
         return f" ({self.confidence})" if self.confidence else ""

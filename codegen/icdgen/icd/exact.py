@@ -1,4 +1,6 @@
-"""Integer form of a scale, with which every language computes exactly: physical = (raw*p + c) / q."""
+"""Integer form of a scale, with which every language computes exactly: physical =
+(raw*p + c) / q.
+"""
 
 from __future__ import annotations
 
@@ -28,14 +30,22 @@ class Terms(NamedTuple):
     @property
     def are_usual(self) -> bool:
         """Whether arithmetic of 128 bits is sufficient."""
-        return abs(self.p) <= USUAL_FACTOR and self.q <= USUAL_FACTOR and abs(self.c) <= USUAL_OFFSET
+        return (
+            abs(self.p) <= USUAL_FACTOR
+            and self.q <= USUAL_FACTOR
+            and abs(self.c) <= USUAL_OFFSET
+        )
 
 
 def terms(scale: Scale) -> Terms:
     """Return the terms of a scale over the common denominator of factor and offset."""
     factor, offset = scale
     q = lcm(factor.denominator, offset.denominator)
-    return Terms(factor.numerator * (q // factor.denominator), offset.numerator * (q // offset.denominator), q)
+    return Terms(
+        factor.numerator * (q // factor.denominator),
+        offset.numerator * (q // offset.denominator),
+        q,
+    )
 
 
 def is_too_large(scale: Scale) -> bool:

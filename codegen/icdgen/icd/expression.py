@@ -1,8 +1,10 @@
-"""Parser of arithmetic expressions, such as ``(raw - 32)*5/9`` or ``W*10^W_SF``, for formulas and derived values.
+"""Parser of arithmetic expressions, such as ``(raw - 32)*5/9`` or ``W*10^W_SF``, for
+formulas and derived values.
 
-`evaluate` splits a text into tokens and parses them by recursive descent. An `Arithmetic` defines the valid names and the
-meaning of the operators: `icdgen.icd.formula` computes polynomials of fractions, `icdgen.icd.derived` the steps of a
-computation in doubles.
+`evaluate` splits a text into tokens and parses them by recursive descent. An
+`Arithmetic` defines the valid names and the meaning of the operators:
+`icdgen.icd.formula` computes polynomials of fractions, `icdgen.icd.derived` the steps
+of a computation in doubles.
 """
 
 from __future__ import annotations
@@ -25,7 +27,10 @@ Value = TypeVar("Value")
 
 
 class FormulaError(ValueError):
-    """A text is not a valid formula. The message is the end of a sentence, such as "it divides by zero"."""
+    """A text is not a valid formula.
+
+    The message is the end of a sentence, such as "it divides by zero".
+    """
 
 
 class Token(NamedTuple):
@@ -40,7 +45,10 @@ class Token(NamedTuple):
         return not self.is_name and self.text[0].isdigit()
 
     def is_operator(self, operators: str) -> bool:
-        """Return whether the token is one of these operators; names can look like operators."""
+        """Return whether the token is one of these operators.
+
+        Names can look like operators.
+        """
         return not self.is_name and self.text in operators
 
 
@@ -49,7 +57,10 @@ class Arithmetic(ABC, Generic[Value]):
 
     @abstractmethod
     def name_at(self, text: str, at: int) -> str:
-        """Return the longest name that begins at an index of the text; empty if no name begins there."""
+        """Return the longest name that begins at an index of the text.
+
+        Returns empty if no name begins there.
+        """
 
     @abstractmethod
     def unreadable(self, text: str, at: int) -> FormulaError:
@@ -82,7 +93,10 @@ def evaluate(text: str, arithmetic: Arithmetic[Value]) -> Value:
 
 
 def _tokens(text: str, arithmetic: Arithmetic[Value]) -> Iterator[Token]:
-    """Yield numbers, operators and names. If both a number and a name begin at a character, the longer one is used."""
+    """Yield numbers, operators and names.
+
+    If both a number and a name begin at a character, the longer one is used.
+    """
     at = 0
     while at < len(text):
         if text[at].isspace():
@@ -101,7 +115,10 @@ def _tokens(text: str, arithmetic: Arithmetic[Value]) -> Iterator[Token]:
 
 
 class _Parser(Generic[Value]):
-    """Recursive-descent parser. A minus sign has a lower precedence than `^` and a higher one than `*`."""
+    """Recursive-descent parser.
+
+    A minus sign has a lower precedence than `^` and a higher one than `*`.
+    """
 
     def __init__(self, tokens: list[Token], arithmetic: Arithmetic[Value]) -> None:
         self.tokens = tokens  # not yet consumed
@@ -136,10 +153,14 @@ class _Parser(Generic[Value]):
         """Parse minus signs and a power."""
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise FormulaError(f"more than {MAX_DEPTH} parentheses or signs are open at once")
+            raise FormulaError(
+                f"more than {MAX_DEPTH} parentheses or signs are open at once"
+            )
         token = self.take()
         if token.is_operator("-"):
-            value = self.arithmetic.operation("-", self.arithmetic.number(Fraction(0)), self.signed())
+            value = self.arithmetic.operation(
+                "-", self.arithmetic.number(Fraction(0)), self.signed()
+            )
         else:
             value = self.power(self.primary(token))
         self.depth -= 1

@@ -9,7 +9,10 @@ from icdgen.icd.located import Map
 
 
 class Fault(NamedTuple):
-    """A violation of a rule. An erratum with `accept` on the mapping ``owner`` suppresses it."""
+    """A violation of a rule.
+
+    An erratum with `accept` on the mapping ``owner`` suppresses it.
+    """
 
     owner: Map | None
     place: Place
@@ -19,21 +22,43 @@ class Fault(NamedTuple):
     related: Related | None = None
 
     @classmethod
-    def of_place(cls, owner: Map | None, place: Place, message: str, help: str, fix: str = "") -> Fault:
+    def of_place(
+        cls, owner: Map | None, place: Place, message: str, help: str, fix: str = ""
+    ) -> Fault:
         """Return a fault at any place; ``fix`` is the replacement text, if it is known."""
         return cls(owner, place, message, help, Fix(place, fix) if fix else None)
 
     @classmethod
-    def at(cls, owner: Map, key: str, message: str, help: str, fix: str = "", related: Related | None = None) -> Fault:
-        """Return a fault of the value of a key; ``fix`` is the correct value as YAML, if it is known."""
+    def at(
+        cls,
+        owner: Map,
+        key: str,
+        message: str,
+        help: str,
+        fix: str = "",
+        related: Related | None = None,
+    ) -> Fault:
+        """Return a fault of the value of a key.
+
+        ``fix`` is the correct value as YAML, if it is known.
+        """
         place = owner.at(key)
-        return cls(owner, place, message, help, Fix(place, fix) if fix else None, related)
+        return cls(
+            owner, place, message, help, Fix(place, fix) if fix else None, related
+        )
 
     @classmethod
-    def at_key(cls, owner: Map, key: str, message: str, help: str, fix: str = "") -> Fault:
-        """Return a fault of a key itself; ``fix`` is the correct key as YAML, if it is known."""
+    def at_key(
+        cls, owner: Map, key: str, message: str, help: str, fix: str = ""
+    ) -> Fault:
+        """Return a fault of a key itself.
+
+        ``fix`` is the correct key as YAML, if it is known.
+        """
         return cls.of_place(owner, owner.key_at(key), message, help, fix)
 
     def finding(self, code: str, severity: str = "error") -> Finding:
         """Return the fault as a finding with the code of its rule."""
-        return Finding(code, self.message, self.place, self.help, severity, self.fix, self.related)
+        return Finding(
+            code, self.message, self.place, self.help, severity, self.fix, self.related
+        )

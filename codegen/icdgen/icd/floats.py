@@ -1,4 +1,6 @@
-"""Conversion of 32-bit and 64-bit floats between IEEE 754 bits, numbers and their shortest decimal text."""
+"""Conversion of 32-bit and 64-bit floats between IEEE 754 bits, numbers and their
+shortest decimal text.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ _FORMATS = {32: ("<f", "<I"), 64: ("<d", "<Q")}
 
 
 def bits_of(value: float, bits: int) -> int:
-    """Return the bits of a number that a float of this width represents exactly, or of NaN or infinity."""
+    """Return the bits of a number that a float of this width represents exactly, or of
+    NaN or infinity.
+    """
     float_format, int_format = _FORMATS[bits]
     raw: int = struct.unpack(int_format, struct.pack(float_format, value))[0]
     return raw
@@ -31,7 +35,8 @@ def value_of(raw: int, bits: int) -> float:
 def nearest(value: Fraction, bits: int) -> int:
     """Return the bits of the nearest float, ties to even. Raises `OverflowError`.
 
-    Computes them from the exact value, because a conversion by way of a double would round twice.
+    Computes them from the exact value, because a conversion by way of a double would
+    round twice.
     """
     sign, value = value < 0, abs(value)
     # Bits of the significand, and the exponents of its lowest bit in the smallest and

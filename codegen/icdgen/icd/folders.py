@@ -15,7 +15,18 @@ MOST_FOLDERS = 5000  # limit of one search, to stop `icdgen check /`
 # Subfolders with build output or with files of tools. A folder that the user names is
 # searched whatever its name is.
 _SKIPPED = frozenset(
-    {"__pycache__", "_build", "build", "dist", "errata", "generated", "node_modules", "site", "target", "venv"}
+    {
+        "__pycache__",
+        "_build",
+        "build",
+        "dist",
+        "errata",
+        "generated",
+        "node_modules",
+        "site",
+        "target",
+        "venv",
+    }
 )
 _ENVIRONMENT = "pyvenv.cfg"  # marks a virtual environment of any name
 
@@ -37,9 +48,11 @@ class Search:
 def search(top: Path) -> Search:
     """Return the ICDs of a folder and its subfolders, in the order of their paths.
 
-    A file *.yaml is an ICD if it has the key `icdgen`. In the folder itself, a file is also an ICD if it has no keys at all
-    or the key `messages`, so that `icdgen check` can report what it lacks. Errata overlays and other YAML files are not ICDs.
-    Hidden folders, virtual environments and folders of build output are skipped. Links to folders are not followed.
+    A file *.yaml is an ICD if it has the key `icdgen`. In the folder itself, a file is
+    also an ICD if it has no keys at all or the key `messages`, so that `icdgen check`
+    can report what it lacks. Errata overlays and other YAML files are not ICDs. Hidden
+    folders, virtual environments and folders of build output are skipped. Links to
+    folders are not followed.
     """
     result = Search()
     queue = [top]
@@ -56,19 +69,28 @@ def search(top: Path) -> Search:
             if name.endswith(".yaml") and not name.startswith("."):
                 path = folder / name
                 _list_of(result, path, is_direct=folder == top).append(path)
-        queue += (folder / name for name in subfolders if name not in _SKIPPED and not name.startswith("."))
+        queue += (
+            folder / name
+            for name in subfolders
+            if name not in _SKIPPED and not name.startswith(".")
+        )
     result.icds.sort(key=lambda path: (len(path.parts), path))
     return result
 
 
 def _entries(folder: Path) -> tuple[list[str], list[str]]:
-    """Return the names of the files and of the subfolders of a folder; empty lists if it cannot be read."""
+    """Return the names of the files and of the subfolders of a folder.
+
+    Returns empty lists if it cannot be read.
+    """
     files: list[str] = []
     folders: list[str] = []
     try:
         with os.scandir(folder) as entries:
             for entry in sorted(entries, key=lambda entry: entry.name):
-                (folders if entry.is_dir(follow_symlinks=False) else files).append(entry.name)
+                (folders if entry.is_dir(follow_symlinks=False) else files).append(
+                    entry.name
+                )
     except OSError:
         return [], []
     return files, folders

@@ -1,4 +1,8 @@
-"""Exact formulas: convert text to rational coefficients, or to factor and offset if it is linear. Uses no floats."""
+"""Exact formulas: convert text to rational coefficients, or to factor and offset if it
+is linear.
+
+Uses no floats.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +40,10 @@ class Scale(NamedTuple):
         # One division instead of a sum and a product of Fractions: this runs for each
         # value of each vector.
         a, b = self.factor, self.offset
-        top = raw.numerator * a.numerator * b.denominator + b.numerator * a.denominator * raw.denominator
+        top = (
+            raw.numerator * a.numerator * b.denominator
+            + b.numerator * a.denominator * raw.denominator
+        )
         return Fraction(top, raw.denominator * a.denominator * b.denominator)
 
     def raw(self, physical: Fraction) -> Fraction:
@@ -48,13 +55,17 @@ RAW = Scale(Fraction(1))  # the physical value is the raw value
 
 
 _Polynomial: TypeAlias = tuple[Fraction, ...]
-"""Coefficients, the constant first. The last coefficient is not 0, except in a constant polynomial."""
+"""Coefficients, the constant first.
+
+The last coefficient is not 0, except in a constant polynomial.
+"""
 
 
 def parse(text: str) -> Scale:
     """Return the scale of a linear formula. Raises `FormulaError`.
 
-    Examples: ``raw*0.01``, ``raw*2^-19``, ``(raw - 32)*5/9`` or, solved for raw, ``raw = value*1000.0``.
+    Examples: ``raw*0.01``, ``raw*2^-19``, ``(raw - 32)*5/9`` or, solved for raw, ``raw
+    = value*1000.0``.
     """
     polynomial = coefficients(text)
     if len(polynomial) > 2:
@@ -63,7 +74,8 @@ def parse(text: str) -> Scale:
 
 
 def coefficients(text: str) -> tuple[Fraction, ...]:
-    """Return the coefficients of the physical value as a polynomial in ``raw``, the constant first.
+    """Return the coefficients of the physical value as a polynomial in ``raw``, the
+    constant first.
 
     There are two or more. Raises `FormulaError`.
     """
@@ -73,7 +85,9 @@ def coefficients(text: str) -> tuple[Fraction, ...]:
         raise FormulaError("it is empty")
     prefix = _SOLVED_FOR.match(text)
     variable = "value" if prefix and prefix[1] == "raw" else "raw"
-    polynomial = evaluate(text[prefix.end() :] if prefix else text, _Polynomials(variable))
+    polynomial = evaluate(
+        text[prefix.end() :] if prefix else text, _Polynomials(variable)
+    )
     if len(polynomial) == 1:
         raise FormulaError(f"it does not depend on `{variable}`")
     if variable == "raw":
@@ -115,14 +129,23 @@ class _Polynomials(Arithmetic[_Polynomial]):
     def variable(self, name: str) -> _Polynomial:
         """Return the variable itself."""
         if name != self.only_variable:
-            raise FormulaError(f"`{name}` is unknown; the variable is `{self.only_variable}`")
+            raise FormulaError(
+                f"`{name}` is unknown; the variable is `{self.only_variable}`"
+            )
         return Fraction(0), Fraction(1)
 
-    def operation(self, operator: str, left: _Polynomial, right: _Polynomial) -> _Polynomial:
+    def operation(
+        self, operator: str, left: _Polynomial, right: _Polynomial
+    ) -> _Polynomial:
         """Return a sum, a difference, a product, or a quotient by a constant."""
         if operator in "+-":
             sign = 1 if operator == "+" else -1
-            return _shortened([a + sign * b for a, b in zip_longest(left, right, fillvalue=Fraction(0))])
+            return _shortened(
+                [
+                    a + sign * b
+                    for a, b in zip_longest(left, right, fillvalue=Fraction(0))
+                ]
+            )
         if operator == "*":
             return self.times(left, right)
         if len(right) > 1:
@@ -134,18 +157,30 @@ class _Polynomials(Arithmetic[_Polynomial]):
     def times(self, left: _Polynomial, right: _Polynomial) -> _Polynomial:
         """Return a product."""
         if len(left) + len(right) - 2 > MAX_DEGREE:
-            raise FormulaError(f"a power of `{self.only_variable}` is above {MAX_DEGREE}")
+            raise FormulaError(
+                f"a power of `{self.only_variable}` is above {MAX_DEGREE}"
+            )
         terms = [Fraction(0)] * (len(left) + len(right) - 1)
         for (i, a), (j, b) in product(enumerate(left), enumerate(right)):
             terms[i + j] += a * b
-        if any(max(abs(term.numerator), term.denominator).bit_length() > MAX_POWER_BITS for term in terms):
+        if any(
+            max(abs(term.numerator), term.denominator).bit_length() > MAX_POWER_BITS
+            for term in terms
+        ):
             raise FormulaError("a coefficient is too large to be meant")
         return _shortened(terms)
 
-    def power(self, base: _Polynomial, exponent: Token, is_negative: bool) -> _Polynomial:
-        """Return a power with an integer exponent; only a constant can have a negative exponent."""
+    def power(
+        self, base: _Polynomial, exponent: Token, is_negative: bool
+    ) -> _Polynomial:
+        """Return a power with an integer exponent.
+
+        Only a constant can have a negative exponent.
+        """
         if not exponent.text.isdigit() or int(exponent.text) > MAX_EXPONENT:
-            raise FormulaError(f"the exponent after `^` is not a whole number up to {MAX_EXPONENT}")
+            raise FormulaError(
+                f"the exponent after `^` is not a whole number up to {MAX_EXPONENT}"
+            )
         number = int(exponent.text)
         if len(base) > 1:
             if is_negative:

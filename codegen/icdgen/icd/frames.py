@@ -1,7 +1,8 @@
 """Scalars of one frame with their bits, for the codec, logs and the simulator.
 
-`frame_fields` computes them from a layout and the sizes of its variable parts. Read next: `icdgen.icd.pieces`, which converts the
-position of a scalar into runs of bits within bytes.
+`frame_fields` computes them from a layout and the sizes of its variable parts. Read
+next: `icdgen.icd.pieces`, which converts the position of a scalar into runs of bits
+within bytes.
 """
 
 from __future__ import annotations
@@ -65,23 +66,33 @@ def name_of_steps(steps: Sequence[PathStep]) -> str:
 
 
 def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
-    """Return the name with identifiers instead of names; None if no node on the path has an identifier."""
+    """Return the name with identifiers instead of names.
+
+    Returns None if no node on the path has an identifier.
+    """
     if not any(step.node.identifier for step in steps):
         return None
     return ".".join(step.text(step.node.identifier or step.node.name) for step in steps)
 
 
 Role: TypeAlias = Literal["field", "overlay", "derived", "count"]
-"""Role of a scalar in a frame. A `count` is a number of elements without bits: it follows from the length of the frame."""
+"""Role of a scalar in a frame.
+
+A `count` is a number of elements without bits: it follows from the length of the frame.
+"""
 
 
 def forwarded(path: str) -> Any:
-    """Return a property with the value of an attribute of an attribute: ``scalar.unit``."""
+    """Return a property with the value of an attribute of an attribute:
+    ``scalar.unit``.
+    """
     return property(attrgetter(path))
 
 
 class OfScalar:
-    """Base of classes that have a scalar, with the attributes of the scalar that give a raw value its meaning."""
+    """Base of classes that have a scalar, with the attributes of the scalar that give a
+    raw value its meaning.
+    """
 
     scalar: Scalar
     type: str = forwarded("scalar.type")
@@ -106,7 +117,10 @@ class OfScalar:
 
 @dataclass(frozen=True, eq=False)
 class FrameField(OfScalar):
-    """A scalar at its position in one frame. Compared by identity: `frame_fields` caches the objects."""
+    """A scalar at its position in one frame.
+
+    Compared by identity: `frame_fields` caches the objects.
+    """
 
     steps: tuple[PathStep, ...]  # path from the layout of the message to the scalar
     at: int  # first bit in the frame, counted in the bit order in effect
@@ -123,12 +137,17 @@ class FrameField(OfScalar):
 
     @property
     def alias(self) -> str | None:
-        """Return the name with identifiers instead of names; None if no node on the path has an identifier."""
+        """Return the name with identifiers instead of names.
+
+        Returns None if no node on the path has an identifier.
+        """
         return alias_of_steps(self.steps)
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """Conditions of an optional field: a frame has the field if all of them are met."""
+        """Conditions of an optional field: a frame has the field if all of them are
+        met.
+        """
         return self.scalar.present_if
 
     @property
@@ -138,7 +157,9 @@ class FrameField(OfScalar):
 
     @property
     def is_raw(self) -> bool:
-        """Return whether a message needs a raw value for the field: it owns bits, or counts elements."""
+        """Return whether a message needs a raw value for the field: it owns bits, or
+        counts elements.
+        """
         return self.role in ("field", "count")
 
     @property
@@ -148,28 +169,46 @@ class FrameField(OfScalar):
         return node.derivation if isinstance(node, Derived) else None
 
 
-def frame_fields(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> tuple[FrameField, ...]:
-    """Return the scalars of a frame as `flatten` lists them. Caches the last results of each layout."""
+def frame_fields(
+    layout: Layout, orders: Orders, sizes: Sizes | None = None
+) -> tuple[FrameField, ...]:
+    """Return the scalars of a frame as `flatten` lists them.
+
+    Caches the last results of each layout.
+    """
     frames = _frames(layout)
-    key = orders, None if sizes is None or not layout.sequence else tuple(map(sizes.__getitem__, layout.parts_by_size))
+    key = orders, (
+        None
+        if sizes is None or not layout.sequence
+        else tuple(map(sizes.__getitem__, layout.parts_by_size))
+    )
     fields = frames.get(key)
     if fields is None:
         cached_scalars = sum(map(len, frames.values()))
         # Remove the oldest entries first: a dict preserves the order of insertion.
-        while frames and (len(frames) >= _CACHED_FRAMES or cached_scalars > _CACHED_SCALARS):
+        while frames and (
+            len(frames) >= _CACHED_FRAMES or cached_scalars > _CACHED_SCALARS
+        ):
             cached_scalars -= len(frames.pop(next(iter(frames))))
         fields = frames[key] = tuple(flatten(layout, orders, sizes))
     return fields
 
 
 @cached_by_owner
-def _frames(layout: Layout) -> dict[tuple[Orders, tuple[int, ...] | None], tuple[FrameField, ...]]:
+def _frames(
+    layout: Layout,
+) -> dict[tuple[Orders, tuple[int, ...] | None], tuple[FrameField, ...]]:
     """Return the cache of `frame_fields`, the oldest entry first."""
     return {}
 
 
-def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[FrameField]:
-    """List the scalars of a frame with these sizes, or of the longest frame. `orders` are the defaults of the ICD node."""
+def flatten(
+    layout: Layout, orders: Orders, sizes: Sizes | None = None
+) -> list[FrameField]:
+    """List the scalars of a frame with these sizes, or of the longest frame.
+
+    `orders` are the defaults of the ICD node.
+    """
     fields: list[FrameField] = []
     orders = layout.orders.within(orders)
     for node in layout.fixed:
@@ -177,7 +216,11 @@ def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[
     end = 8 * layout.length
     for part in layout.parts:
         node, size = part.node, size_of(part.node)
-        number, gaps = (size.most, ()) if sizes is None else (sizes[part.name], part.gaps_of(sizes))
+        number, gaps = (
+            (size.most, ())
+            if sizes is None
+            else (sizes[part.name], part.gaps_of(sizes))
+        )
         step = 8 * (part.step - sum(gap.length for gap in gaps))
         own = node.orders.within(orders)
         if isinstance(node, Array):
@@ -186,19 +229,45 @@ def flatten(layout: Layout, orders: Orders, sizes: Sizes | None = None) -> list[
                 scalars = _scalars(node.item, (PathStep(node, element),), begin, own)
                 fields += _without_gaps(scalars, begin, gaps) if gaps else scalars
         else:
-            fields.append(FrameField((PathStep(node),), end, 8 * number, node, own.byte, own.bit))
+            fields.append(
+                FrameField((PathStep(node),), end, 8 * number, node, own.byte, own.bit)
+            )
         end += number * step
         if isinstance(size, Rest):
             counter = size.counter
-            fields.append(FrameField((PathStep(counter),), end, counter.bits, counter, own.byte, own.bit, "count"))
+            fields.append(
+                FrameField(
+                    (PathStep(counter),),
+                    end,
+                    counter.bits,
+                    counter,
+                    own.byte,
+                    own.bit,
+                    "count",
+                )
+            )
     for derived in layout.derived:
         scalar = derived.scalar
-        fields.append(FrameField((PathStep(derived),), end, scalar.bits, scalar, orders.byte, orders.bit, "derived"))
+        fields.append(
+            FrameField(
+                (PathStep(derived),),
+                end,
+                scalar.bits,
+                scalar,
+                orders.byte,
+                orders.bit,
+                "derived",
+            )
+        )
     return fields
 
 
-def _without_gaps(fields: Iterator[FrameField], begin: int, gaps: Sequence[Gap]) -> Iterator[FrameField]:
-    """Yield the scalars of the longest element that are not in a gap, at their positions in the shorter element."""
+def _without_gaps(
+    fields: Iterator[FrameField], begin: int, gaps: Sequence[Gap]
+) -> Iterator[FrameField]:
+    """Yield the scalars of the longest element that are not in a gap, at their
+    positions in the shorter element.
+    """
     for field in fields:
         at = (field.at - begin) // 8
         if not any(gap.begin <= at < gap.end for gap in gaps):
@@ -206,16 +275,25 @@ def _without_gaps(fields: Iterator[FrameField], begin: int, gaps: Sequence[Gap])
             yield replace(field, at=field.at - 8 * missing) if missing else field
 
 
-def _scalars(node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders) -> Iterator[FrameField]:
+def _scalars(
+    node: FixedNode, steps: tuple[PathStep, ...], at: int, orders: Orders
+) -> Iterator[FrameField]:
     """Yield the scalars of a node of fixed size that begins at bit `at`."""
     match node:
         case Scalar(bits=bits):
             yield FrameField(steps, at, bits, node, orders.byte, orders.bit)
         case Overlay(scalar=scalar):
-            yield FrameField(steps, at, scalar.bits, scalar, orders.byte, orders.bit, "overlay")
+            yield FrameField(
+                steps, at, scalar.bits, scalar, orders.byte, orders.bit, "overlay"
+            )
         case StructRef(layout=layout):
             for inner in layout.fixed:
-                yield from _scalars(inner, (*steps, PathStep(inner)), at + inner.at, inner.orders.within(orders))
+                yield from _scalars(
+                    inner,
+                    (*steps, PathStep(inner)),
+                    at + inner.at,
+                    inner.orders.within(orders),
+                )
         case Array(item=item, most=count):
             for element in range(count):
                 steps_to = (*steps[:-1], PathStep(node, element))

@@ -1,4 +1,6 @@
-"""Names that the generated code of a language declares for an ICD, for the rules that compare them."""
+"""Names that the generated code of a language declares for an ICD, for the rules that
+compare them.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +22,14 @@ class Identifier:
     text: str
     owner: str  # the line of the ICD in words: "field `Foo` of `Bar`"
     source: Map | None  # the mapping of that line
-    role: str = ""  # distinguishes names of the same line: see `icdgen.describe.symbols`
-    part: object = None  # object of the model that it names; None for a name of the generated code itself
+    role: str = (
+        ""  # distinguishes names of the same line: see `icdgen.describe.symbols`
+    )
+    part: object = (
+        # Object of the model that it names; None for a name of the generated code
+        # itself.
+        None
+    )
 
 
 class Language(Protocol):

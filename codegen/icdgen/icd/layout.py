@@ -1,10 +1,12 @@
 """Layout of a message or a struct as a tree with one node per line of the ICD.
 
-`icdgen.icd.build` makes the nodes from the mappings of a file. `icdgen.icd.layout_nodes.walk` visits all declarations.
-Nodes store positions and orders as the ICD declares them. Orders in effect are resolved on the way down, because messages
-of different orders can use the same struct.
+`icdgen.icd.build` makes the nodes from the mappings of a file.
+`icdgen.icd.layout_nodes.walk` visits all declarations. Nodes store positions and orders
+as the ICD declares them. Orders in effect are resolved on the way down, because
+messages of different orders can use the same struct.
 
-Read next: `icdgen.icd.places` for the longest frame, `icdgen.icd.frames` for a frame of given sizes.
+Read next: `icdgen.icd.places` for the longest frame, `icdgen.icd.frames` for a frame of
+given sizes.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ from icdgen.icd.units import Unit
 from icdgen.once import cached_property
 
 Sizes: TypeAlias = Mapping[str, int]
-"""Number of elements, or of bytes, of each variable-length node of one frame, by `VariablePart.name` and `inner_name`."""
+"""Number of elements, or of bytes, of each variable-length node of one frame, by
+`VariablePart.name` and `inner_name`.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +44,10 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """Byte order and bit order that one mapping of the ICD declares; empty if it declares none."""
+    """Byte order and bit order that one mapping of the ICD declares.
+
+    Empty if it declares none.
+    """
 
     byte: str = ""  # little | big
     bit: str = ""  # lsb0 | msb0
@@ -58,7 +65,9 @@ UNDECLARED = Orders()
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """Number of elements that a field of the fixed part counts: its raw value plus `plus`."""
+    """Number of elements that a field of the fixed part counts: its raw value plus
+    `plus`.
+    """
 
     counter: str  # name of the field
     most: int  # elements
@@ -95,7 +104,9 @@ class LayoutNode:
 
 def integer_range(bits: int, is_signed: bool) -> tuple[int, int]:
     """Return the smallest and largest value of an integer of this width."""
-    return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
+    return (
+        (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,7 +153,8 @@ class Scalar(LayoutNode):
         return (1 << (self.bits - self.is_signed)) - 1
 
     def initial_value(self, bits: int, smallest_raw: int) -> int | bytes:
-        """Return the raw value in a new message: the constant, else the smallest valid value; of a float its bits.
+        """Return the raw value in a new message: the constant, else the smallest valid
+        value; of a float its bits.
 
         `bits` are those in the frame. `smallest_raw` comes from `Layout.smallest_raw`.
         """
@@ -155,19 +167,33 @@ class Scalar(LayoutNode):
 
     @property
     def is_invertible(self) -> bool:
-        """Return whether each physical value has one nearest raw value; some lookup tables and polynomials fail this."""
-        return self.curve is None or has_inverse(self.curve, self.type == "float", self.raw_min, self.raw_max)
+        """Return whether each physical value has one nearest raw value.
+
+        Some lookup tables and polynomials fail this.
+        """
+        return self.curve is None or has_inverse(
+            self.curve, self.type == "float", self.raw_min, self.raw_max
+        )
 
     @property
     def settable_raws(self) -> tuple[int, int]:
-        """Return the smallest and the largest raw value that a physical value can be converted to."""
+        """Return the smallest and the largest raw value that a physical value can be
+        converted to.
+        """
         raws = self.raw_min, self.raw_max
-        return raws if self.curve is None or self.type == "float" else self.curve.invertible_raws(*raws)
+        return (
+            raws
+            if self.curve is None or self.type == "float"
+            else self.curve.invertible_raws(*raws)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StructRef(LayoutNode):
-    """Use of a struct in a message or in another struct; all uses share the layout of the struct."""
+    """Use of a struct in a message or in another struct.
+
+    All uses share the layout of the struct.
+    """
 
     layout: Layout
 
@@ -194,7 +220,9 @@ class Overlay(LayoutNode):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Derived(LayoutNode):
-    """Derived value: a double that is computed from other fields and has no bits in the frame."""
+    """Derived value: a double that is computed from other fields and has no bits in the
+    frame.
+    """
 
     scalar: Scalar  # a 64-bit float
     derivation: Derivation
@@ -210,8 +238,8 @@ VariableNode: TypeAlias = Scalar | Array
 class Layout:
     """Nodes of a message or of a struct.
 
-    A struct has fixed nodes only. An array of variable length in a struct is placed as in the longest element, with the
-    nodes behind it; `inner_parts` lists these arrays.
+    A struct has fixed nodes only. An array of variable length in a struct is placed as
+    in the longest element, with the nodes behind it; `inner_parts` lists these arrays.
     """
 
     name: str
@@ -235,13 +263,21 @@ class Layout:
 
     @property
     def shortest(self) -> int:
-        """Length of the shortest frame in bytes; at least 1 if frames may end early, unless the message is empty."""
-        shortest = self.length + sum(part.fewest * part.shortest_step for part in self.parts)
+        """Length of the shortest frame in bytes.
+
+        At least 1 if frames may end early, unless the message is empty.
+        """
+        shortest = self.length + sum(
+            part.fewest * part.shortest_step for part in self.parts
+        )
         return min(1, shortest) if self.may_end_early else shortest
 
     @property
     def lengths(self) -> range:
-        """Possible lengths of a frame in bytes. With several variable parts, it includes lengths that no counters give."""
+        """Possible lengths of a frame in bytes.
+
+        With several variable parts, it includes lengths that no counters give.
+        """
         # gcd() of no arguments is 0, and a range needs a step.
         step = gcd(*(step for part in self.parts for step in part.steps)) or 1
         return range(self.shortest, self.longest + 1, step)
@@ -254,8 +290,14 @@ class Layout:
         for node in self.sequence:
             size, step = size_of(node), stride(node) // 8
             is_rest = isinstance(size, Rest)
-            counter, plus = (size.counter.name, 0) if isinstance(size, Rest) else (size.counter, size.plus)
-            parts.append(VariablePart(node, counter, is_rest, begin, step, size.most, plus))
+            counter, plus = (
+                (size.counter.name, 0)
+                if isinstance(size, Rest)
+                else (size.counter, size.plus)
+            )
+            parts.append(
+                VariablePart(node, counter, is_rest, begin, step, size.most, plus)
+            )
             # Positions are those in the longest frame, in which each part has its most
             # elements.
             begin += size.most * step
@@ -263,10 +305,18 @@ class Layout:
 
     @cached_property
     def inner_parts(self) -> tuple[VariablePart, ...]:
-        """Arrays of variable length in a struct, at their positions in its longest element."""
+        """Arrays of variable length in a struct, at their positions in its longest
+        element.
+        """
         return tuple(
             VariablePart(
-                node, node.size.counter, False, node.at // 8, stride(node) // 8, node.size.most, node.size.plus
+                node,
+                node.size.counter,
+                False,
+                node.at // 8,
+                stride(node) // 8,
+                node.size.most,
+                node.size.plus,
             )
             for node in self.fixed
             if isinstance(node, Array) and isinstance(node.size, Counted)
@@ -276,7 +326,9 @@ class Layout:
     def parts_by_size(self) -> dict[str, VariablePart]:
         """Variable-length parts and those in elements of them, by the keys of `Sizes`."""
         parts = {part.name: part for part in self.parts}
-        return parts | {part.inner_name(inner): inner for part in self.parts for inner in part.inner}
+        return parts | {
+            part.inner_name(inner): inner for part in self.parts for inner in part.inner
+        }
 
     @property
     def counted_parts(self) -> Iterable[VariablePart]:
@@ -285,14 +337,22 @@ class Layout:
 
     @property
     def initial_numbers(self) -> dict[str, int]:
-        """Number of elements that have initial values in a new message: the fewest of the last part, all of other parts."""
-        return {part.name: part.fewest if part is self.parts[-1] else part.most for part in self.parts}
+        """Number of elements that have initial values in a new message: the fewest of
+        the last part, all of other parts.
+        """
+        return {
+            part.name: part.fewest if part is self.parts[-1] else part.most
+            for part in self.parts
+        }
 
     def smallest_raw(self, counter: str) -> int:
         """Return the smallest raw value of a field that counts; 0 for any other field."""
         if not self.sequence:
             return 0
-        return max((part.low for part in self.counted_parts if part.counter == counter), default=0)
+        return max(
+            (part.low for part in self.counted_parts if part.counter == counter),
+            default=0,
+        )
 
     def largest_raw(self, counter: str) -> int:
         """Return the largest raw value of a field that counts."""
@@ -300,20 +360,28 @@ class Layout:
 
     @property
     def has_gaps(self) -> bool:
-        """Whether a frame can differ from the beginning of the longest frame: a variable part is not the end of it."""
+        """Whether a frame can differ from the beginning of the longest frame: a
+        variable part is not the end of it.
+        """
         return len(self.parts) > 1 or any(part.inner for part in self.parts)
 
     def gaps(self, sizes: Sizes) -> Iterator[Gap]:
-        """Yield the bytes of the longest frame that a frame of these sizes does not have, in order."""
+        """Yield the bytes of the longest frame that a frame of these sizes does not
+        have, in order.
+        """
         for part in self.parts:
             size = sizes[part.name]
             for begin in range(part.begin, part.begin + size * part.step, part.step):
-                yield from (Gap(begin + gap.begin, gap.length) for gap in part.gaps_of(sizes))
+                yield from (
+                    Gap(begin + gap.begin, gap.length) for gap in part.gaps_of(sizes)
+                )
             yield part.gap(size)
 
     def size_of_frame(self, sizes: Sizes) -> int:
         """Return the length in bytes of a frame of these sizes."""
-        return self.length + sum(sizes[part.name] * part.step_of(sizes) for part in self.parts)
+        return self.length + sum(
+            sizes[part.name] * part.step_of(sizes) for part in self.parts
+        )
 
 
 class Gap(NamedTuple):
@@ -329,10 +397,12 @@ class Gap(NamedTuple):
 
 
 class VariablePart(NamedTuple):
-    """Variable-length array, bytes or text of a message, at its position in the longest frame.
+    """Variable-length array, bytes or text of a message, at its position in the longest
+    frame.
 
-    Its elements can have variable-length arrays themselves. All elements of a frame then have the same number of bytes.
-    A frame can have fewer elements than `most`. Generated code sets absent elements to 0 when it decodes a frame.
+    Its elements can have variable-length arrays themselves. All elements of a frame
+    then have the same number of bytes. A frame can have fewer elements than `most`.
+    Generated code sets absent elements to 0 when it decodes a frame.
     """
 
     node: VariableNode
@@ -356,7 +426,9 @@ class VariablePart(NamedTuple):
 
     @property
     def inner(self) -> tuple[VariablePart, ...]:
-        """Variable-length arrays in an element, at their positions in the longest element."""
+        """Variable-length arrays in an element, at their positions in the longest
+        element.
+        """
         struct = struct_layout_of(self.node)
         return () if struct is None else struct.inner_parts
 
@@ -369,21 +441,29 @@ class VariablePart(NamedTuple):
         return self.step - sum(gap.length for gap in self.gaps_of(sizes))
 
     def gaps_of(self, sizes: Sizes) -> tuple[Gap, ...]:
-        """Return the bytes of the longest element that elements in a frame of these sizes do not have."""
+        """Return the bytes of the longest element that elements in a frame of these
+        sizes do not have.
+        """
         return tuple(inner.gap(sizes[self.inner_name(inner)]) for inner in self.inner)
 
     def gap(self, size: int) -> Gap:
-        """Return the bytes of the longest frame that a part of ``size`` elements does not have."""
+        """Return the bytes of the longest frame that a part of ``size`` elements does
+        not have.
+        """
         return Gap(self.begin + size * self.step, (self.most - size) * self.step)
 
     @property
     def shortest_step(self) -> int:
         """Bytes of an element whose variable-length arrays have the fewest elements."""
-        return self.step - sum((inner.most - inner.fewest) * inner.step for inner in self.inner)
+        return self.step - sum(
+            (inner.most - inner.fewest) * inner.step for inner in self.inner
+        )
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """Numbers of bytes of which lengths consist: the shortest element, and an element of each array in it."""
+        """Numbers of bytes of which lengths consist: the shortest element, and an
+        element of each array in it.
+        """
         return self.shortest_step, *(inner.step for inner in self.inner)
 
     @property
@@ -403,24 +483,33 @@ class VariablePart(NamedTuple):
 
     @property
     def shortest(self) -> int:
-        """Offset of its end in bytes if it has the fewest elements and all parts before it have the most."""
+        """Offset of its end in bytes if it has the fewest elements and all parts before
+        it have the most.
+        """
         return self.begin + self.fewest * self.step
 
     @property
     def lengths(self) -> range:
-        """Offsets that its end can have in bytes if all parts before it have the most elements."""
+        """Offsets that its end can have in bytes if all parts before it have the most
+        elements.
+        """
         return range(self.shortest, self.begin + self.most * self.step + 1, self.step)
 
 
 def size_of(node: VariableNode) -> Counted | Rest:
     """Return the size of a node of `Layout.sequence`."""
     size = node.size if isinstance(node, Array) else node.length
-    assert isinstance(size, Counted | Rest), "a sequence has nodes of variable length only"
+    assert isinstance(
+        size, Counted | Rest
+    ), "a sequence has nodes of variable length only"
     return size
 
 
 def stride(node: LayoutNode) -> int:
-    """Return the distance of array elements in bits; the width of any other node. Raises `TypeError` for derived values."""
+    """Return the distance of array elements in bits; the width of any other node.
+
+    Raises `TypeError` for derived values.
+    """
     match node:
         case Array(item=item):
             return stride(item)
@@ -432,16 +521,25 @@ def stride(node: LayoutNode) -> int:
 
 
 def scalar_of(node: LayoutNode) -> Scalar | None:
-    """Return the scalar of a node, or of an element of an array of scalars; None for structs."""
+    """Return the scalar of a node, or of an element of an array of scalars.
+
+    Returns None for structs.
+    """
     match node:
         case Scalar():
             return node
-        case Overlay(scalar=scalar) | Derived(scalar=scalar) | Array(item=Scalar() as scalar):
+        case (
+            Overlay(scalar=scalar)
+            | Derived(scalar=scalar)
+            | Array(item=Scalar() as scalar)
+        ):
             return scalar
     return None
 
 
 def struct_layout_of(node: LayoutNode) -> Layout | None:
-    """Return the layout of the struct that a node, or an element of an array, refers to; None for scalars."""
+    """Return the layout of the struct that a node, or an element of an array, refers
+    to; None for scalars.
+    """
     item = node.item if isinstance(node, Array) else node
     return item.layout if isinstance(item, StructRef) else None

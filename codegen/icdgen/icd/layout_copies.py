@@ -6,24 +6,44 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, Overlay, scalar_of, struct_layout_of
+from icdgen.icd.layout import (
+    Array,
+    Derived,
+    Layout,
+    LayoutNode,
+    Overlay,
+    scalar_of,
+    struct_layout_of,
+)
 
 NodeT = TypeVar("NodeT", bound=LayoutNode)
 
 
 def with_attributes(node: NodeT, **changes: Any) -> NodeT:
-    """Return a copy of a node with changed attributes of the node, or of its scalar or item.
+    """Return a copy of a node with changed attributes of the node, or of its scalar or
+    item.
 
-    Attributes that all kinds of nodes have change in both, because an array and its item, or an overlay and its scalar,
-    have the same names. Only the position of an array differs from the position of its item.
+    Attributes that all kinds of nodes have change in both, because an array and its
+    item, or an overlay and its scalar, have the same names. Only the position of an
+    array differs from the position of its item.
     """
-    own = {name: value for name, value in changes.items() if name in node.__dataclass_fields__}
+    own = {
+        name: value
+        for name, value in changes.items()
+        if name in node.__dataclass_fields__
+    }
     match node:
         case Array(item=item):
-            inner = {name: value for name, value in changes.items() if name not in ("at", "size")}
+            inner = {
+                name: value
+                for name, value in changes.items()
+                if name not in ("at", "size")
+            }
             return replace(node, **own, item=replace(item, **inner))
         case Overlay(scalar=scalar) | Derived(scalar=scalar):
-            inner = {name: value for name, value in changes.items() if name != "derivation"}
+            inner = {
+                name: value for name, value in changes.items() if name != "derivation"
+            }
             return replace(node, **own, scalar=replace(scalar, **inner))
     return replace(node, **changes)
 
@@ -35,12 +55,18 @@ def with_node(layout: Layout, old: LayoutNode, new: LayoutNode) -> Layout:
         return tuple(new if node is old else node for node in nodes)
 
     return replace(
-        layout, fixed=replaced(layout.fixed), sequence=replaced(layout.sequence), derived=replaced(layout.derived)
+        layout,
+        fixed=replaced(layout.fixed),
+        sequence=replaced(layout.sequence),
+        derived=replaced(layout.derived),
     )
 
 
 def with_struct_layout(layout: Layout, old: Layout, new: Layout) -> Layout:
-    """Return a layout with `new` as the layout of a struct, at any depth; the same object if it does not use `old`."""
+    """Return a layout with `new` as the layout of a struct, at any depth.
+
+    The same object if it does not use `old`.
+    """
     for node in layout.nodes:
         struct = struct_layout_of(node)
         if struct is not None:
@@ -51,7 +77,10 @@ def with_struct_layout(layout: Layout, old: Layout, new: Layout) -> Layout:
 
 
 def with_enum(layout: Layout, old: Enum, new: Enum) -> Layout:
-    """Return a layout in which the enumeration `new` replaces `old`; the same object if no field uses `old`."""
+    """Return a layout in which the enumeration `new` replaces `old`.
+
+    The same object if no field uses `old`.
+    """
     for node in layout.nodes:
         scalar, struct = scalar_of(node), struct_layout_of(node)
         if scalar is not None and scalar.enum is old:

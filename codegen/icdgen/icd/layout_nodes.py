@@ -6,7 +6,15 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from icdgen.icd.derived import Derivation
-from icdgen.icd.layout import Derived, Layout, LayoutNode, Orders, Overlay, Scalar, struct_layout_of
+from icdgen.icd.layout import (
+    Derived,
+    Layout,
+    LayoutNode,
+    Orders,
+    Overlay,
+    Scalar,
+    struct_layout_of,
+)
 from icdgen.icd.located import Map
 
 
@@ -25,10 +33,14 @@ def _attributes(node: LayoutNode) -> dict[str, Any]:
     return {name: getattr(node, name) for name in LayoutNode.__dataclass_fields__}
 
 
-def counter_of_rest(name: str, identifier: str | None, is_array: bool, most: int, source: Map) -> Scalar:
-    """Return the scalar that counts the elements of `name` if the length of the frame is their only counter.
+def counter_of_rest(
+    name: str, identifier: str | None, is_array: bool, most: int, source: Map
+) -> Scalar:
+    """Return the scalar that counts the elements of `name` if the length of the frame
+    is their only counter.
 
-    Generated code has a member of this name, such as ``Records Count``, or ``Text Size`` for bytes and text.
+    Generated code has a member of this name, such as ``Records Count``, or ``Text
+    Size`` for bytes and text.
     """
     noun = "Count" if is_array else "Size"
     return Scalar(
@@ -49,8 +61,12 @@ class Visit(NamedTuple):
     orders: Orders  # in effect
 
 
-def walk(layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()) -> Iterator[Visit]:
-    """Visit each line of the ICD once. The nodes of a struct follow the node that refers to it.
+def walk(
+    layout: Layout, orders: Orders, owners: tuple[LayoutNode, ...] = ()
+) -> Iterator[Visit]:
+    """Visit each line of the ICD once.
+
+    The nodes of a struct follow the node that refers to it.
 
     `orders` are the defaults of the ICD node.
     """

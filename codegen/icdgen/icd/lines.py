@@ -1,4 +1,6 @@
-"""Lines of the ICD at their positions in a message: the field of a struct in an array is one line, not one per element."""
+"""Lines of the ICD at their positions in a message: the field of a struct in an array
+is one line, not one per element.
+"""
 
 from __future__ import annotations
 
@@ -25,19 +27,27 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Line(NodePlace):
-    """A line of the ICD, at its position in the first element of each array that contains it."""
+    """A line of the ICD, at its position in the first element of each array that
+    contains it.
+    """
 
     levels: tuple[Level, ...] = ()  # the outermost first, the field last
 
     @cached_property
     def name(self) -> str:
         """``Satellites[].GNSS``"""
-        owners = (f"{level.node.name}[]" if level.count else level.node.name for level in self.levels[:-1])
+        owners = (
+            f"{level.node.name}[]" if level.count else level.node.name
+            for level in self.levels[:-1]
+        )
         return ".".join((*owners, self.node.name))
 
     @property
     def own_count(self) -> int:
-        """Elements of the field itself; 0 if it is not an array. `count` includes the elements of all owners."""
+        """Elements of the field itself; 0 if it is not an array.
+
+        `count` includes the elements of all owners.
+        """
         return self.levels[-1].count
 
     @property
@@ -48,26 +58,48 @@ class Line(NodePlace):
     @property
     def content(self) -> tuple[object, ...]:
         """All attributes of the line in the ICD, to compare two lines."""
-        levels = tuple((level.node.name, level.node.identifier, level.count, level.stride) for level in self.levels)
-        return self.node, self.at, self.bits, self.declared_orders, self.smallest_raw, levels
+        levels = tuple(
+            (level.node.name, level.node.identifier, level.count, level.stride)
+            for level in self.levels
+        )
+        return (
+            self.node,
+            self.at,
+            self.bits,
+            self.declared_orders,
+            self.smallest_raw,
+            levels,
+        )
 
     def starts(self, first_only: bool = False) -> list[int]:
-        """Return the first bit of each element; with `first_only` only within the first element of the outermost array."""
+        """Return the first bit of each element.
+
+        With `first_only` only within the first element of the outermost array.
+        """
         starts = [self.at]
         for level in self.levels[1:] if first_only else self.levels:
-            steps = range(0, level.stride * level.count, level.stride) if level.count else (0,)
+            steps = (
+                range(0, level.stride * level.count, level.stride)
+                if level.count
+                else (0,)
+            )
             starts = [start + step for start in starts for step in steps]
         return starts
 
 
 def lines(layout: Layout) -> tuple[Line, ...]:
-    """Return the lines of a message or a struct, in the order of their declarations in generated code."""
+    """Return the lines of a message or a struct, in the order of their declarations in
+    generated code.
+    """
     return tuple(line for place in places_in(layout) for line in _lines(place, ()))
 
 
 def _lines(place: NodePlace, owners: tuple[Level, ...]) -> Iterator[Line]:
     """Yield the lines of a place: one, or for a struct one per field."""
-    levels = (*owners, Level(place.node, place.count, place.bits if place.count else 0, place.struct))
+    levels = (
+        *owners,
+        Level(place.node, place.count, place.bits if place.count else 0, place.struct),
+    )
     if place.struct is not None:
         # All elements have the same lines, so take those of the first one.
         steps = (*place.steps[:-1], PathStep(place.node, 0 if place.count else None))

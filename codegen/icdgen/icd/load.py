@@ -1,4 +1,6 @@
-"""Load ICDs: read files with their includes and errata overlays, build the model, and check the rules."""
+"""Load ICDs: read files with their includes and errata overlays, build the model, and
+check the rules.
+"""
 
 from __future__ import annotations
 
@@ -25,10 +27,13 @@ INCLUDE = "ICD004"
 def load(
     paths: list[Path], check: bool = True, languages: Sequence[Language] = (), unsaved: Mapping[Path, bytes] | None = None
 ) -> Loaded:  # fmt: skip
-    """Load the ICDs of ``paths`` and the files that they include. Folders are searched with their subfolders.
+    """Load the ICDs of ``paths`` and the files that they include.
 
-    Bad input gives findings, never an exception. The rules about names check the names of the ``languages``.
-    ``unsaved`` has the contents of files that are open in an editor and differ from the disk.
+    Folders are searched with their subfolders.
+
+    Bad input gives findings, never an exception. The rules about names check the names
+    of the ``languages``. ``unsaved`` has the contents of files that are open in an
+    editor and differ from the disk.
     """
     loader = _Loader({_resolved(path): data for path, data in (unsaved or {}).items()})
     for path in paths:
@@ -40,20 +45,32 @@ def load(
     if check and not loader.unreadable:
         from icdgen.icd import rules
 
-        findings += rules.check(icd, loader.applied, not loader.broken, languages, loader.texts)
-    return Loaded(icd, _with_sound_fixes(in_order(findings), loader.texts), loader.inputs, loader.texts)
+        findings += rules.check(
+            icd, loader.applied, not loader.broken, languages, loader.texts
+        )
+    return Loaded(
+        icd,
+        _with_sound_fixes(in_order(findings), loader.texts),
+        loader.inputs,
+        loader.texts,
+    )
 
 
-def _with_sound_fixes(findings: list[Finding], texts: Mapping[str, str]) -> list[Finding]:
+def _with_sound_fixes(
+    findings: list[Finding], texts: Mapping[str, str]
+) -> list[Finding]:
     """Return the findings, without the fixes of values that span several lines.
 
-    The place of such a value is only its first character, so a fix would replace that and leave the other lines.
+    The place of such a value is only its first character, so a fix would replace that
+    and leave the other lines.
     """
     files = {finding.fix.place.file for finding in findings if finding.fix is not None}
     lines = {file: Lines(texts[file]) for file in files}
     sound: list[Finding] = []
     for finding in findings:
-        if finding.fix is not None and not _is_word(lines[finding.fix.place.file], finding.fix.place):
+        if finding.fix is not None and not _is_word(
+            lines[finding.fix.place.file], finding.fix.place
+        ):
             finding = finding._replace(fix=None)
         sound.append(finding)
     return sound
@@ -93,7 +110,9 @@ class _Loader:
             self.inputs[examined] = fingerprints.of_path(str(examined))
         if not result.is_complete:
             text = f"the folder has more than {folders.MOST_FOLDERS} folders below it"
-            self.findings.append(Finding("ICD001", text, Place(str(path)), "name the folder of the ICDs"))
+            self.findings.append(
+                Finding("ICD001", text, Place(str(path)), "name the folder of the ICDs")
+            )
             self.unreadable = True
         elif not result.icds:
             text, help = (
@@ -133,23 +152,34 @@ class _Loader:
         self.findings += applied.findings
         self.applied.append(applied)
         digest = hashlib.sha256(self.contents[path])
-        digest.update(self.contents[overlay_path] if overlay_path is not None and overlay is not None else b"")
+        digest.update(
+            self.contents[overlay_path]
+            if overlay_path is not None and overlay is not None
+            else b""
+        )
         for included_node in included:
             digest.update(included_node.digest.encode())
         names = tuple(dict.fromkeys(included_node.name for included_node in included))
-        node = Builder(tree, applied, self.broken, Scope(closure(self.nodes, names))).node(names, digest.hexdigest())
+        node = Builder(
+            tree, applied, self.broken, Scope(closure(self.nodes, names))
+        ).node(names, digest.hexdigest())
         if node is not None:
             self.nodes.append(node)
         self.by_path[key] = node
         return node
 
     def read(self, path: Path, document: str) -> Map | None:
-        """Read a file and check its structure; return its tree, or None if it is not valid YAML."""
+        """Read a file and check its structure.
+
+        Return its tree, or None if it is not valid YAML.
+        """
         name = str(path)
         self.inputs[path] = fingerprints.UNKNOWN
         try:
             unsaved = self.unsaved.get(_resolved(path))
-            data = self.contents[path] = source.contents(path, name) if unsaved is None else unsaved
+            data = self.contents[path] = (
+                source.contents(path, name) if unsaved is None else unsaved
+            )
             self.inputs[path] = hashlib.sha256(data).hexdigest()
             self.texts[name] = data.decode("utf-8", "replace")
             tree, ambiguous = source.parse_on(data, name)
@@ -161,7 +191,12 @@ class _Loader:
         if document == "icd" and "errata" in tree and "icdgen" not in tree:
             text = "this is an errata overlay, not an ICD"
             self.findings.append(
-                Finding("ICD010", text, tree.place, "name the ICD; icdgen finds its errata file in the same folder")
+                Finding(
+                    "ICD010",
+                    text,
+                    tree.place,
+                    "name the ICD; icdgen finds its errata file in the same folder",
+                )
             )
             self.findings += ambiguous
             self.unreadable = True
@@ -169,10 +204,13 @@ class _Loader:
         self.check_structure(tree, document, ambiguous)
         return tree
 
-    def check_structure(self, tree: Map, document: str, ambiguous: Sequence[Finding] = ()) -> None:
+    def check_structure(
+        self, tree: Map, document: str, ambiguous: Sequence[Finding] = ()
+    ) -> None:
         """Check a tree against the schema.
 
-        The type that the schema requires decides the fix of an ``ambiguous`` scalar, such as `yes`: quotes, or `true`.
+        The type that the schema requires decides the fix of an ``ambiguous`` scalar,
+        such as `yes`: quotes, or `true`.
         """
         from icdgen.icd import remedies, schema
 
@@ -181,15 +219,28 @@ class _Loader:
         violations = {finding.place: finding for finding in findings}
         for finding in ambiguous:
             violation = violations.get(finding.place)
-            text = remedies.of_type("string", lines.marked(finding.place)) if violation is None else ""
-            fix = Fix(finding.place, text) if text else violation.fix if violation else None
+            text = (
+                remedies.of_type("string", lines.marked(finding.place))
+                if violation is None
+                else ""
+            )
+            fix = (
+                Fix(finding.place, text)
+                if text
+                else violation.fix if violation else None
+            )
             self.findings.append(finding._replace(fix=fix))
         places = {finding.place for finding in ambiguous}
-        self.findings += (finding for finding in findings if finding.place not in places)
+        self.findings += (
+            finding for finding in findings if finding.place not in places
+        )
         self.broken |= broken
 
     def overlay_path(self, tree: Map, path: Path) -> Path | None:
-        """Return the path of the errata overlay of a file, `errata/NODE.yaml`; None if the name of the node is invalid."""
+        """Return the path of the errata overlay of a file, `errata/NODE.yaml`.
+
+        Returns None if the name of the node is invalid.
+        """
         head = tree.get("node")
         if not isinstance(head, Map) or id(head) in self.broken:
             return None
@@ -221,27 +272,43 @@ class _Loader:
                 nodes.append(node)
         return nodes
 
-    def include_problem(self, item: str, path: Path, stack: tuple[Path, ...]) -> tuple[str, str] | None:
+    def include_problem(
+        self, item: str, path: Path, stack: tuple[Path, ...]
+    ) -> tuple[str, str] | None:
         """Return message and help if an include is not possible, else None."""
         target = _resolved(path.parent / item)
         folder = _resolved(path.parent)
         if not target.is_relative_to(folder):
-            return f"`{item}` is outside the folder of this file", "move it to the folder of this file or below"
+            return (
+                f"`{item}` is outside the folder of this file",
+                "move it to the folder of this file or below",
+            )
         if target in stack:
-            names = " -> ".join(file.name for file in (*stack[stack.index(target) :], target))
-            return f"files include each other in a circle: {names}", "remove one `include`"
+            names = " -> ".join(
+                file.name for file in (*stack[stack.index(target) :], target)
+            )
+            return (
+                f"files include each other in a circle: {names}",
+                "remove one `include`",
+            )
         if target not in self.unsaved and not os.path.isfile(target):
             return f"there is no file `{item}` beside this one", "check the name"
         return None
 
 
 def _resolved(path: Path) -> Path:
-    """Return the absolute path without links. Unlike `Path.resolve`, it does not raise for a cycle of links."""
+    """Return the absolute path without links.
+
+    Unlike `Path.resolve`, it does not raise for a cycle of links.
+    """
     return Path(os.path.realpath(path))
 
 
 def _is_absent(path: Path) -> bool:
-    """Return whether a path certainly does not exist. Broken links and unreadable folders count as existing."""
+    """Return whether a path certainly does not exist.
+
+    Broken links and unreadable folders count as existing.
+    """
     try:
         os.lstat(path)
     except (FileNotFoundError, NotADirectoryError):

@@ -1,4 +1,6 @@
-"""Mappings and sequences of a YAML file that store the places of their keys, values and items."""
+"""Mappings and sequences of a YAML file that store the places of their keys, values and
+items.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,10 @@ class Mark(Protocol):
 
 
 Spot = Place | tuple[Mark, Mark]
-"""Place of a node, or its start and end marks. Converting marks to places only on demand makes loading faster."""
+"""Place of a node, or its start and end marks.
+
+Converting marks to places only on demand makes loading faster.
+"""
 
 
 def place_of(spot: Spot) -> Place:
@@ -31,7 +36,11 @@ def place_of(spot: Spot) -> Place:
 
 
 class Map(dict[str, Any]):
-    """A mapping. ``spots`` has the places of each key and its value, including keys that an erratum removed."""
+    """A mapping.
+
+    ``spots`` has the places of each key and its value, including keys that an erratum
+    removed.
+    """
 
     __slots__ = ("spot", "spots")
 
@@ -49,7 +58,10 @@ class Map(dict[str, Any]):
         return place_of(self.spots[key][0])
 
     def at(self, key: str) -> Place:
-        """Return the place of the value of a key; the place of the mapping if it does not have the key."""
+        """Return the place of the value of a key.
+
+        The place of the mapping if it does not have the key.
+        """
         return place_of(self.spots[key][1] if key in self.spots else self.spot)
 
 
@@ -80,7 +92,9 @@ _UNREAD = Map(Place(""))
 
 
 def unread() -> Map:
-    """Return the source of objects that were not read from a file: a shared empty mapping without a place."""
+    """Return the source of objects that were not read from a file: a shared empty
+    mapping without a place.
+    """
     return _UNREAD
 
 

@@ -14,7 +14,9 @@ _LIMITS = frozenset({"min", "max", "above", "below"})
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """A raw value with a special meaning, such as 0xFFFF for 'no time-out', or NaN for 'not available'."""
+    """A raw value with a special meaning, such as 0xFFFF for 'no time-out', or NaN for
+    'not available'.
+    """
 
     value: int  # of a float: its IEEE 754 bits
     meaning: str
@@ -23,7 +25,10 @@ class Special:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Bounds of the physical value (of the raw value if there is no scale); None where the ICD gives no bound."""
+    """Bounds of the physical value (of the raw value if there is no scale).
+
+    None where the ICD gives no bound.
+    """
 
     min: Fraction | None = None
     max: Fraction | None = None
@@ -31,21 +36,37 @@ class Limits:
     below: Fraction | None = None
 
 
-def special(kind: str, bits: int, value: int | float | str, meaning: str) -> Special | None:
-    """Return a special value; None if a field of this type and width cannot have the value."""
+def special(
+    kind: str, bits: int, value: int | float | str, meaning: str
+) -> Special | None:
+    """Return a special value.
+
+    Returns None if a field of this type and width cannot have the value.
+    """
     if kind != "float":
         return Special(value, meaning) if isinstance(value, int) else None
     raw = float_bits(value, bits)
-    return None if raw is None else Special(raw, meaning, floats.text_of(floats.value_of(raw, bits), bits))
+    return (
+        None
+        if raw is None
+        else Special(raw, meaning, floats.text_of(floats.value_of(raw, bits), bits))
+    )
 
 
 def float_bits(value: int | float | str, bits: int) -> int | None:
-    """Return the bits of a float of this width from its value in an ICD; None if the width or the value is not valid."""
-    if bits not in floats.WIDTHS or (isinstance(value, str) and value not in floats.NAMED):
+    """Return the bits of a float of this width from its value in an ICD.
+
+    Returns None if the width or the value is not valid.
+    """
+    if bits not in floats.WIDTHS or (
+        isinstance(value, str) and value not in floats.NAMED
+    ):
         return None
     with suppress(OverflowError):
         return (
-            floats.bits_of(floats.NAMED[value], bits) if isinstance(value, str) else floats.nearest(exact(value), bits)
+            floats.bits_of(floats.NAMED[value], bits)
+            if isinstance(value, str)
+            else floats.nearest(exact(value), bits)
         )
     return None
 

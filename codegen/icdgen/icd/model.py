@@ -1,7 +1,8 @@
 """Model of an ICD: the input of all backends, the codec, the vectors and the diff.
 
-All objects are immutable. ``source`` is the mapping that an object was read from, with its position in the file. It is
-empty in a model that was made in memory or came from the cache.
+All objects are immutable. ``source`` is the mapping that an object was read from, with
+its position in the file. It is empty in a model that was made in memory or came from
+the cache.
 """
 
 from __future__ import annotations
@@ -69,7 +70,9 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A telecommand, a telemetry frame or a configuration message (one layout, two ids)."""
+    """A telecommand, a telemetry frame or a configuration message (one layout, two
+    ids).
+    """
 
     name: str
     kind: str  # TELECOMMAND | TELEMETRY | CONFIGURATION
@@ -102,7 +105,9 @@ class Message:
 
     @property
     def fields(self) -> tuple[NodePlace, ...]:
-        """Scalars of the longest frame, each array element and each field of a struct separately: `scalars_in`."""
+        """Scalars of the longest frame, each array element and each field of a struct
+        separately: `scalars_in`.
+        """
         return scalars_in(self.layout)
 
     @property
@@ -133,7 +138,10 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One ICD file with its errata applied. `Icd.messages_of` also returns the messages of included nodes."""
+    """One ICD file with its errata applied.
+
+    `Icd.messages_of` also returns the messages of included nodes.
+    """
 
     name: str
     title: str
@@ -180,19 +188,32 @@ class Icd:
         raise KeyError(name)
 
     def included(self, node: Node) -> tuple[Node, ...]:
-        """Return all nodes that ``node`` includes, directly or indirectly, each once, in the order of the set."""
+        """Return all nodes that ``node`` includes, directly or indirectly, each once,
+        in the order of the set.
+        """
         return closure(self.nodes, node.includes)
 
     def messages_of(self, node: Node) -> tuple[Message, ...]:
-        """Return all messages of the node: first the messages of included nodes, then its own."""
-        return tuple(message for owner in (*self.included(node), node) for message in owner.messages)
+        """Return all messages of the node: first the messages of included nodes, then
+        its own.
+        """
+        return tuple(
+            message
+            for owner in (*self.included(node), node)
+            for message in owner.messages
+        )
 
     def longest_frame(self, message: Message) -> tuple[FrameField, ...]:
-        """Return the scalars of the longest frame of a message. Outputs number fields by their index in it."""
+        """Return the scalars of the longest frame of a message.
+
+        Outputs number fields by their index in it.
+        """
         return frame_fields(message.layout, self.node(message.node).orders)
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """Return the protocol facts of the node: the facts of included nodes, overridden by its own."""
+        """Return the protocol facts of the node: the facts of included nodes,
+        overridden by its own.
+        """
         merged: dict[str, Any] = {}
         for owner in (*self.included(node), node):
             merged.update(owner.protocol)
@@ -200,7 +221,9 @@ class Icd:
 
 
 def closure(nodes: Iterable[Node], names: Iterable[str]) -> tuple[Node, ...]:
-    """Return the nodes of these names and all that they include, each once, in the order of ``nodes``."""
+    """Return the nodes of these names and all that they include, each once, in the
+    order of ``nodes``.
+    """
     by_name = {node.name: node for node in reversed(tuple(nodes))}
     selected: set[str] = set()
     queue = list(names)

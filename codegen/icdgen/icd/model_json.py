@@ -1,8 +1,11 @@
-"""Conversion of a model to JSON and back, for the cache. Reading creates only objects of the classes of the model.
+"""Conversion of a model to JSON and back, for the cache.
 
-An object is ``{"is": class, attribute: value ...}`` without attributes that have their default. An object that was written
-before is ``{"same": number}``. An array of JSON becomes a tuple, because the model has lists only in values that are written
-as ``{"is": "raw", ...}``.
+Reading creates only objects of the classes of the model.
+
+An object is ``{"is": class, attribute: value ...}`` without attributes that have their
+default. An object that was written before is ``{"same": number}``. An array of JSON
+becomes a tuple, because the model has lists only in values that are written as ``{"is":
+"raw", ...}``.
 """
 
 from __future__ import annotations
@@ -31,12 +34,18 @@ _CLASSES: dict[str, type[Any]] = {
 
 def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
     """Return the JSON of a model and of its input files with their fingerprints."""
-    tree = [_Writer().plain(icd), [[str(path), fingerprint] for path, fingerprint in inputs.items()]]
+    tree = [
+        _Writer().plain(icd),
+        [[str(path), fingerprint] for path, fingerprint in inputs.items()],
+    ]
     return json.dumps(tree, separators=(",", ":"), check_circular=False).encode()
 
 
 def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
-    """Return the model and the fingerprints that `text` wrote; None if the data was not written by `text`."""
+    """Return the model and the fingerprints that `text` wrote.
+
+    Returns None if the data was not written by `text`.
+    """
     try:
         icd, inputs = json.loads(data, object_hook=_Reader().object)
         fingerprints = {Path(path): str(fingerprint) for path, fingerprint in inputs}
@@ -58,7 +67,9 @@ class _Writer:
         if kind in _SCALARS:
             return value
         if kind is tuple:
-            return [item if type(item) in _SCALARS else self.plain(item) for item in value]
+            return [
+                item if type(item) in _SCALARS else self.plain(item) for item in value
+            ]
         if kind is Fraction:
             return {"is": "/", "parts": [value.numerator, value.denominator]}
         if kind.__name__ not in _CLASSES:
@@ -69,7 +80,9 @@ class _Writer:
         for name, default in _defaults(kind):
             item = getattr(value, name)
             # Compare types too: True == 1, but they differ in JSON.
-            if item is not default and (item != default or type(item) is not type(default)):
+            if item is not default and (
+                item != default or type(item) is not type(default)
+            ):
                 written[name] = item if type(item) in _SCALARS else self.plain(item)
         self.numbers[id(value)] = len(self.numbers)
         return written
@@ -77,11 +90,22 @@ class _Writer:
 
 @cache
 def _defaults(kind: Any) -> list[tuple[str, Any]]:
-    """Return the attributes of a class with their defaults, without `source`, which does not take part in comparisons."""
+    """Return the attributes of a class with their defaults, without `source`, which
+    does not take part in comparisons.
+    """
     if issubclass(kind, tuple):
-        return [(name, kind._field_defaults.get(name, MISSING)) for name in kind._fields]
+        return [
+            (name, kind._field_defaults.get(name, MISSING)) for name in kind._fields
+        ]
     return [
-        (field.name, field.default if field.default_factory is MISSING else field.default_factory())
+        (
+            field.name,
+            (
+                field.default
+                if field.default_factory is MISSING
+                else field.default_factory()
+            ),
+        )
         for field in fields(kind)
         if field.compare
     ]

@@ -1,4 +1,6 @@
-"""Cache of facts about a node, for functions that run for each frame of a log or of the simulator."""
+"""Cache of facts about a node, for functions that run for each frame of a log or of the
+simulator.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +13,14 @@ from icdgen.icd.model import Icd, Node
 Result = TypeVar("Result")
 
 
-def cached_by_node(compute: Callable[[Icd, Node], Result]) -> Callable[[Icd, Node], Result]:
-    """Decorate a function of a node so that its results are cached for the nodes of the most recent ICD.
+def cached_by_node(
+    compute: Callable[[Icd, Node], Result],
+) -> Callable[[Icd, Node], Result]:
+    """Decorate a function of a node so that its results are cached for the nodes of the
+    most recent ICD.
 
-    ICDs and nodes are compared by identity: comparing or hashing a whole model would take longer than the function.
+    ICDs and nodes are compared by identity: comparing or hashing a whole model would
+    take longer than the function.
     """
     last: list[Icd] = []
     # id() of a node -> the node and the result. The reference to the node prevents the

@@ -1,4 +1,6 @@
-"""Positions of values in bytes. 'Bits' in ``docs/reference/icd-format.md`` describes the numbering."""
+"""Positions of values in bytes. 'Bits' in ``docs/reference/icd-format.md`` describes
+the numbering.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ class Piece(NamedTuple):
 
     @property
     def reaches_top(self) -> bool:
-        """Whether the run has the most significant bit of its byte, so that shifting it down leaves no other bits."""
+        """Whether the run has the most significant bit of its byte, so that shifting it
+        down leaves no other bits.
+        """
         return self.shift + self.bits == 8
 
 
@@ -55,8 +59,12 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
 
 
 def bits_of(at: int, bits: int, byte_order: str, bit_order: str) -> list[int]:
-    """Return the bits of a value in the frame, the least significant first, counted in the bit order."""
-    pieces = sorted(pieces_at(at, bits, byte_order, bit_order), key=lambda piece: piece.at)
+    """Return the bits of a value in the frame, the least significant first, counted in
+    the bit order.
+    """
+    pieces = sorted(
+        pieces_at(at, bits, byte_order, bit_order), key=lambda piece: piece.at
+    )
     return [
         8 * piece.byte + (bit if bit_order == "lsb0" else 7 - bit)
         for piece in pieces

@@ -1,7 +1,10 @@
-"""Nodes of a layout at their positions in the longest frame. Declarations, documents and generated code use them.
+"""Nodes of a layout at their positions in the longest frame.
 
-`places_in` lists the nodes of a layout, an array or a struct as one place. `scalars_in` lists each array element and each
-field of a struct separately. `NodePlace.elements` and `NodePlace.inner` go down one level.
+Declarations, documents and generated code use them.
+
+`places_in` lists the nodes of a layout, an array or a struct as one place. `scalars_in`
+lists each array element and each field of a struct separately. `NodePlace.elements` and
+`NodePlace.inner` go down one level.
 """
 
 from __future__ import annotations
@@ -33,7 +36,8 @@ from icdgen.once import cached_by_owner, cached_property
 
 # A struct has no scalar; this one makes `NodePlace.type` of a struct "struct".
 _NO_SCALAR = Scalar(name="", type="struct", bits=0)
-# A tuple: `isinstance` would build the union `Overlay | Derived` in each of very many calls.
+# A tuple: `isinstance` would build the union `Overlay | Derived` in each of very many
+# calls.
 _READ_ONLY = (Overlay, Derived)
 
 
@@ -41,7 +45,9 @@ _READ_ONLY = (Overlay, Derived)
 # would be slow.
 @dataclass(frozen=True, eq=False)
 class NodePlace(OfScalar):
-    """A node, or an element of an array, at its position in the longest frame or in a struct."""
+    """A node, or an element of an array, at its position in the longest frame or in a
+    struct.
+    """
 
     steps: tuple[PathStep, ...]  # path from the layout of the message
     scalar: Scalar  # of an array: its element
@@ -77,12 +83,18 @@ class NodePlace(OfScalar):
 
     @property
     def byte_order(self) -> str:
-        """Byte order that the node or an owner declares; empty if the default of the ICD node applies."""
+        """Byte order that the node or an owner declares.
+
+        Empty if the default of the ICD node applies.
+        """
         return self.declared_orders.byte
 
     @property
     def bit_order(self) -> str:
-        """Bit order that the node or an owner declares; empty if the default of the ICD node applies."""
+        """Bit order that the node or an owner declares.
+
+        Empty if the default of the ICD node applies.
+        """
         return self.declared_orders.bit
 
     @property
@@ -112,7 +124,9 @@ class NodePlace(OfScalar):
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """Conditions of an optional field: a frame has the field if all of them are met."""
+        """Conditions of an optional field: a frame has the field if all of them are
+        met.
+        """
         return self.node.present_if
 
     @property
@@ -145,7 +159,10 @@ class NodePlace(OfScalar):
         return self.declared_orders.within(outer)
 
     def elements(self) -> tuple[NodePlace, ...]:
-        """Return the elements of an array, a struct as one place; for any other node the place itself."""
+        """Return the elements of an array, a struct as one place.
+
+        For any other node the place itself.
+        """
         if not self.count:
             return (self,)
         before, stride = self.steps[:-1], self.bits
@@ -162,12 +179,22 @@ class NodePlace(OfScalar):
         )
 
     def inner(self) -> tuple[NodePlace, ...]:
-        """Return the places of the fields of a struct. For an array of structs, call it on an element."""
-        assert self.struct is not None and not self.count, f"{self.name} is not a single struct"
-        return tuple(_place(node, self.declared_orders, self.at, self.steps) for node in self.struct.fixed)
+        """Return the places of the fields of a struct.
+
+        For an array of structs, call it on an element.
+        """
+        assert (
+            self.struct is not None and not self.count
+        ), f"{self.name} is not a single struct"
+        return tuple(
+            _place(node, self.declared_orders, self.at, self.steps)
+            for node in self.struct.fixed
+        )
 
     def scalars(self) -> Iterator[NodePlace]:
-        """Yield all scalars of the node: each array element and each field of a struct separately."""
+        """Yield all scalars of the node: each array element and each field of a struct
+        separately.
+        """
         for element in self.elements():
             if element.struct is None:
                 yield element
@@ -182,7 +209,8 @@ AnyScalar: TypeAlias = Scalar | FrameField | NodePlace
 
 @cached_by_owner
 def places_in(layout: Layout) -> tuple[NodePlace, ...]:
-    """Return the nodes of a message in the longest frame, in the order of `Layout.nodes`.
+    """Return the nodes of a message in the longest frame, in the order of
+    `Layout.nodes`.
 
     A count that follows from the length of the frame comes directly after its array.
     """
@@ -191,24 +219,33 @@ def places_in(layout: Layout) -> tuple[NodePlace, ...]:
 
 @cached_by_owner
 def scalars_in(layout: Layout) -> tuple[NodePlace, ...]:
-    """Return all scalars of the longest frame: each array element and each field of a struct separately."""
+    """Return all scalars of the longest frame: each array element and each field of a
+    struct separately.
+    """
     return tuple(scalar for place in places_in(layout) for scalar in place.scalars())
 
 
 @cached_by_owner
 def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:
-    """Return the scalars of the longest frame with a raw value: all except overlay fields and derived values."""
+    """Return the scalars of the longest frame with a raw value: all except overlay
+    fields and derived values.
+    """
     return tuple(scalar for scalar in scalars_in(layout) if not scalar.is_read_only)
 
 
 def places_of(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
-    """Return the places of the nodes of a layout, as `places_in`, but with orders inherited from `outer`."""
+    """Return the places of the nodes of a layout, as `places_in`, but with orders
+    inherited from `outer`.
+    """
     return places_in(layout) if outer == UNDECLARED else _places(layout, outer)
 
 
 def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
     orders = layout.orders.within(outer)
-    places = [_place(node, orders, smallest_raw=layout.smallest_raw(node.name)) for node in layout.fixed]
+    places = [
+        _place(node, orders, smallest_raw=layout.smallest_raw(node.name))
+        for node in layout.fixed
+    ]
     for part in layout.parts:
         node, size, at = part.node, size_of(part.node), 8 * part.begin
         own, steps = node.orders.within(orders), (PathStep(node),)
@@ -220,16 +257,36 @@ def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
         # directly after it.
         if isinstance(size, Rest):
             counter, end = size.counter, 8 * (part.begin + part.most * part.step)
-            places.append(NodePlace((PathStep(counter),), counter, None, end, counter.bits, UNDECLARED, is_count=True))
+            places.append(
+                NodePlace(
+                    (PathStep(counter),),
+                    counter,
+                    None,
+                    end,
+                    counter.bits,
+                    UNDECLARED,
+                    is_count=True,
+                )
+            )
     places += (_place(node, UNDECLARED, 8 * layout.longest) for node in layout.derived)
     return tuple(places)
 
 
 def _place(
-    node: LayoutNode, orders: Orders, begin: int = 0, owners: tuple[PathStep, ...] = (), smallest_raw: int = 0
+    node: LayoutNode,
+    orders: Orders,
+    begin: int = 0,
+    owners: tuple[PathStep, ...] = (),
+    smallest_raw: int = 0,
 ) -> NodePlace:
-    """Return the place of a node of fixed size in a frame, struct or element that begins at bit `begin`."""
-    own, at, steps = node.orders.within(orders), begin + node.at, (*owners, PathStep(node))
+    """Return the place of a node of fixed size in a frame, struct or element that
+    begins at bit `begin`.
+    """
+    own, at, steps = (
+        node.orders.within(orders),
+        begin + node.at,
+        (*owners, PathStep(node)),
+    )
     match node:
         case Array(item=item, most=count):
             return _place_of_item(steps, item, at, own, count)
@@ -250,6 +307,12 @@ def _place_of_item(
     count: int,
     smallest_raw: int = 0,
 ) -> NodePlace:
-    """Return the place of a scalar or struct, or of an array of `count` elements if `count` is not 0."""
-    scalar, struct = (item, None) if isinstance(item, Scalar) else (_NO_SCALAR, item.layout)
-    return NodePlace(steps, scalar, struct, at, stride(item), orders, count, smallest_raw)
+    """Return the place of a scalar or struct, or of an array of `count` elements if
+    `count` is not 0.
+    """
+    scalar, struct = (
+        (item, None) if isinstance(item, Scalar) else (_NO_SCALAR, item.layout)
+    )
+    return NodePlace(
+        steps, scalar, struct, at, stride(item), orders, count, smallest_raw
+    )

@@ -24,7 +24,10 @@ _PARTS: dict[type, tuple[str, ...]] = {
 
 
 def with_prefix(icd: Icd, prefix: str) -> Icd:
-    """Return ICDs with ``prefix`` before the name of each node; the same object if the prefix is empty."""
+    """Return ICDs with ``prefix`` before the name of each node.
+
+    The same object if the prefix is empty.
+    """
     if not prefix:
         return icd
     # id() of an object -> the object and its copy. The reference to the object prevents
@@ -39,7 +42,10 @@ def with_prefix(icd: Icd, prefix: str) -> Icd:
         if id(part) not in copies:
             changes = {key: renamed(getattr(part, key)) for key in _PARTS[type(part)]}
             if isinstance(part, Node):
-                changes |= {"name": prefix + part.name, "includes": tuple(prefix + name for name in part.includes)}
+                changes |= {
+                    "name": prefix + part.name,
+                    "includes": tuple(prefix + name for name in part.includes),
+                }
             elif isinstance(part, Message | Struct | Enum):
                 changes["node"] = prefix + part.node
             elif isinstance(part, Layout):

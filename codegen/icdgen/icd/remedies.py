@@ -40,22 +40,36 @@ _KEYS = {
     "width": "`bits:`", "description": "`summary:`", "comment": "`summary:`", "values": "`enum:`, with the members under `enums:`",
 }  # fmt: skip
 
-_IN_BYTES = {"byte": ("at", "the first bit, if bytes count from 0"), "bytes": ("bits", "the width in bits")}
+_IN_BYTES = {
+    "byte": ("at", "the first bit, if bytes count from 0"),
+    "bytes": ("bits", "the width in bits"),
+}
 _REPEATED = frozenset({"count", "repeat", "array", "times", "elements", "length"})
 _MOST_DIGITS = 30
-_BOOLEANS = dict.fromkeys(("true", "yes", "y", "on"), "true") | dict.fromkeys(("false", "no", "n", "off"), "false")
+_BOOLEANS = dict.fromkeys(("true", "yes", "y", "on"), "true") | dict.fromkeys(
+    ("false", "no", "n", "off"), "false"
+)
 _PLAIN = re.compile(r"[-+.:\w]+")
 _PREFIXED_NUMBER = re.compile(r"0[xX][0-9A-Fa-f]+|0[bB][01]+|0[oO][0-7]+")
-_SCIENTIFIC = re.compile(r"(-?)([0-9]*)(?:\.([0-9]*))?(?:[eE](?=[-+]?([0-9]+)\Z)([-+]?)[0-9]+)?")
+_SCIENTIFIC = re.compile(
+    r"(-?)([0-9]*)(?:\.([0-9]*))?(?:[eE](?=[-+]?([0-9]+)\Z)([-+]?)[0-9]+)?"
+)
 # Text before a value and the value itself, in block style and in flow style (within
 # brackets).
-_BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)")
-_BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(r"[^'\"{}\[\],]+")
+_BEFORE_BLOCK, _BLOCK_VALUE = re.compile(r":[ ]+|-[ ]+(?=[^ \w])"), re.compile(
+    r"[^'\"{\[].*?(?=\s*(?:\s#.*)?\Z)"
+)
+_BEFORE_FLOW, _FLOW_VALUE = re.compile(r"(?<=[:,]) |[{\[]"), re.compile(
+    r"[^'\"{}\[\],]+"
+)
 _RENAMED = re.compile(r"`(\w+):`")
 
 
 def of_syntax(problem: str, line: str, column: int) -> str:
-    """Return the help for a syntax error of YAML at a column (from 0) of a line; empty if the cause is unclear."""
+    """Return the help for a syntax error of YAML at a column (from 0) of a line.
+
+    Returns empty if the cause is unclear.
+    """
     character = line[column : column + 1]
     if "tab character" in problem or character == "\t":
         return "indent with spaces: YAML does not allow tabs"
@@ -71,9 +85,17 @@ def of_syntax(problem: str, line: str, column: int) -> str:
 
 
 def value_around(line: str, column: int) -> tuple[int, int]:
-    """Return start and end of the unquoted value at a column (from 0) of a line; equal if there is no value."""
+    """Return start and end of the unquoted value at a column (from 0) of a line.
+
+    Equal if there is no value.
+    """
     is_flow = any(bracket in line[:column] for bracket in "{[")
-    starts = [match.end() for match in (_BEFORE_FLOW if is_flow else _BEFORE_BLOCK).finditer(line, 0, column + 1)]
+    starts = [
+        match.end()
+        for match in (_BEFORE_FLOW if is_flow else _BEFORE_BLOCK).finditer(
+            line, 0, column + 1
+        )
+    ]
     begin = (starts[-1] if is_flow else starts[0]) if starts else column
     value = (_FLOW_VALUE if is_flow else _BLOCK_VALUE).match(line, begin)
     return (begin, begin) if value is None else value.span()
@@ -84,8 +106,12 @@ def in_quotes(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def of_value(key: str, value: object, owner: Mapping[str, Any], allowed: Iterable[str]) -> Remedy | None:
-    """Return the help for a word that is not an ``allowed`` value of a key of ``owner``; None if no value is similar."""
+def of_value(
+    key: str, value: object, owner: Mapping[str, Any], allowed: Iterable[str]
+) -> Remedy | None:
+    """Return the help for a word that is not an ``allowed`` value of a key of
+    ``owner``; None if no value is similar.
+    """
     word = str(value).strip().lower()
     synonyms = {"kind": _KINDS, "byte_order": _ORDERS, "bit_order": _BITS}.get(key, {})
     if word in synonyms:
@@ -97,16 +123,24 @@ def of_value(key: str, value: object, owner: Mapping[str, Any], allowed: Iterabl
         # `u16` means a type and a width. The fix replaces only the type, so it needs
         # the right width.
         is_complete = owner.get("bits") == int(bits)
-        return Remedy(f"write `type: {kind}` with `bits: {bits}`", kind if is_complete else "")
+        return Remedy(
+            f"write `type: {kind}` with `bits: {bits}`", kind if is_complete else ""
+        )
     if key == "type" and word in _TYPES:
         kind = _TYPES[word].split("`")[1].removeprefix("type: ")
-        return Remedy(f"write {_TYPES[word]}", kind if f"`bits: {owner.get('bits')}`" in _TYPES[word] else "")
+        return Remedy(
+            f"write {_TYPES[word]}",
+            kind if f"`bits: {owner.get('bits')}`" in _TYPES[word] else "",
+        )
     close = close_to(word, allowed)
     return Remedy(f"did you mean `{close}`?", close) if close else None
 
 
 def of_type(wanted: str | list[str], written: str) -> str:
-    """Return the spelling of a value as the ``wanted`` type of JSON Schema; empty if it cannot be converted safely."""
+    """Return the spelling of a value as the ``wanted`` type of JSON Schema.
+
+    Returns empty if it cannot be converted safely.
+    """
     word = written.lower()
     if "boolean" in wanted:
         return _BOOLEANS.get(word, "")
@@ -114,20 +148,31 @@ def of_type(wanted: str | list[str], written: str) -> str:
         # Only for plain words: a tag or a text with quotes can mean something else.
         return f'"{written}"' if _PLAIN.fullmatch(written) else ""
     number = plain_number(written.strip("'\""))
-    return number if "number" in wanted or ("integer" in wanted and "." not in number) else ""
+    return (
+        number
+        if "number" in wanted or ("integer" in wanted and "." not in number)
+        else ""
+    )
 
 
 def of_ambiguous(written: str) -> str:
-    """Return the help for a word that readers of YAML interpret as values of different types."""
+    """Return the help for a word that readers of YAML interpret as values of different
+    types.
+    """
     truth = of_type("boolean", written)
     if truth or written[:1].isalpha():
-        return f'write "{written}" in quotes if it is text' + (f", {truth} if it is a boolean" if truth else "")
+        return f'write "{written}" in quotes if it is text' + (
+            f", {truth} if it is a boolean" if truth else ""
+        )
     number = plain_number(written) or "a plain decimal or 0x number"
     return f'write "{written}" in quotes if it is text, {number} if it is a number'
 
 
 def plain_number(written: str) -> str:
-    """Return the plain spelling of a number, such as ``1.0e+20`` for ``1e20``; empty if its value is uncertain."""
+    """Return the plain spelling of a number, such as ``1.0e+20`` for ``1e20``.
+
+    Returns empty if its value is uncertain.
+    """
     text = written.replace("_", "").removeprefix("+")
     if len(text) > _MOST_DIGITS:
         return ""
@@ -156,9 +201,13 @@ def of_key(key: str, value: object, known_keys: list[str]) -> Remedy | None:
             return Remedy(
                 "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
             )
-        return Remedy("only fields can be repeated, with `count:`; write anything else as often as it occurs")
+        return Remedy(
+            "only fields can be repeated, with `count:`; write anything else as often as it occurs"
+        )
     if key.isdecimal():
-        return Remedy("write decimals with a point, not with a comma: `formula: raw*0.1`")
+        return Remedy(
+            "write decimals with a point, not with a comma: `formula: raw*0.1`"
+        )
     meant = _KEYS.get(key.lower(), "")
     # `meant` begins with a key, which the mapping must allow.
     if meant and re.search(r"`(\w+):", meant)[1] in known_keys:  # type: ignore[index]

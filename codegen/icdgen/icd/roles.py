@@ -1,6 +1,8 @@
-"""Roles that a field has for other fields: counter of elements, condition, operand of a derived value, and others.
+"""Roles that a field has for other fields: counter of elements, condition, operand of a
+derived value, and others.
 
-A `Role` has the requirements on a field. `reasons_against` returns the requirements that a field does not meet.
+A `Role` has the requirements on a field. `reasons_against` returns the requirements
+that a field does not meet.
 """
 
 from __future__ import annotations
@@ -48,10 +50,24 @@ class Role(NamedTuple):
 INTEGERS = ("uint", "int", "enum", "bool")
 
 # Counts the elements or bytes of a variable-length field.
-COUNTER = Role(("uint",), ("optional", "struct", "array", "variable", "split", "scaled", "constant", "overlay"))
+COUNTER = Role(
+    ("uint",),
+    (
+        "optional",
+        "struct",
+        "array",
+        "variable",
+        "split",
+        "scaled",
+        "constant",
+        "overlay",
+    ),
+)
 
 # Decides whether an optional field is present.
-CONDITION = Role(INTEGERS, ("optional", "struct", "array", "variable", "split", "scaled", "overlay"))
+CONDITION = Role(
+    INTEGERS, ("optional", "struct", "array", "variable", "split", "scaled", "overlay")
+)
 
 # Operand of a derived value.
 OPERAND = Role(("uint", "int", "float"), ("optional", "struct", "array"))
@@ -91,19 +107,31 @@ class _Traits(NamedTuple):
 
 
 def reasons_against(field: LayoutNode | Mapping[str, Any], role: Role) -> list[str]:
-    """Return why a field cannot have a role, each reason as the end of a sentence such as `is an array`.
+    """Return why a field cannot have a role, each reason as the end of a sentence such
+    as `is an array`.
 
-    The field is a node of a layout, or a line of a file, in which `type` and `bits` can be invalid.
+    The field is a node of a layout, or a line of a file, in which `type` and `bits` can
+    be invalid.
     """
-    traits = _traits_of_node(field) if isinstance(field, LayoutNode) else _traits_of_line(field)
-    reasons = [FEATURES[feature] for feature in role.excluded if feature in traits.features]
+    traits = (
+        _traits_of_node(field)
+        if isinstance(field, LayoutNode)
+        else _traits_of_line(field)
+    )
+    reasons = [
+        FEATURES[feature] for feature in role.excluded if feature in traits.features
+    ]
     if traits.type not in role.types and "struct" not in traits.features:
         reasons.append(f"is `{traits.type}`, not {_alternatives(role.types)}")
     elif isinstance(traits.bits, int) and traits.bits:
         if traits.bits < role.least_bits:
-            reasons.append(f"has {_bits(traits.bits)}, but needs {role.least_bits} at least")
+            reasons.append(
+                f"has {_bits(traits.bits)}, but needs {role.least_bits} at least"
+            )
         elif role.most_bits and traits.bits > role.most_bits:
-            reasons.append(f"has {_bits(traits.bits)}, but can have {role.most_bits} at most")
+            reasons.append(
+                f"has {_bits(traits.bits)}, but can have {role.most_bits} at most"
+            )
     return reasons
 
 
@@ -128,7 +156,9 @@ def _traits_of_node(node: LayoutNode) -> _Traits:
         "overlay": isinstance(node, Overlay),
     }
     features = frozenset(feature for feature, has in has_feature.items() if has)
-    return _Traits(scalar.type if scalar else None, scalar.bits if scalar else None, features)
+    return _Traits(
+        scalar.type if scalar else None, scalar.bits if scalar else None, features
+    )
 
 
 def _alternatives(types: tuple[str, ...]) -> str:

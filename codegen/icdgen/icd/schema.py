@@ -1,4 +1,6 @@
-"""Check of ICD files and errata overlays against the JSON Schema, with its violations as findings."""
+"""Check of ICD files and errata overlays against the JSON Schema, with its violations
+as findings.
+"""
 
 from __future__ import annotations
 
@@ -32,10 +34,14 @@ _TYPES = {
 }
 
 
-def check(tree: Map, document: str, lines: Lines | None = None) -> tuple[list[Finding], set[int]]:
-    """Return the violations of ``#/$defs/<document>`` ("icd" or "errata"), and the id() of each mapping with a violation.
+def check(
+    tree: Map, document: str, lines: Lines | None = None
+) -> tuple[list[Finding], set[int]]:
+    """Return the violations of ``#/$defs/<document>`` ("icd" or "errata"), and the id()
+    of each mapping with a violation.
 
-    With the ``lines`` of the file, findings also have the fixes that depend on the spelling of a value.
+    With the ``lines`` of the file, findings also have the fixes that depend on the
+    spelling of a value.
     """
     findings: list[Finding] = []
     broken: set[int] = set()
@@ -72,7 +78,10 @@ def protocol() -> dict[str, Any]:
 
 
 def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
-    """Return the sub-schema of a key of a mapping; empty if the key is unknown or any key is allowed."""
+    """Return the sub-schema of a key of a mapping.
+
+    Returns empty if the key is unknown or any key is allowed.
+    """
     inner: dict[str, Any] = _follow(form).get("properties", {}).get(key, {})
     return inner
 
@@ -86,12 +95,18 @@ def meaning(form: dict[str, Any]) -> str:
 def _validator(document: str) -> Any:
     import jsonschema_rs
 
-    schema = {"$schema": _schema()["$schema"], "$ref": f"#/$defs/{document}", "$defs": _schema()["$defs"]}
+    schema = {
+        "$schema": _schema()["$schema"],
+        "$ref": f"#/$defs/{document}",
+        "$defs": _schema()["$defs"],
+    }
     return jsonschema_rs.validator_for(schema)
 
 
 def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
-    """Return the mapping around the value at a path, the value itself if it is a mapping (else the former), and its place."""
+    """Return the mapping around the value at a path, the value itself if it is a
+    mapping (else the former), and its place.
+    """
     node: Any = tree
     holder, owner, place = tree, tree, tree.place
     for step in path:
@@ -103,8 +118,13 @@ def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     return holder, owner, place
 
 
-def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines) -> list[Finding]:
-    """Return the findings of an error of `jsonschema_rs`; several if a mapping has several unknown keys."""
+def _explain(
+    error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
+) -> list[Finding]:
+    """Return the findings of an error of `jsonschema_rs`.
+
+    Several if a mapping has several unknown keys.
+    """
     from icdgen.icd import remedies
 
     kind = error.kind
@@ -119,7 +139,14 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
         missing = kind.property
         hint = meaning(inside(rule, missing))
         message = f"`{missing}` is missing" + (f" from {what}" if path else "")
-        return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
+        return [
+            Finding(
+                CODE,
+                message,
+                place,
+                f"add `{missing}:`" + (f", {hint}" if hint else ""),
+            )
+        ]
     if name == "additionalProperties":
         known_keys = list(rule.get("properties", {}))
         return [
@@ -129,19 +156,30 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
         ]
     if name == "type":
         wanted = rule.get("type", "")
-        words = " or ".join(_TYPES.get(type, type) for type in ([wanted] if isinstance(wanted, str) else wanted))
+        words = " or ".join(
+            _TYPES.get(type, type)
+            for type in ([wanted] if isinstance(wanted, str) else wanted)
+        )
         message = f"{what} must be {words}, not {_describe(error.instance)}"
         is_text = wanted == "string" and {"enum", "pattern"}.isdisjoint(rule)
-        if isinstance(error.instance, str) or (is_text and type(error.instance) in (int, float)):
+        if isinstance(error.instance, str) or (
+            is_text and type(error.instance) in (int, float)
+        ):
             fix = remedies.of_type(wanted, lines.marked(place))
     elif name in ("enum", "const"):
         message = f"{what} cannot be {_describe(error.instance)}"
         allowed = [word for word in rule.get("enum", ()) if isinstance(word, str)]
         help = _with_values(help, rule)
         if rule.get("enum") == [True]:
-            fix = "true" if remedies.of_type("boolean", lines.marked(place)) == "true" else ""
+            fix = (
+                "true"
+                if remedies.of_type("boolean", lines.marked(place)) == "true"
+                else ""
+            )
         elif path and isinstance(error.instance, str):
-            help, fix = remedies.of_value(str(path[-1]), error.instance, owner, allowed) or (help, fix)
+            help, fix = remedies.of_value(
+                str(path[-1]), error.instance, owner, allowed
+            ) or (help, fix)
     elif name in ("minimum", "maximum"):
         side = "at least" if name == "minimum" else "at most"
         message = f"{what} must be {side} {rule[name]}, not {error.instance}"
@@ -152,7 +190,11 @@ def _explain(error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
     elif name == "pattern":
         message = f"{what} cannot be {_describe(error.instance)}"
     elif name in ("minItems", "minProperties"):
-        message = f"{what} is empty" if rule[name] == 1 else f"{what} has fewer than {rule[name]} entries"
+        message = (
+            f"{what} is empty"
+            if rule[name] == 1
+            else f"{what} has fewer than {rule[name]} entries"
+        )
     elif name in ("maxItems", "maxProperties"):
         message = f"{what} has more than {rule[name]} {'entry' if rule[name] == 1 else 'entries'}"
     elif name == "anyOf":
@@ -169,24 +211,43 @@ def _unknown_key(key: str, value: Any, known_keys: list[str], place: Place) -> F
     from icdgen.icd import remedies
 
     if key == "<<":
-        return Finding(CODE, "merge keys (`<<`) are not supported", place, "write the keys themselves in its place")
-    help, fix = remedies.of_key(key, value, known_keys) or ("known keys: " + ", ".join(known_keys), "")
+        return Finding(
+            CODE,
+            "merge keys (`<<`) are not supported",
+            place,
+            "write the keys themselves in its place",
+        )
+    help, fix = remedies.of_key(key, value, known_keys) or (
+        "known keys: " + ", ".join(known_keys),
+        "",
+    )
     # In `{summary: a, b c}` YAML reads "b c" as a key.
     if " " in key and not fix:
         help = f"if it is the rest of a text with a comma, put that in quotes; {help}"
-    return Finding(CODE, f"unknown key `{key[:60]}`", place, help, fix=Fix(place, fix) if fix else None)
+    return Finding(
+        CODE,
+        f"unknown key `{key[:60]}`",
+        place,
+        help,
+        fix=Fix(place, fix) if fix else None,
+    )
 
 
 def _with_values(help: str, rule: dict[str, Any]) -> str:
     """Return the help with the allowed values appended, unless it names them all."""
-    values = [str(value).lower() if isinstance(value, bool) else str(value) for value in rule.get("enum", ())]
+    values = [
+        str(value).lower() if isinstance(value, bool) else str(value)
+        for value in rule.get("enum", ())
+    ]
     if not values or all(value in help for value in values):
         return help
     return "; ".join(filter(None, (help, f"it can be {', '.join(values)}")))
 
 
 def _rule_at(path: list[Any]) -> dict[str, Any]:
-    """Return the sub-schema that failed: the path without its last keyword, with references resolved."""
+    """Return the sub-schema that failed: the path without its last keyword, with
+    references resolved.
+    """
     node: Any = _schema()
     for step in path[:-1]:
         if step == "$ref" or (isinstance(node, dict) and step not in node):

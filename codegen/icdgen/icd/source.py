@@ -1,7 +1,8 @@
 """Reader of YAML files that records the place of every value.
 
-Mappings become `Map` (a dict), sequences `Seq` (a list); both store the place of each key and value. Scalars are str,
-int, bool, float or None. Spellings that YAML 1.1 and 1.2 readers interpret differently are findings (ICD003).
+Mappings become `Map` (a dict), sequences `Seq` (a list); both store the place of each
+key and value. Scalars are str, int, bool, float or None. Spellings that YAML 1.1 and
+1.2 readers interpret differently are findings (ICD003).
 """
 
 from __future__ import annotations
@@ -52,13 +53,19 @@ _AMBIGUOUS = re.compile(
 
 
 def read(path: Path, name: str | None = None) -> Map:
-    """Return the tree of a file. ``name`` is the file name in findings. Raises `Findings`."""
+    """Return the tree of a file.
+
+    ``name`` is the file name in findings. Raises `Findings`.
+    """
     name = name or str(path)
     return parse(contents(path, name), name)
 
 
 def contents(path: Path, name: str) -> bytes:
-    """Return the bytes of a file. Raises `Findings` if it cannot be read or has more than `MAX_BYTES`."""
+    """Return the bytes of a file.
+
+    Raises `Findings` if it cannot be read or has more than `MAX_BYTES`.
+    """
     # Read with a limit instead of checking the size first: the path can be a pipe or a
     # device.
     try:
@@ -66,7 +73,14 @@ def contents(path: Path, name: str) -> bytes:
             data = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise Findings(
-            [Finding("ICD001", f"cannot read the file: {error.strerror}", Place(name), "check the path")]
+            [
+                Finding(
+                    "ICD001",
+                    f"cannot read the file: {error.strerror}",
+                    Place(name),
+                    "check the path",
+                )
+            ]
         ) from None
     if len(data) > MAX_BYTES:
         raise Findings(
@@ -77,7 +91,10 @@ def contents(path: Path, name: str) -> bytes:
 
 
 def parse(data: bytes, name: str) -> Map:
-    """Return the tree of ``data``. Raises `Findings` with all errors of the YAML text."""
+    """Return the tree of ``data``.
+
+    Raises `Findings` with all errors of the YAML text.
+    """
     tree, findings = parse_on(data, name)
     if findings:
         raise Findings(findings)
@@ -85,7 +102,8 @@ def parse(data: bytes, name: str) -> Map:
 
 
 def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
-    """Return the tree of ``data`` and the findings of ambiguous scalars (ICD003), which are text in the tree.
+    """Return the tree of ``data`` and the findings of ambiguous scalars (ICD003), which
+    are text in the tree.
 
     Raises `Findings` if the YAML text has any other error.
     """
@@ -94,14 +112,25 @@ def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
     except UnicodeDecodeError as error:
         place = _after(name, data[: error.start].decode("utf-8-sig"))
         problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
-        raise Findings([Finding("ICD001", problem, place, "save the file as UTF-8")]) from None
+        raise Findings(
+            [Finding("ICD001", problem, place, "save the file as UTF-8")]
+        ) from None
     tree, findings = Builder(text, name).build()
     if not findings and tree is None:
-        findings = [Finding("ICD001", "the file is empty", Place(name), "an ICD begins with `icdgen: 1`")]
+        findings = [
+            Finding(
+                "ICD001",
+                "the file is empty",
+                Place(name),
+                "an ICD begins with `icdgen: 1`",
+            )
+        ]
     elif not findings and not isinstance(tree, Map):
         findings = [Finding("ICD001", "the file is not a mapping of keys to values", Place(name),
                             "an ICD begins with `icdgen: 1`, an overlay with `errata: 1`")]  # fmt: skip
-    if not isinstance(tree, Map) or any(finding.code != AMBIGUOUS for finding in findings):
+    if not isinstance(tree, Map) or any(
+        finding.code != AMBIGUOUS for finding in findings
+    ):
         raise Findings(findings)
     return tree, findings
 
@@ -126,7 +155,10 @@ class EventParser(Protocol):
 
 
 class Builder:
-    """Builds the tree from parser events. It has its own stack instead of recursion, to limit the depth."""
+    """Builds the tree from parser events.
+
+    It has its own stack instead of recursion, to limit the depth.
+    """
 
     def __init__(self, text: str, name: str) -> None:
         self.text, self.name = text, name
@@ -135,13 +167,20 @@ class Builder:
         self.scalars: dict[str, object] = {}
 
     def build(self) -> tuple[object, list[Finding]]:
-        """Return the root of the tree and the findings. After a syntax error, the root is None."""
+        """Return the root of the tree and the findings.
+
+        After a syntax error, the root is None.
+        """
         import yaml
         from yaml import events
 
         if "\0" in self.text:
             place = _after(self.name, self.text[: self.text.index("\0")])
-            return None, [Finding("ICD001", "the file contains a NUL character", place, "remove it")]
+            return None, [
+                Finding(
+                    "ICD001", "the file contains a NUL character", place, "remove it"
+                )
+            ]
         roots = Seq(Place(self.name))
         container: Any = roots  # the innermost open mapping or sequence
         key: str | None = None  # of a mapping, if its value comes next
@@ -149,7 +188,11 @@ class Builder:
         stack: list[tuple[Any, str | None, Spot]] = []  # the containers around it
         cache = self.scalars  # also the marker for 'not in the cache'
         next_event = event_parser(self.text, self.name).get_event
-        scalar, mapping, sequence = events.ScalarEvent, events.MappingStartEvent, events.SequenceStartEvent
+        scalar, mapping, sequence = (
+            events.ScalarEvent,
+            events.MappingStartEvent,
+            events.SequenceStartEvent,
+        )
         try:
             # This loop runs once per event, tens of thousands of times. Inline code is
             # faster than calls here.
@@ -160,7 +203,9 @@ class Builder:
                 spot = event.start_mark, event.end_mark
                 value: Any
                 if kind is scalar:
-                    plain = not event.style and event.anchor is None and event.tag is None
+                    plain = (
+                        not event.style and event.anchor is None and event.tag is None
+                    )
                     value = cache.get(event.value, cache) if plain else cache
                     if value is cache:
                         value = self.scalar(event)
@@ -176,7 +221,12 @@ class Builder:
                     self.refuse_alias(event)
                     return None, self.findings
                 elif kind is events.DocumentStartEvent and roots:
-                    self.add("ICD001", "a second document begins here", event, "one ICD is one document: remove `---`")
+                    self.add(
+                        "ICD001",
+                        "a second document begins here",
+                        event,
+                        "one ICD is one document: remove `---`",
+                    )
                     return None, self.findings
                 elif kind is events.StreamEndEvent:
                     break
@@ -186,10 +236,14 @@ class Builder:
                     container.append(value)
                     container.spots.append(spot)
                 elif key is None:
-                    key, key_spot = value if type(value) is str else self.key(value, event), spot
+                    key, key_spot = (
+                        value if type(value) is str else self.key(value, event)
+                    ), spot
                 else:
                     if key in container:
-                        self.add_duplicate_key(key, place_of(key_spot), container.key_at(key))
+                        self.add_duplicate_key(
+                            key, place_of(key_spot), container.key_at(key)
+                        )
                     container[key] = value
                     container.spots[key] = key_spot, spot
                     key = None
@@ -203,23 +257,41 @@ class Builder:
             from icdgen.icd import remedies
 
             mark = getattr(error, "problem_mark", None)
-            place = Place(self.name, mark.line + 1, mark.column + 1) if mark else self.unprintable()
-            problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "the text cannot be read"
+            place = (
+                Place(self.name, mark.line + 1, mark.column + 1)
+                if mark
+                else self.unprintable()
+            )
+            problem = (
+                getattr(error, "problem", None)
+                or getattr(error, "reason", None)
+                or "the text cannot be read"
+            )
             if problem == _DEEPER_THAN_LIBYAML:
                 self.findings.append(_too_deep(place))
                 return None, self.findings
             line = Lines(self.text)[place.line] or ""
             help = remedies.of_syntax(problem, line, place.column - 1) if mark else ""
-            help = help or "check indentation, quotes and brackets just before this place"
-            fix = self.with_quotes(place, line, mark.index - mark.column) if mark else None
+            help = (
+                help or "check indentation, quotes and brackets just before this place"
+            )
+            fix = (
+                self.with_quotes(place, line, mark.index - mark.column)
+                if mark
+                else None
+            )
             if fix is not None and "quotes" not in help.partition(":")[2]:
                 help = "put the text in quotes"
-            self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help, fix=fix))
+            self.findings.append(
+                Finding("ICD001", f"not YAML: {problem}", place, help, fix=fix)
+            )
             return None, self.findings
         return (roots[0] if roots else None), self.findings
 
     def with_quotes(self, place: Place, line: str, offset: int) -> Fix | None:
-        """Return a fix that puts the value at a place in quotes; None if the line would still have a syntax error.
+        """Return a fix that puts the value at a place in quotes.
+
+        Returns None if the line would still have a syntax error.
 
         ``offset`` is the index of the line in the text.
         """
@@ -231,23 +303,37 @@ class Builder:
         if start == end or not self.text.startswith(line, offset):
             return None
         quoted = remedies.in_quotes(line[start:end])
-        parser = event_parser(self.text[: offset + start] + quoted + self.text[offset + end :], self.name)
+        parser = event_parser(
+            self.text[: offset + start] + quoted + self.text[offset + end :], self.name
+        )
         try:
-            while (event := parser.get_event()) is not None and event.start_mark.line < place.line:
+            while (
+                event := parser.get_event()
+            ) is not None and event.start_mark.line < place.line:
                 pass
         except yaml.YAMLError:
             return None
         return Fix(Place(self.name, place.line, start + 1, end - start), quoted)
 
     def key(self, value: object, event: Event) -> str:
-        """Return a key that is not a string as text; adds a finding if it is a mapping or a list."""
+        """Return a key that is not a string as text.
+
+        Adds a finding if it is a mapping or a list.
+        """
         if isinstance(value, (Map, Seq)):
-            self.add("ICD001", "a key must be a word, not a mapping or a list", event, "give the key a name")
+            self.add(
+                "ICD001",
+                "a key must be a word, not a mapping or a list",
+                event,
+                "give the key a name",
+            )
         return str(value)
 
     def add_duplicate_key(self, key: str, place: Place, first: Place) -> None:
         """Add the finding for a key that occurs twice in a mapping."""
-        message = f"the key `{key}` is twice in this mapping, first in line {first.line}"
+        message = (
+            f"the key `{key}` is twice in this mapping, first in line {first.line}"
+        )
         self.findings.append(Finding("ICD002", message, place, "remove one of them"))
 
     def scalar(self, event: Event) -> object:
@@ -257,7 +343,12 @@ class Builder:
             self.refuse_alias(event)
         self.check_tag(event)
         if len(text) > MAX_SCALAR:
-            self.add("ICD001", f"a text of {len(text):,} characters", event, f"at most {MAX_SCALAR:,} are allowed")
+            self.add(
+                "ICD001",
+                f"a text of {len(text):,} characters",
+                event,
+                f"at most {MAX_SCALAR:,} are allowed",
+            )
             return text[:100]
         if not event.style:
             return self.plain(text, event)
@@ -266,7 +357,10 @@ class Builder:
         return text
 
     def plain(self, text: str, event: Event) -> object:
-        """Return the value of an unquoted scalar. If it is ambiguous, adds a finding and returns the text."""
+        """Return the value of an unquoted scalar.
+
+        If it is ambiguous, adds a finding and returns the text.
+        """
         if len(text) > _LONGEST_WORD and text[0].isalpha():
             value: object = text
         elif text in _WORDS:
@@ -276,7 +370,12 @@ class Builder:
         elif _AMBIGUOUS.match(text) and text not in (".", "-"):
             from icdgen.icd import remedies
 
-            self.add(AMBIGUOUS, f"YAML parsers disagree about what `{text}` is", event, remedies.of_ambiguous(text))
+            self.add(
+                AMBIGUOUS,
+                f"YAML parsers disagree about what `{text}` is",
+                event,
+                remedies.of_ambiguous(text),
+            )
             return text
         else:
             value = text
@@ -286,28 +385,54 @@ class Builder:
     def check_tag(self, event: Event) -> None:
         """Add a finding if an event has a tag; the tag `!` only forces text."""
         if event.tag is not None and event.tag != "!":
-            self.add(AMBIGUOUS, f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
+            self.add(
+                AMBIGUOUS,
+                f"the tag `{event.tag}` is not part of the format",
+                event,
+                "remove the tag",
+            )
 
     def refuse_alias(self, event: Event) -> None:
-        """Add the finding for an anchor or an alias: nested aliases can expand to any amount of data."""
-        self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")
+        """Add the finding for an anchor or an alias: nested aliases can expand to any
+        amount of data.
+        """
+        self.add(
+            "ICD001",
+            "anchors and aliases are not part of the format",
+            event,
+            "write the value out",
+        )
 
     def unprintable(self) -> Place:
-        """Return the place of the first character that YAML does not allow, by default the start of the file."""
+        """Return the place of the first character that YAML does not allow, by default
+        the start of the file.
+        """
         match = re.search(_UNPRINTABLE, self.text)
-        return _after(self.name, self.text[: match.start()]) if match else Place(self.name)
+        return (
+            _after(self.name, self.text[: match.start()]) if match else Place(self.name)
+        )
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
         """Add a finding at the place of an event."""
-        self.findings.append(Finding(code, message, place_of((event.start_mark, event.end_mark)), help))
+        self.findings.append(
+            Finding(code, message, place_of((event.start_mark, event.end_mark)), help)
+        )
 
 
 def _too_deep(place: Place) -> Finding:
-    return Finding("ICD001", f"nested more than {MAX_DEPTH} deep", place, "an ICD needs five levels")
+    return Finding(
+        "ICD001",
+        f"nested more than {MAX_DEPTH} deep",
+        place,
+        "an ICD needs five levels",
+    )
 
 
 def _number(text: str, kind: str) -> int | float | str:
-    """Return the value of a number that matches `_NUMBER`; ``kind`` is the name of the group."""
+    """Return the value of a number that matches `_NUMBER`.
+
+    ``kind`` is the name of the group.
+    """
     # Longer texts are not numbers of an ICD. As text, the schema check reports them.
     if len(text) >= 40:
         return text
@@ -328,7 +453,8 @@ def _after(name: str, before: str) -> Place:
 def event_parser(text: str, name: str) -> EventParser:
     """Return a parser of the events of a text. ``name`` is the file name in its marks.
 
-    Uses libyaml if PyYAML was built with it, which is ten times as fast as PyYAML's own parser.
+    Uses libyaml if PyYAML was built with it, which is ten times as fast as PyYAML's own
+    parser.
     """
     file = StringIO(text)
     file.name = name

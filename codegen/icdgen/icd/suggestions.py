@@ -9,9 +9,15 @@ from icdgen.suggest import close_to
 
 
 def suggestion(name: str, names: Iterable[str], otherwise: str) -> Remedy:
-    """Return the help "did you mean ...?" with a similar name as fix, or the help ``otherwise`` if no name is similar."""
+    """Return the help "did you mean ...?" with a similar name as fix, or the help
+    ``otherwise`` if no name is similar.
+    """
     close = close_to(name, names)
-    return Remedy(f"did you mean `{close}`?", yaml_text(close)) if close else Remedy(otherwise)
+    return (
+        Remedy(f"did you mean `{close}`?", yaml_text(close))
+        if close
+        else Remedy(otherwise)
+    )
 
 
 def yaml_text(text: str) -> str:

@@ -12,11 +12,18 @@ T = TypeVar("T")
 
 def mappings(items: object) -> list[Map]:
     """Return the mappings in a list; an empty list if the value is not a list."""
-    return [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
+    return (
+        [item for item in items if isinstance(item, Map)]
+        if isinstance(items, list)
+        else []
+    )
 
 
 def at_path(tree: Any, path: Iterable[str]) -> Any:
-    """Return the value at a path of keys; None if a key is absent or a value on the path is not a mapping."""
+    """Return the value at a path of keys.
+
+    Returns None if a key is absent or a value on the path is not a mapping.
+    """
     for key in path:
         tree = tree.get(key) if isinstance(tree, dict) else None
     return tree

@@ -1,4 +1,7 @@
-"""Units that every ICD can use without declaring them. An ICD declares further units with the key `units`."""
+"""Units that every ICD can use without declaring them.
+
+An ICD declares further units with the key `units`.
+"""
 
 from __future__ import annotations
 
@@ -89,7 +92,9 @@ bit/s       bit_per_s       data rate
 
 
 _ROWS = (line.split(None, 2) for line in _TABLE.strip().splitlines())
-STANDARD = {symbol: Unit(symbol, identifier, quantity) for symbol, identifier, quantity in _ROWS}
+STANDARD = {
+    symbol: Unit(symbol, identifier, quantity) for symbol, identifier, quantity in _ROWS
+}
 
 # Other symbols of units in STANDARD that are unambiguous: an importer replaces them.
 SIGNS = {
@@ -108,14 +113,17 @@ SPELLINGS = SIGNS | {
 
 NOT_STATED = "not stated"
 # Replacements of non-ASCII signs in identifiers.
-_SIGN_NAMES = str.maketrans({"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"})
+_SIGN_NAMES = str.maketrans(
+    {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
+)
 _PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
 
 
 def similar_unit(symbol: str, declared: Iterable[str]) -> str:
     """Return the standard or declared unit that an unknown symbol probably means.
 
-    Returns an empty string for a symbol without a similar unit, and for ``kV``, which is not a misspelt ``V``.
+    Returns an empty string for a symbol without a similar unit, and for ``kV``, which
+    is not a misspelt ``V``.
     """
     symbols = {*STANDARD, *declared}
     if symbol in SPELLINGS:
@@ -126,8 +134,12 @@ def similar_unit(symbol: str, declared: Iterable[str]) -> str:
 
 
 def _differ_in_prefix(first: str, second: str, symbols: set[str]) -> bool:
-    """Return whether two symbols differ only in prefixes of their parts, such as ``mm/s`` and ``km/s``."""
-    first_parts, second_parts = (re.findall(r"\w+|\W", symbol) for symbol in (first, second))
+    """Return whether two symbols differ only in prefixes of their parts, such as
+    ``mm/s`` and ``km/s``.
+    """
+    first_parts, second_parts = (
+        re.findall(r"\w+|\W", symbol) for symbol in (first, second)
+    )
     if len(first_parts) != len(second_parts):
         return False
     pairs = zip(first_parts, second_parts, strict=True)
@@ -140,13 +152,18 @@ def _bases(part: str, symbols: set[str]) -> set[str]:
 
 
 def declared(symbols: Iterable[str]) -> list[dict[str, str]]:
-    """Return the list `units` of an ICD for symbols that are not standard: each once, with a unique identifier."""
+    """Return the list `units` of an ICD for symbols that are not standard: each once,
+    with a unique identifier.
+    """
     units: dict[str, dict[str, str]] = {}
     taken = {unit.identifier for unit in STANDARD.values()}
     for symbol in symbols:
         if symbol in STANDARD or symbol in units:
             continue
-        name = "_".join(re.findall("[a-z0-9]+", symbol.translate(_SIGN_NAMES).casefold())) or "unit"
+        name = (
+            "_".join(re.findall("[a-z0-9]+", symbol.translate(_SIGN_NAMES).casefold()))
+            or "unit"
+        )
         while name in taken:
             name += "_"
         taken.add(name)

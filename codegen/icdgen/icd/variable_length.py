@@ -1,6 +1,7 @@
 """Variable-length fields of a message as a file declares them, and their faults.
 
-They follow the fixed part, one directly after another. Another field, or the end of the frame, gives the number of elements.
+They follow the fixed part, one directly after another. Another field, or the end of the
+frame, gives the number of elements.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ class Counting(NamedTuple):
 
 
 def is_variable(item: Map) -> bool:
-    """Return whether a field has a variable length: up to the end of the frame, or counted by another field."""
+    """Return whether a field has a variable length: up to the end of the frame, or
+    counted by another field.
+    """
     count = item.get(count_key(item))
     if isinstance(count, dict):
         return isinstance(count.get("field"), str) and type(count.get("plus")) is int
@@ -38,32 +41,51 @@ def is_variable(item: Map) -> bool:
 
 
 def count_key(item: Map) -> str:
-    """Return the key for the number of elements: `size` for bytes and text, else `count`."""
+    """Return the key for the number of elements: `size` for bytes and text, else
+    `count`.
+    """
     return "size" if "size" in item else "count"
 
 
 def counting(item: Map) -> Counting:
     """Return the source of the number of elements of a variable-length field."""
     count = item[count_key(item)]
-    return Counting(count["field"], count["plus"]) if isinstance(count, dict) else Counting(count)
+    return (
+        Counting(count["field"], count["plus"])
+        if isinstance(count, dict)
+        else Counting(count)
+    )
 
 
 def variable_fields(message: Map) -> list[Map]:
     """Return the variable-length fields of a message, in the order of the file."""
-    return [item for item in placed_fields(message, is_variable) if type(item.get("up_to", 0)) is int]
+    return [
+        item
+        for item in placed_fields(message, is_variable)
+        if type(item.get("up_to", 0)) is int
+    ]
 
 
 def fixed_fields_after(message: Map) -> list[Map]:
-    """Return the fields of fixed size that are placed at or after the start of the first variable-length field."""
+    """Return the fields of fixed size that are placed at or after the start of the
+    first variable-length field.
+    """
     first = next(iter(variable_fields(message)), None)
     if first is None or _is_unknown(message, first):
         return []
-    fixed = placed_fields(message, lambda item: not is_variable(item) and not item.get("view") and "after" not in item)
+    fixed = placed_fields(
+        message,
+        lambda item: not is_variable(item)
+        and not item.get("view")
+        and "after" not in item,
+    )
     return [item for item in fixed if item["at"] >= first["at"]]
 
 
 def element_bits(item: Map, structs: Lengths) -> int:
-    """Return the bits of an element of a variable-length field: 8 for bytes and text, 0 for an unknown struct."""
+    """Return the bits of an element of a variable-length field: 8 for bytes and text, 0
+    for an unknown struct.
+    """
     if "struct" in item:
         return 8 * structs.get(item["struct"], 0)
     bits: int = 8 if "size" in item else item["bits"]
@@ -71,58 +93,104 @@ def element_bits(item: Map, structs: Lengths) -> int:
 
 
 def counter_of(message: Map, item: Map) -> Map | None:
-    """Return the field that counts the elements; None if it is unknown, or if the end of the frame gives their number."""
+    """Return the field that counts the elements.
+
+    Returns None if it is unknown, or if the end of the frame gives their number.
+    """
     name = counting(item).name
     if name == REST:
         return None
-    counter = next((field for field in placed_fields(message) if field.get("name") == name), None)
+    counter = next(
+        (field for field in placed_fields(message) if field.get("name") == name), None
+    )
     return None if counter is None or "struct" in counter else counter
 
 
-def placed_fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
-    """Return the fields of a message with a valid position and width. The schema check reports the other fields."""
+def placed_fields(
+    message: Map, wanted: Callable[[Map], bool] | None = None
+) -> list[Map]:
+    """Return the fields of a message with a valid position and width.
+
+    The schema check reports the other fields.
+    """
     return [
         item
         for item in filter(wanted, mappings(message.get("fields")))
         if isinstance(item.get("name"), str)
-        and all(type(item.get(key)) is int for key in ("at", "bits")[: 1 if _is_sized(item) else 2])
+        and all(
+            type(item.get(key)) is int
+            for key in ("at", "bits")[: 1 if _is_sized(item) else 2]
+        )
         and (_is_sized(item) or item["bits"] > 0)
     ]
 
 
 def _is_sized(item: Map) -> bool:
-    """Return whether `size` or a struct gives the width, so that the field has no `bits`."""
+    """Return whether `size` or a struct gives the width, so that the field has no
+    `bits`.
+    """
     return "size" in item or isinstance(item.get("struct"), str)
 
 
 def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
-    """Yield the faults of the number of elements of a variable-length field: its counter, `plus` and `up_to`."""
+    """Yield the faults of the number of elements of a variable-length field: its
+    counter, `plus` and `up_to`.
+    """
     name = f"`{item['name']}`"
     key, (counter_name, plus) = count_key(item), counting(item)
     if _is_unknown(message, item):
-        text = f"`{message['name']}` has no field `{counter_name}` that could count {name}"
+        text = (
+            f"`{message['name']}` has no field `{counter_name}` that could count {name}"
+        )
         numbers = "a number, " if key == "count" else ""
-        counters = [*(field["name"] for field in placed_fields(message) if _can_count(field, message)), REST]
-        help, fix = suggestion(counter_name, counters, f"`{key}` is {numbers}the name of an earlier field, or `{REST}`")
-        yield Fault.at(item, key, text, help, "" if isinstance(item[key], dict) else fix)
+        counters = [
+            *(
+                field["name"]
+                for field in placed_fields(message)
+                if _can_count(field, message)
+            ),
+            REST,
+        ]
+        help, fix = suggestion(
+            counter_name,
+            counters,
+            f"`{key}` is {numbers}the name of an earlier field, or `{REST}`",
+        )
+        yield Fault.at(
+            item, key, text, help, "" if isinstance(item[key], dict) else fix
+        )
         return
     if "up_to" not in item and key == "count":
         text = f"{name} has no fixed {key} and no `up_to`"
-        yield Fault.at(item, key, text, "add `up_to:`, the greatest number of elements: buffers have that size")
+        yield Fault.at(
+            item,
+            key,
+            text,
+            "add `up_to:`, the greatest number of elements: buffers have that size",
+        )
     if "up_to" not in item:
         return
     if item["up_to"] > MOST_ELEMENTS and key == "count":
         text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
-        yield Fault.at(item, "up_to", text, "use `type: bytes` with `size: rest` for longer data")
+        yield Fault.at(
+            item, "up_to", text, "use `type: bytes` with `size: rest` for longer data"
+        )
     if counter_name == REST:
         return
     counter = counter_of(message, item)
     assert counter is not None
     earlier_parts = takewhile(lambda part: part is not item, variable_fields(message))
-    earlier = next((part for part in earlier_parts if counting(part).name == counter_name), None)
+    earlier = next(
+        (part for part in earlier_parts if counting(part).name == counter_name), None
+    )
     if earlier is not None:
         text = f"`{counter_name}` counts both `{earlier['name']}` and {name}"
-        yield Fault.at(item, key, text, "name another counter: each variable-length field needs its own")
+        yield Fault.at(
+            item,
+            key,
+            text,
+            "name another counter: each variable-length field needs its own",
+        )
     reason = reason_against(counter, message)
     if reason:
         text = f"`{counter['name']}` cannot count {name}: it {reason}"
@@ -130,7 +198,9 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
         yield Fault.at(item, key, text, help)
         return
     # The largest number of elements that the counter can express.
-    most, elements = (1 << counter["bits"]) - 1 + plus, "bytes" if key == "size" else "elements"
+    most, elements = (1 << counter["bits"]) - 1 + plus, (
+        "bytes" if key == "size" else "elements"
+    )
     if most < item["up_to"]:
         added = f" plus {plus}" if plus else ""
         counter_text = f"`{counter['name']}` ({counter['bits']} bits{added})"
@@ -145,7 +215,9 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
 
 
 def _is_unknown(message: Map, item: Map) -> bool:
-    """Return whether the message does not have the field that counts a variable-length field."""
+    """Return whether the message does not have the field that counts a variable-length
+    field.
+    """
     return counting(item).name != REST and counter_of(message, item) is None
 
 
@@ -155,7 +227,10 @@ def _can_count(field: Map, message: Map) -> bool:
 
 
 def reason_against(counter: Map, message: Map) -> str:
-    """Return why a field cannot count elements, as the end of a sentence; empty if it can."""
+    """Return why a field cannot count elements, as the end of a sentence.
+
+    Returns empty if it can.
+    """
     reasons = reasons_against(counter, COUNTER)
     if reasons:
         return reasons[0]
@@ -173,7 +248,9 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     # Each fault below returns at once: further faults of the position would only follow
     # from it.
     parts = variable_fields(message)
-    before = next((part for part, following in pairwise(parts) if following is item), None)
+    before = next(
+        (part for part, following in pairwise(parts) if following is item), None
+    )
     names = [part["name"] for part in parts]
     if item.get("after") in names[names.index(item["name"]) + 1 :]:
         text = f"{name} follows `{item['after']}`, which is listed later in the file"
@@ -183,7 +260,10 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     if before is None and "after" in item:
         text = f"{name} has `after: {item['after']}`, but no field in front of it has a variable length"
         yield Fault.at(
-            item, "after", text, "remove `after`: the first variable-length field begins where `length` ends"
+            item,
+            "after",
+            text,
+            "remove `after`: the first variable-length field begins where `length` ends",
         )
         return
     if before is not None and item.get("after") != before["name"]:
@@ -195,15 +275,17 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
             yield Fault.at(item, "name", text, help)
         return
     if before is not None and counting(before).name == REST:
-        text = f"{name} follows `{before['name']}`, which extends to the end of the frame"
-        help = f"let a field count `{before['name']}`: write its name instead of `{REST}`"
+        text = (
+            f"{name} follows `{before['name']}`, which extends to the end of the frame"
+        )
+        help = (
+            f"let a field count `{before['name']}`: write its name instead of `{REST}`"
+        )
         yield Fault.at(item, "after", text, help)
         return
     if "reserved" in message:
         text = f"`{message['name']}` has `reserved` bytes, which cannot follow {name}, a variable-length field"
-        help = (
-            f"remove `reserved`; `length` is that of the shortest frame, which ends where `{parts[0]['name']}` begins"
-        )
+        help = f"remove `reserved`; `length` is that of the shortest frame, which ends where `{parts[0]['name']}` begins"
         yield Fault.at(message, "reserved", text, help)
         return
     if item["at"] != fixed:
@@ -214,19 +296,29 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
     is_octets = item.get("type") in _OCTETS
     if "size" in item and not is_octets:
         text = f"{name} is `{item.get('type')}`: `size` is for bytes and text"
-        yield Fault.at(item, "size", text, "for numbers, write the `bits` of an element and `count`")
+        yield Fault.at(
+            item,
+            "size",
+            text,
+            "for numbers, write the `bits` of an element and `count`",
+        )
     elif element_bits(item, structs) % 8:
         text = f"an element of {name} has {element_bits(item, structs)} bits, but a frame has whole bytes"
-        yield Fault.at(item, "bits", text, "describe elements of whole bytes, or the data as `bytes` with `size`")
+        yield Fault.at(
+            item,
+            "bits",
+            text,
+            "describe elements of whole bytes, or the data as `bytes` with `size`",
+        )
     for key in ("view", "bitfields"):
         if item.get(key):
             text = f"{name} has a variable length, so it cannot have `{key}`"
             yield Fault.at(item, key, text, f"remove `{key}`")
-    longest = message["length"] + sum(part.get("up_to", 0) * element_bits(part, structs) // 8 for part in parts)
+    longest = message["length"] + sum(
+        part.get("up_to", 0) * element_bits(part, structs) // 8 for part in parts
+    )
     if longest > MOST_BYTES and item is parts[-1]:
-        text = (
-            f"`{message['name']}` can have {longest:,} bytes with all of {name}, more than the limit of {MOST_BYTES:,}"
-        )
+        text = f"`{message['name']}` can have {longest:,} bytes with all of {name}, more than the limit of {MOST_BYTES:,}"
         yield Fault.at(item, "up_to", text, "correct `up_to`")
 
 

@@ -1,7 +1,8 @@
 """Variable-length arrays in structs as a file declares them, and their faults.
 
-They follow the fixed part of the struct, and fields of fixed size can follow them. Fields of the message count their elements,
-so all elements of an array of such structs have the same size.
+They follow the fixed part of the struct, and fields of fixed size can follow them.
+Fields of the message count their elements, so all elements of an array of such structs
+have the same size.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ from icdgen.icd.variable_length import (
 
 
 def sequence_of_struct(struct: Map) -> list[Map]:
-    """Return the variable-length arrays of a struct and the fields behind them, in the order of the file."""
+    """Return the variable-length arrays of a struct and the fields behind them, in the
+    order of the file.
+    """
     return placed_fields(struct, lambda item: is_variable(item) or "after" in item)
 
 
@@ -40,11 +43,14 @@ def is_variable_struct(struct: Map) -> bool:
     return any(arrays_of_struct(struct))
 
 
-def faults_in_struct(struct: Map, structs: Lengths, variable: Container[str]) -> Iterator[Fault]:
-    """Yield the faults of the variable-length arrays of a struct and of the fields behind them.
+def faults_in_struct(
+    struct: Map, structs: Lengths, variable: Container[str]
+) -> Iterator[Fault]:
+    """Yield the faults of the variable-length arrays of a struct and of the fields
+    behind them.
 
-    `variable` has the names of structs with variable-length arrays. What a counter can count depends on the message:
-    see `faults_of_inner_counts`.
+    `variable` has the names of structs with variable-length arrays. What a counter can
+    count depends on the message: see `faults_of_inner_counts`.
     """
     before: Map | None = None
     for item in sequence_of_struct(struct) if is_variable_struct(struct) else ():
@@ -52,17 +58,26 @@ def faults_in_struct(struct: Map, structs: Lengths, variable: Container[str]) ->
         key = count_key(item)
         if before is None and not is_variable(item):
             text = f"{name} has `after: {item['after']}`, but no field in front of it has a variable length"
-            yield Fault.at(item, "after", text, "write it in front of the fields with `after`, and remove `after`")
+            yield Fault.at(
+                item,
+                "after",
+                text,
+                "write it in front of the fields with `after`, and remove `after`",
+            )
             return
         if before is not None and item.get("after") != before["name"]:
             text = f"{name} is behind `{before['name']}`, whose end is not at a fixed place"
             fix = yaml_text(before["name"]) if "after" in item else ""
             help = f"write `after: {before['name']}`, the field in front of it"
-            yield Fault.at(item, "after" if "after" in item else "name", text, help, fix)
+            yield Fault.at(
+                item, "after" if "after" in item else "name", text, help, fix
+            )
             return
         if before is None and "after" in item:
             text = f"{name} is the first field of `{struct['name']}` with a variable length"
-            yield Fault.at(item, "after", text, "remove `after`: it begins where `length` ends")
+            yield Fault.at(
+                item, "after", text, "remove `after`: it begins where `length` ends"
+            )
             return
         if item["at"] != 8 * struct["length"]:
             text = f"{name} begins at bit {item['at']:,}, but `length` ends at bit {8 * struct['length']:,}"
@@ -75,13 +90,25 @@ def faults_in_struct(struct: Map, structs: Lengths, variable: Container[str]) ->
         before = item
         if "size" in item and is_variable(item):
             text = f"{name} is `{item.get('type')}` of variable length, which is not supported in a struct"
-            yield Fault.at(item, key, text, "write an array of numbers: `bits: 8`, `type: uint` and `count`")
+            yield Fault.at(
+                item,
+                key,
+                text,
+                "write an array of numbers: `bits: 8`, `type: uint` and `count`",
+            )
         elif is_variable(item) and counting(item).name == REST:
             text = f"{name} extends to the end of the frame, which is not supported in a struct"
-            yield Fault.at(item, key, text, "name a field of the message that counts the elements")
+            yield Fault.at(
+                item, key, text, "name a field of the message that counts the elements"
+            )
         elif is_variable(item) and "up_to" not in item:
             text = f"{name} has no fixed {key} and no `up_to`"
-            yield Fault.at(item, key, text, "add `up_to:`, the greatest number of elements: buffers have that size")
+            yield Fault.at(
+                item,
+                key,
+                text,
+                "add `up_to:`, the greatest number of elements: buffers have that size",
+            )
         elif is_variable(item) and item["up_to"] > MOST_ELEMENTS:
             text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
             yield Fault.at(item, "up_to", text, f"write up to {MOST_ELEMENTS:,}")
@@ -90,18 +117,38 @@ def faults_in_struct(struct: Map, structs: Lengths, variable: Container[str]) ->
             yield Fault.at(item, "up_to", text, "correct `up_to`, or `plus`")
         if item.get("struct") in variable:
             text = f"`{item['struct']}` has a variable length, and so has `{struct['name']}`, which contains it"
-            yield Fault.at(item, "struct", text, "write its fields into the outer struct: one level is supported")
-        elif element_bits(item, structs) * (1 if is_variable(item) else item.get("count", 1)) % 8:
+            yield Fault.at(
+                item,
+                "struct",
+                text,
+                "write its fields into the outer struct: one level is supported",
+            )
+        elif (
+            element_bits(item, structs)
+            * (1 if is_variable(item) else item.get("count", 1))
+            % 8
+        ):
             text = f"{name} does not have whole bytes, so what follows has no place"
-            yield Fault.at(item, "bits", text, "combine it with its neighbours to whole bytes")
+            yield Fault.at(
+                item, "bits", text, "combine it with its neighbours to whole bytes"
+            )
         for key in ("view", "bitfields", "when"):
             if item.get(key):
                 text = f"{name} has no fixed place, so it cannot have `{key}`"
-                yield Fault.at(item, key, text, f"remove `{key}`, or place the field in front of `{item.get('after')}`")
+                yield Fault.at(
+                    item,
+                    key,
+                    text,
+                    f"remove `{key}`, or place the field in front of `{item.get('after')}`",
+                )
 
 
-def faults_of_inner_counts(message: Map, item: Map, structs: Mapping[str, Map]) -> Iterator[Fault]:
-    """Yield the faults of the counters of a struct with variable-length arrays, at the field of a message that uses it."""
+def faults_of_inner_counts(
+    message: Map, item: Map, structs: Mapping[str, Map]
+) -> Iterator[Fault]:
+    """Yield the faults of the counters of a struct with variable-length arrays, at the
+    field of a message that uses it.
+    """
     struct = structs.get(item["struct"])
     if struct is None or not is_variable_struct(struct):
         return
@@ -115,11 +162,21 @@ def faults_of_inner_counts(message: Map, item: Map, structs: Mapping[str, Map]) 
     for inner in arrays_of_struct(struct):
         counter_name, plus = counting(inner)
         array = f"`{inner['name']}` of the {part}"
-        counter = next((field for field in placed_fields(message) if field["name"] == counter_name), None)
+        counter = next(
+            (
+                field
+                for field in placed_fields(message)
+                if field["name"] == counter_name
+            ),
+            None,
+        )
         if counter is None or "struct" in counter:
             text = f"`{message['name']}` has no field `{counter_name}` that could count {array}"
             yield Fault.at(
-                item, "struct", text, f"add `{counter_name}` to the message, or correct `count` in the struct"
+                item,
+                "struct",
+                text,
+                f"add `{counter_name}` to the message, or correct `count` in the struct",
             )
             continue
         if counter_name in counters:
@@ -135,8 +192,14 @@ def faults_of_inner_counts(message: Map, item: Map, structs: Mapping[str, Map]) 
         elif "up_to" in inner and most < inner["up_to"]:
             up_to = f"counts up to {max(most, 0):,}, and {array} has up to {inner['up_to']:,}"
             text = f"`{counter_name}` ({counter['bits']} bits) {up_to}"
-            yield Fault.at(item, "struct", text, f"correct `up_to` in the struct, or the `bits` of `{counter_name}`")
-        # Several arrays can have one counter, if there is a number that all of them can have.
+            yield Fault.at(
+                item,
+                "struct",
+                text,
+                f"correct `up_to` in the struct, or the `bits` of `{counter_name}`",
+            )
+        # Several arrays can have one counter, if there is a number that all of them can
+        # have.
         for other in _inner_arrays_before(message, inner, structs):
             other_name, other_plus = counting(other)
             low, high = max(0, -plus, -other_plus), min(
@@ -144,14 +207,27 @@ def faults_of_inner_counts(message: Map, item: Map, structs: Mapping[str, Map]) 
             )
             if other_name == counter_name and low > high:
                 text = f"`{counter_name}` counts {array} and `{other['name']}`, and no value suits both"
-                yield Fault.at(item, "struct", text, "correct `up_to` or `plus`, or name another counter")
+                yield Fault.at(
+                    item,
+                    "struct",
+                    text,
+                    "correct `up_to` or `plus`, or name another counter",
+                )
                 break
 
 
-def _inner_arrays_before(message: Map, inner: Map, structs: Mapping[str, Map]) -> Iterator[Map]:
-    """Yield the variable-length arrays of structs that a message uses, up to one of them."""
+def _inner_arrays_before(
+    message: Map, inner: Map, structs: Mapping[str, Map]
+) -> Iterator[Map]:
+    """Yield the variable-length arrays of structs that a message uses, up to one of
+    them.
+    """
     for item in variable_fields(message):
-        for other in arrays_of_struct(structs[item["struct"]]) if item.get("struct") in structs else ():
+        for other in (
+            arrays_of_struct(structs[item["struct"]])
+            if item.get("struct") in structs
+            else ()
+        ):
             if other is inner:
                 return
             yield other

@@ -14,8 +14,13 @@ CAN_EXTENDED_FLAG = 1 << 31
 
 
 def number(written: int | Sequence[int]) -> int:
-    """Return an id as a number. In a list of bytes, the first is the most significant."""
-    return written if isinstance(written, int) else int.from_bytes(bytes(written), "big")
+    """Return an id as a number.
+
+    In a list of bytes, the first is the most significant.
+    """
+    return (
+        written if isinstance(written, int) else int.from_bytes(bytes(written), "big")
+    )
 
 
 def size(bits: int) -> int:
@@ -24,10 +29,12 @@ def size(bits: int) -> int:
 
 
 def of_can(identifier: int, is_extended: bool, bits: int) -> int | None:
-    """Return the id of a CAN frame in a node whose ids have ``bits`` bits; None if the node has no frames of this format.
+    """Return the id of a CAN frame in a node whose ids have ``bits`` bits.
 
-    With 32 bits, a node has frames of both formats, and bit 31 marks extended frames. With 11 bits, it has no extended
-    frames. Otherwise the identifier is the id.
+    Returns None if the node has no frames of this format.
+
+    With 32 bits, a node has frames of both formats, and bit 31 marks extended frames.
+    With 11 bits, it has no extended frames. Otherwise the identifier is the id.
     """
     if bits == CAN_BOTH:
         return identifier | CAN_EXTENDED_FLAG if is_extended else identifier

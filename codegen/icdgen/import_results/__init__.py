@@ -1,1 +1,3 @@
-"""Results of an import, of a manual or of definitions: findings, ICD files, and their reports."""
+"""Results of an import, of a manual or of definitions: findings, ICD files, and their
+reports.
+"""

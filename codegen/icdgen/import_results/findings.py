@@ -10,18 +10,31 @@ CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
 
 
 class SourcePlace(NamedTuple):
-    """Place in the source of an import: page of a PDF, line of a text, number of a table."""
+    """Place in the source of an import: page of a PDF, line of a text, number of a
+    table.
+    """
 
     page: int | None = None
     line: int | None = None
     table: int | None = None
-    order: int | None = None  # index of the table in the document, as table numbers may be missing or repeated
+    order: int | None = (
+        # Index of the table in the document, as table numbers may be missing or
+        # repeated.
+        None
+    )
     file: str = ""  # if several files are one source
 
     @property
     def place(self) -> str:
-        """Place such as ``page 12`` or ``types.xml, line 3``; empty for the whole document."""
-        within = f"page {self.page}" if self.page is not None else f"line {self.line}" if self.line is not None else ""
+        """Place such as ``page 12`` or ``types.xml, line 3``.
+
+        Empty for the whole document.
+        """
+        within = (
+            f"page {self.page}"
+            if self.page is not None
+            else f"line {self.line}" if self.line is not None else ""
+        )
         return ", ".join(filter(None, (self.file, within)))
 
 
@@ -38,5 +51,9 @@ class ImportFinding(NamedTuple):
     also: tuple[SourcePlace, ...] = ()  # further places with the same cause
 
     def is_about_table(self, order: int | None) -> bool:
-        """Whether the finding, or another place with the same cause, is in the table with this number (from 0)."""
-        return self.spot.order == order or any(spot.order == order for spot in self.also)
+        """Whether the finding, or another place with the same cause, is in the table
+        with this number (from 0).
+        """
+        return self.spot.order == order or any(
+            spot.order == order for spot in self.also
+        )

@@ -22,7 +22,9 @@ def where(file: str, spot: SourcePlace) -> str:
     return f"{text}, page {spot.page}" if spot.page is not None else text
 
 
-def findings(import_findings: Sequence[ImportFinding], file: str, colour: bool = False) -> list[str]:
+def findings(
+    import_findings: Sequence[ImportFinding], file: str, colour: bool = False
+) -> list[str]:
     """Return a block for each error and warning, then a line for each note."""
     lines: list[str] = []
     notes: list[ImportFinding] = []
@@ -31,16 +33,27 @@ def findings(import_findings: Sequence[ImportFinding], file: str, colour: bool =
             notes.append(import_finding)
             continue
         lines += [
-            _paint(f"{import_finding.severity}[{import_finding.code}]", import_finding.severity, colour)
+            _paint(
+                f"{import_finding.severity}[{import_finding.code}]",
+                import_finding.severity,
+                colour,
+            )
             + f": {printable(import_finding.message)}",
             f"  --> {printable(where(file, import_finding.spot))}",
         ]
         lines += [f"  = rule: {import_finding.place}"] if import_finding.place else []
-        lines += [f"  = help: {printable(import_finding.help)}"] if import_finding.help else []
+        lines += (
+            [f"  = help: {printable(import_finding.help)}"]
+            if import_finding.help
+            else []
+        )
         lines.append("")
     if notes:
         note = _paint("note", "note", colour)
-        lines += [f"{note}[{t.code}] {t.spot.place or 'the document'}: {printable(t.message)}" for t in notes]
+        lines += [
+            f"{note}[{t.code}] {t.spot.place or 'the document'}: {printable(t.message)}"
+            for t in notes
+        ]
         lines.append("")
     return lines
 
@@ -48,7 +61,9 @@ def findings(import_findings: Sequence[ImportFinding], file: str, colour: bool =
 def severities(import_findings: Sequence[ImportFinding]) -> str:
     """Return the numbers of findings, such as ``findings: 2 errors, 1 note``."""
     times = Counter(t.severity for t in import_findings)
-    counts = ", ".join(count(times[s], s) for s in ("error", "warning", "note") if times[s])
+    counts = ", ".join(
+        count(times[s], s) for s in ("error", "warning", "note") if times[s]
+    )
     return f"findings: {counts or 'none'}"
 
 
@@ -67,7 +82,11 @@ def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
             f"{count(len(messages), 'message')} with {count(fields, 'field')}, "
             f"{count(len(enums), 'enumeration')} with {count(members, 'member')}"
         )
-        state = "written" if target.changes is None else "unchanged" if target.same else "updated"
+        state = (
+            "written"
+            if target.changes is None
+            else "unchanged" if target.same else "updated"
+        )
         if dry and state != "unchanged":
             state = f"would be {state}{' with --update' if target.refused else ''}"
         lines.append(f"{target.path}: {state}; {what}")
@@ -77,7 +96,10 @@ def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
 
 def finding_as_json(import_finding: ImportFinding) -> dict[str, Any]:
     """Return a finding without its place."""
-    item: dict[str, Any] = {key: getattr(import_finding, key) for key in ("code", "severity", "message", "help")}
+    item: dict[str, Any] = {
+        key: getattr(import_finding, key)
+        for key in ("code", "severity", "message", "help")
+    }
     return item | ({"rule": str(import_finding.place)} if import_finding.place else {})
 
 

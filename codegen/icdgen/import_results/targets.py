@@ -30,7 +30,11 @@ class Target:
 
 
 def prepare(
-    trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False, given_keys: frozenset[str] = frozenset()
+    trees: dict[str, dict[str, Any]],
+    out: Path,
+    over: bool,
+    dry: bool = False,
+    given_keys: frozenset[str] = frozenset(),
 ) -> list[Target]:
     """Prepare the files.
 
@@ -38,7 +42,9 @@ def prepare(
     Raise `UserError` if a file exists and ``over`` does not allow an update, unless
     ``dry`` is set.
     """
-    existing = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
+    existing = [
+        out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")
+    ]
     if existing and not over and not dry:
         raise UserError(
             f"{', '.join(str(p) for p in existing)} already there",
@@ -55,9 +61,15 @@ def prepare(
         except OSError as error:
             raise unreadable(path, error) from None
         except UnicodeDecodeError:
-            raise UserError(f"{path} is not UTF-8", "save it as UTF-8, or move it away") from None
+            raise UserError(
+                f"{path} is not UTF-8", "save it as UTF-8, or move it away"
+            ) from None
         updated = update.update(old, str(path), tree, given_keys)
-        targets.append(Target(path, updated.text, tree, updated.changes, updated.text == old, not over))
+        targets.append(
+            Target(
+                path, updated.text, tree, updated.changes, updated.text == old, not over
+            )
+        )
     return targets
 
 
@@ -76,12 +88,23 @@ def write(targets: list[Target]) -> None:
     """
     from icdgen.generation.write import replace
 
-    files = {target.path: target.text.encode("utf-8") for target in targets if not target.same}
-    for path in [path.with_name(schema.COPY) for path, data in files.items() if schema.LINE.encode() in data]:
+    files = {
+        target.path: target.text.encode("utf-8")
+        for target in targets
+        if not target.same
+    }
+    for path in [
+        path.with_name(schema.COPY)
+        for path, data in files.items()
+        if schema.LINE.encode() in data
+    ]:
         if not os.path.lexists(path):
             files[path] = schema.PATH.read_bytes()
     for path, data in files.items():
         try:
             replace(Path(os.path.realpath(path)), data)
         except OSError as error:
-            raise UserError(f"cannot write {path}: {error.strerror}", "choose another folder with --out") from None
+            raise UserError(
+                f"cannot write {path}: {error.strerror}",
+                "choose another folder with --out",
+            ) from None

@@ -16,15 +16,41 @@ from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 
 # Keys that users add to the facts of a manual.
 _USER_KEYS = {
-    "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions", "shares_id"),
-    "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
+    "message": (
+        "identifier",
+        "summary",
+        "acknowledge",
+        "hazard",
+        "contains",
+        "assumptions",
+        "shares_id",
+    ),
+    "field": (
+        "identifier",
+        "summary",
+        "special",
+        "min",
+        "max",
+        "above",
+        "below",
+        "bitfields",
+    ),
     "struct": ("identifier", "summary"),
     "enumeration": ("identifier", "summary"),
     "member": ("identifier", "summary"),
     "loggable": (),
 }
-_SECTIONS = (("enums", "enumeration"), ("structs", "struct"), ("messages", "message"), ("loggable", "loggable"))
-_INNER = {"message": ("fields", "field"), "struct": ("fields", "field"), "enumeration": ("members", "member")}
+_SECTIONS = (
+    ("enums", "enumeration"),
+    ("structs", "struct"),
+    ("messages", "message"),
+    ("loggable", "loggable"),
+)
+_INNER = {
+    "message": ("fields", "field"),
+    "struct": ("fields", "field"),
+    "enumeration": ("members", "member"),
+}
 
 
 @dataclass
@@ -35,8 +61,12 @@ class Updated:
     changes: list[str] = field(default_factory=list)
 
 
-def update(text: str, name: str, tree: dict[str, Any], given_keys: frozenset[str] = frozenset()) -> Updated:
-    """Update a text. ``given_keys`` are keys of users that the source gives and therefore replaces.
+def update(
+    text: str, name: str, tree: dict[str, Any], given_keys: frozenset[str] = frozenset()
+) -> Updated:
+    """Update a text.
+
+    ``given_keys`` are keys of users that the source gives and therefore replaces.
 
     Raise `Findings` if the old text is not valid YAML.
     """
@@ -53,8 +83,12 @@ def update(text: str, name: str, tree: dict[str, Any], given_keys: frozenset[str
     return updated
 
 
-def _update_formula_for(root: Branch, words: dict[str, Any] | None, changes: list[str]) -> None:
-    """Update ``formula_for``, the formulas that the manual states for a kind of messages."""
+def _update_formula_for(
+    root: Branch, words: dict[str, Any] | None, changes: list[str]
+) -> None:
+    """Update ``formula_for``, the formulas that the manual states for a kind of
+    messages.
+    """
     old = _child(root, "formula_for")
     before = _plain(old.value) if old is not None else None
     if before == words:
@@ -65,10 +99,14 @@ def _update_formula_for(root: Branch, words: dict[str, Any] | None, changes: lis
     if old is not None:
         root.children.remove(old)
     if words:
-        root.children.append(Child(Text("formula_for", "formula_for"), emit.branch(words)))
+        root.children.append(
+            Child(Text("formula_for", "formula_for"), emit.branch(words))
+        )
 
 
-def _replace_section(root: Branch, key: str, value: dict[str, Any], changes: list[str]) -> None:
+def _replace_section(
+    root: Branch, key: str, value: dict[str, Any], changes: list[str]
+) -> None:
     """Replace a section that the source gives completely."""
     old = _child(root, key)
     if old is not None and _plain(old.value) == value:
@@ -81,7 +119,12 @@ def _replace_section(root: Branch, key: str, value: dict[str, Any], changes: lis
 
 
 def _update_section(
-    root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str], given_keys: frozenset[str]
+    root: Branch,
+    key: str,
+    kind: str,
+    items: list[dict[str, Any]],
+    changes: list[str],
+    given_keys: frozenset[str],
 ) -> None:
     """Update the items of a section."""
     old = _child(root, key)
@@ -93,13 +136,20 @@ def _update_section(
         return
     if not isinstance(old.value, Branch):
         old.value = Branch(False, False, 0)
-    old.value.children = _merge_items(old.value.children, items, kind, "", changes, given_keys)
+    old.value.children = _merge_items(
+        old.value.children, items, kind, "", changes, given_keys
+    )
     if not old.value.children:
         root.children.remove(old)
 
 
 def _merge_items(
-    old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str], given_keys: frozenset[str]
+    old: list[Child],
+    items: list[dict[str, Any]],
+    kind: str,
+    where: str,
+    changes: list[str],
+    given_keys: frozenset[str],
 ) -> list[Child]:
     """Return the items with the users' additions to the old ones.
 
@@ -117,20 +167,35 @@ def _merge_items(
             continue
         place = old.index(before)
         placed[index] = place
-        placed_items.append((place, _merge(before, item, kind, where, changes, given_keys)))
+        placed_items.append(
+            (place, _merge(before, item, kind, where, changes, given_keys))
+        )
     matched_ids = {id(child) for child in pairs.values()}
     for child in old:
         if id(child) not in matched_ids:
             changes.append(f"- {where}{kind} {_title(kind, _plain(child.value))}")
-    # The order of the new items is used if it does not contradict the order of the old ones.
+    # The order of the new items is used if it does not contradict the order of the old
+    # ones.
     ascending = all(a < b for a, b in pairwise(placed.values()))
-    return [child for _, child in (placed_items if ascending else sorted(placed_items, key=lambda m: m[0]))]
+    return [
+        child
+        for _, child in (
+            placed_items if ascending else sorted(placed_items, key=lambda m: m[0])
+        )
+    ]
 
 
 def _merge(
-    old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str], given_keys: frozenset[str]
+    old: Child,
+    item: dict[str, Any],
+    kind: str,
+    where: str,
+    changes: list[str],
+    given_keys: frozenset[str],
 ) -> Child:
-    """Return an item with the vendor's keys from ``item``, and users' keys and comments of ``old``."""
+    """Return an item with the vendor's keys from ``item``, and users' keys and comments
+    of ``old``.
+    """
     assert isinstance(old.value, Branch)
     title = _title(kind, item)
     inner = _INNER.get(kind)
@@ -140,12 +205,25 @@ def _merge(
         if key in _USER_KEYS[kind] or key in item:
             result.children.append(child)
         else:
-            changes.append(f"~ {where}{kind} {title}: {key} {_value_text(_plain(child.value))} -> (absent)")
+            changes.append(
+                f"~ {where}{kind} {title}: {key} {_value_text(_plain(child.value))} -> (absent)"
+            )
     for key, value in item.items():
         child: Child | None = before.get(key)  # type: ignore[no-redef]
         if inner and key == inner[0]:
-            children = child.value.children if child is not None and isinstance(child.value, Branch) else []
-            lines = _merge_items(children, value, inner[1], f"{where}{kind} {title}: ", changes, given_keys)
+            children = (
+                child.value.children
+                if child is not None and isinstance(child.value, Branch)
+                else []
+            )
+            lines = _merge_items(
+                children,
+                value,
+                inner[1],
+                f"{where}{kind} {title}: ",
+                changes,
+                given_keys,
+            )
             if child is None:
                 child = Child(Text(key, key))
                 result.children.append(child)
@@ -153,20 +231,30 @@ def _merge(
         elif child is None:
             result.children.append(Child(Text(key, key), emit.node(value)))
             if key not in ("source", "summary"):
-                changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_value_text(value)}")
+                changes.append(
+                    f"~ {where}{kind} {title}: {key} (absent) -> {_value_text(value)}"
+                )
         elif key in _USER_KEYS[kind] and key not in given_keys:
             continue  # the user's value has precedence
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
-        elif key == "also" and [s.get("table") for s in _plain(child.value)] == [s.get("table") for s in value]:
-            child.value = emit.branch([{**a, **b} for a, b in zip(_plain(child.value), value, strict=True)])
+        elif key == "also" and [s.get("table") for s in _plain(child.value)] == [
+            s.get("table") for s in value
+        ]:
+            child.value = emit.branch(
+                [{**a, **b} for a, b in zip(_plain(child.value), value, strict=True)]
+            )
         elif _plain(child.value) != value:
-            changes.append(f"~ {where}{kind} {title}: {key} {_value_text(_plain(child.value))} -> {_value_text(value)}")
+            changes.append(
+                f"~ {where}{kind} {title}: {key} {_value_text(_plain(child.value))} -> {_value_text(value)}"
+            )
             child.value = emit.node(value)
     return Child(old.key, result, old.before, old.trailing)
 
 
-def _matches(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[int, Child]:
+def _matches(
+    old: list[Child], items: list[dict[str, Any]], kind: str
+) -> dict[int, Child]:
     """Return the old entry for the index of each new item that has one.
 
     Each old entry is used once, with the most certain match.
@@ -195,15 +283,24 @@ def _ids(item: dict[str, Any]) -> object:
 
 _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
     "message": [lambda i: (i.get("name"), _ids(i)), lambda i: i.get("name"), _ids],
-    "field": [lambda i: (i.get("name"), i.get("at")), lambda i: i.get("name"), lambda i: i.get("at")],
+    "field": [
+        lambda i: (i.get("name"), i.get("at")),
+        lambda i: i.get("name"),
+        lambda i: i.get("at"),
+    ],
     "struct": [lambda i: i.get("name")],
-    "enumeration": [lambda i: i.get("name"), lambda i: (i.get("source") or {}).get("table")],
+    "enumeration": [
+        lambda i: i.get("name"),
+        lambda i: (i.get("source") or {}).get("table"),
+    ],
     "member": [lambda i: (i.get("value"), i.get("name")), lambda i: i.get("value")],
     "loggable": [lambda i: i.get("bit")],
 }
 
 
-def _add_missing(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
+def _add_missing(
+    root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]
+) -> None:
     """Add entries that are missing."""
     child = _child(root, key)
     children = child.value.children if child and isinstance(child.value, Branch) else []

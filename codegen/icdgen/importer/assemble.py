@@ -1,4 +1,6 @@
-"""Build one ICD tree per node from the results of all tables, and report contradictions between tables."""
+"""Build one ICD tree per node from the results of all tables, and report contradictions
+between tables.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +12,21 @@ from typing import Any
 from icdgen.import_results.findings import ImportFinding
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document
-from icdgen.importer.model import Found, NodeParts, ReadEnum, ReadList, ReadMessage, Survey
+from icdgen.importer.model import (
+    Found,
+    NodeParts,
+    ReadEnum,
+    ReadList,
+    ReadMessage,
+    Survey,
+)
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, squeezed, table_name
 
 
-def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict[str, Any]]:
+def assemble(
+    document: Document, survey: Survey, profile: Profile, prose: bool = False
+) -> dict[str, dict[str, Any]]:
     """Return the trees by node name. Findings are added to ``survey.import_findings``.
 
     ``prose``: keep descriptions as summaries.
@@ -30,18 +41,28 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
     for node in nodes:
         references.enums(node, nodes, everything, survey.import_findings)
     for node in nodes:
-        references.complete(node, icd_trees.head(node, document, profile), survey.import_findings)
+        references.complete(
+            node, icd_trees.head(node, document, profile), survey.import_findings
+        )
     return {
-        node_parts.name: icd_trees.tree(node_parts, document, profile, prose, survey.import_findings)
+        node_parts.name: icd_trees.tree(
+            node_parts, document, profile, prose, survey.import_findings
+        )
         for node_parts in nodes
         if node_parts.holds
     }
 
 
-def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list[NodeParts]:
+def _parts_by_node(
+    document: Document, survey: Survey, profile: Profile
+) -> list[NodeParts]:
     """Each thing to its node."""
     keys = _keys(survey, profile)
-    used = [(key, result.thing) for key, result in zip(keys, survey.found, strict=True) if result.thing is not None]
+    used = [
+        (key, result.thing)
+        for key, result in zip(keys, survey.found, strict=True)
+        if result.thing is not None
+    ]
     nodes = {key: _node(key, profile) for key, _ in used if key}
     if used and not nodes:
         nodes = {"": _node(_document_name(document), profile)}
@@ -67,9 +88,12 @@ def _keys(survey: Survey, profile: Profile) -> list[str]:
             current = stated
         keys.append(current)
     keys = [_canonical(key, profile) for key in keys]
-    named = {id(result.table): key for result, key in zip(survey.found, keys, strict=True)}
+    named = {
+        id(result.table): key for result, key in zip(survey.found, keys, strict=True)
+    }
     return [
-        key or named.get(twins.get(id(result.table), 0), "") for result, key in zip(survey.found, keys, strict=True)
+        key or named.get(twins.get(id(result.table), 0), "")
+        for result, key in zip(survey.found, keys, strict=True)
     ]
 
 
@@ -91,7 +115,9 @@ def _by_profile(result: Found, profile: Profile) -> str | None:
     for words in profile.nodes:
         if words.tables is not None or words.group is not None:
             in_group = words.group is None or words.group == result.table.run
-            in_tables = words.tables is None or (number is not None and words.tables[0] <= number <= words.tables[1])
+            in_tables = words.tables is None or (
+                number is not None and words.tables[0] <= number <= words.tables[1]
+            )
             if in_group and in_tables:
                 return words.name
         elif not words.match:
@@ -105,7 +131,14 @@ def _by_profile(result: Found, profile: Profile) -> str | None:
 
 def _canonical(key: str, profile: Profile) -> str:
     """Return the name in the profile of a node that the manual calls ``key``."""
-    return next((w.name for w in profile.nodes if w.name == key or any(_says(key, m) for m in w.match)), key)
+    return next(
+        (
+            w.name
+            for w in profile.nodes
+            if w.name == key or any(_says(key, m) for m in w.match)
+        ),
+        key,
+    )
 
 
 def _says(text: str, phrase: str) -> bool:
@@ -117,7 +150,13 @@ def _node(key: str, profile: Profile) -> NodeParts:
     words = next((w for w in profile.nodes if w.name == key), None)
     if words is not None:
         shared = any(_says(key, s) for s in profile.data["shared"])
-        return NodeParts(words.name, words.head.get("title", key), shared, words, include=list(words.include))
+        return NodeParts(
+            words.name,
+            words.head.get("title", key),
+            shared,
+            words,
+            include=list(words.include),
+        )
     shared = any(_says(key, word) for word in profile.data["shared"])
     name = re.sub(r"[^a-z0-9]", "", key.casefold())[:40]
     if not name or not name[0].isalpha():
@@ -135,13 +174,17 @@ def _includes(nodes: list[NodeParts]) -> None:
     shared = [node.name for node in nodes if node.shared]
     for node in nodes:
         if not node.shared:
-            node.include += [f"{name}.yaml" for name in shared if f"{name}.yaml" not in node.include]
+            node.include += [
+                f"{name}.yaml" for name in shared if f"{name}.yaml" not in node.include
+            ]
 
 
 def _merge_enums(node: NodeParts, survey: Survey) -> None:
-    """Merge tables that print the same enumeration, and number enumerations that have only the name in common.
+    """Merge tables that print the same enumeration, and number enumerations that have
+    only the name in common.
 
-    A table to which a field refers becomes the source of the merged enumeration."""
+    A table to which a field refers becomes the source of the merged enumeration.
+    """
     pointed = {
         (message.table.run, field.described.enum_table)
         for _, message in survey.of(ReadMessage)
@@ -155,8 +198,13 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
         if first is None:
             by_name[duplicate.name] = duplicate
             continue
-        if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in duplicate.members]:
-            is_meant, first_is = ((enum.table.run, enum.table.label) in pointed for enum in (duplicate, first))
+        if [(m.value, m.name) for m in first.members] == [
+            (m.value, m.name) for m in duplicate.members
+        ]:
+            is_meant, first_is = (
+                (enum.table.run, enum.table.label) in pointed
+                for enum in (duplicate, first)
+            )
             if is_meant and not first_is:
                 duplicate.also = [first.table, *first.also]
                 by_name[duplicate.name] = duplicate

@@ -17,18 +17,25 @@ from icdgen.wording import count
 
 def report(result: Result, colour: bool = False) -> str:
     """Print the findings and the summary of an import."""
-    return "\n".join(shared.findings(result.import_findings, result.document.file, colour) + summary(result))
+    return "\n".join(
+        shared.findings(result.import_findings, result.document.file, colour)
+        + summary(result)
+    )
 
 
 def summary(result: Result) -> list[str]:
     """Return the numbers of tables by kind and certainty, then a line for each file."""
     kinds = Counter(result_of_table.what for result_of_table in result.survey.found)
     order = ["message", "enumeration", "list", "loggable frames", BACKGROUND, UNKNOWN]
-    parts = [f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]]
+    parts = [
+        f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]
+    ]
     pages = f"{count(result.document.pages, 'page')}, " if result.document.pages else ""
     sure = result.sureness()
     return [
-        f"{pages}{count(len(result.tables), 'table')}" + (": " if parts else "") + ", ".join(parts),
+        f"{pages}{count(len(result.tables), 'table')}"
+        + (": " if parts else "")
+        + ", ".join(parts),
         "read: "
         + (
             ", ".join(
@@ -49,7 +56,10 @@ def _many(kind: str, number: int) -> str:
 
 
 def as_json(result: Result, checked: Sequence[Finding]) -> str:
-    """Tables and findings for programs; ``checked`` are the findings of `icdgen check` for the files."""
+    """Tables and findings for programs.
+
+    ``checked`` are the findings of `icdgen check` for the files.
+    """
     entries = [
         {
             "table": _table(entry.table.label),
@@ -62,7 +72,12 @@ def as_json(result: Result, checked: Sequence[Finding]) -> str:
         for entry in result.survey.found
     ]
     import_findings = [
-        {**shared.finding_as_json(t), "table": _table(t.spot.table), "page": t.spot.page, "line": t.spot.line}
+        {
+            **shared.finding_as_json(t),
+            "table": _table(t.spot.table),
+            "page": t.spot.page,
+            "line": t.spot.line,
+        }
         for t in result.import_findings
     ]
     written = shared.files_as_json(result.targets)
@@ -85,5 +100,12 @@ def refused_as_json(manual: str, findings: list[Finding]) -> str:
          "table": None, "page": None, "line": f.place.line}
         for f in findings
     ]  # fmt: skip
-    report = {"manual": manual, "pages": None, "tables": [], "findings": import_findings, "files": [], "check": []}
+    report = {
+        "manual": manual,
+        "pages": None,
+        "tables": [],
+        "findings": import_findings,
+        "files": [],
+        "check": [],
+    }
     return json.dumps(report, indent=2, ensure_ascii=False)

@@ -15,7 +15,11 @@ _FORMULA_WORD = re.compile(r"\bformula\b", re.I)
 
 @dataclass(slots=True)
 class Described:
-    """Facts of a description. ``problems`` are texts for findings; ``contradiction`` is set if words and formula disagree."""
+    """Facts of a description.
+
+    ``problems`` are texts for findings; ``contradiction`` is set if words and formula
+    disagree.
+    """
 
     unit: str = ""
     formula: str = ""
@@ -46,7 +50,9 @@ def names(profile: Profile) -> formulas.Words:
     return formulas.words(tuple(variables["raw"]), tuple(variables["physical"]))
 
 
-def _formula(text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]) -> None:
+def _formula(
+    text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]
+) -> None:
     formula = formulas.find(text, names(profile))
     announced = ""
     for what, value in (("gives_physical", "physical"), ("gives_raw", "raw")):
@@ -55,7 +61,9 @@ def _formula(text: str, profile: Profile, described: Described, spans: list[tupl
                 announced = value
                 spans.append(match.span())
     if formula is None:
-        if formulas.mentions(text, names(profile)) or (announced and _FORMULA_WORD.search(text)):
+        if formulas.mentions(text, names(profile)) or (
+            announced and _FORMULA_WORD.search(text)
+        ):
             described.problems.append("a formula is there and cannot be read")
         return
     spans.append((formula.start, formula.end))
@@ -64,22 +72,32 @@ def _formula(text: str, profile: Profile, described: Described, spans: list[tupl
         described.formula_for = announced
 
 
-def _unit(text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]) -> None:
+def _unit(
+    text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]
+) -> None:
     units = [described.unit] if described.unit else []
     for what in ("unit", "formula_unit"):
         for pattern in profile.phrases[what]:
             match = pattern.search(text)
-            if match and not any(a < match.end() and match.start() < b and what == "unit" for a, b in spans):
+            if match and not any(
+                a < match.end() and match.start() < b and what == "unit"
+                for a, b in spans
+            ):
                 units.append(tidy_unit(match["unit"] or match["bare"]))
                 spans.append(match.span())
                 break
     if units:
         described.unit = units[0]
         if len(set(units)) > 1:
-            described.problems.append("it gives two units: " + " and ".join(f"`{u}`" for u in dict.fromkeys(units)))
+            described.problems.append(
+                "it gives two units: "
+                + " and ".join(f"`{u}`" for u in dict.fromkeys(units))
+            )
 
 
-def _enumeration(text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]) -> None:
+def _enumeration(
+    text: str, profile: Profile, described: Described, spans: list[tuple[int, int]]
+) -> None:
     for pattern in profile.phrases["enumeration"]:
         match = pattern.search(text)
         if not match:
@@ -100,20 +118,32 @@ def _caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
     """A table that the text names, whatever the words around it."""
     words = "|".join(re.escape(word) for word in profile.data["captions"])
     match = re.search(
-        rf"\b(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)(?:\s*[:–—-]\s*(?P<title>[^.;()]+))?", text, re.I
+        rf"\b(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)(?:\s*[:–—-]\s*(?P<title>[^.;()]+))?",
+        text,
+        re.I,
     )
-    return (table_number(match["number"]), (match["title"] or "").strip()) if match else None
+    return (
+        (table_number(match["number"]), (match["title"] or "").strip())
+        if match
+        else None
+    )
 
 
 def _const(text: str, profile: Profile, described: Described) -> None:
     for pattern in profile.phrases["const"]:
         match = pattern.search(text)
-        if not match or re.match(r"\s*(?:,?\s*(?:or|to|and|if|for|when|-|–)\b|[.][0-9])", text[match.end() :], re.I):
+        if not match or re.match(
+            r"\s*(?:,?\s*(?:or|to|and|if|for|when|-|–)\b|[.][0-9])",
+            text[match.end() :],
+            re.I,
+        ):
             continue
         numbers = re.findall(r"0x[0-9a-f]+|[0-9]+", match["number"], re.I)
         values = {int(n, 16) if "x" in n.lower() else int(n) for n in numbers}
         if len(values) > 1:
-            described.problems.append(f"it gives the value in two ways that differ: {match['number']}")
+            described.problems.append(
+                f"it gives the value in two ways that differ: {match['number']}"
+            )
             return
         described.const = next((n for n in numbers if "x" in n.lower()), numbers[0])
         return

@@ -1,7 +1,8 @@
 """Headings, text and tables of a document in reading order, whatever the source.
 
-Rules (`rules/`) give tables a meaning. A table keeps what rules need: the line breaks in cells, the spans of cells in both
-directions, the caption, the chain of headings above the table, and all text since the table before it.
+Rules (`rules/`) give tables a meaning. A table keeps what rules need: the line breaks
+in cells, the spans of cells in both directions, the caption, the chain of headings
+above the table, and all text since the table before it.
 """
 
 from __future__ import annotations
@@ -33,7 +34,10 @@ class Box(NamedTuple):
 
 @dataclass(slots=True)
 class Cell:
-    """A cell; ``text`` has the line breaks of the source, ``columns`` and ``rows`` are its spans."""
+    """A cell.
+
+    ``text`` has the line breaks of the source, ``columns`` and ``rows`` are its spans.
+    """
 
     text: str
     columns: int = 1
@@ -42,7 +46,10 @@ class Cell:
 
 @dataclass(slots=True)
 class SourceRow:
-    """Cells that begin in a row, from left to right. Cells of rows above that span this row are not repeated."""
+    """Cells that begin in a row, from left to right.
+
+    Cells of rows above that span this row are not repeated.
+    """
 
     cells: list[Cell]
     page: int | None = None
@@ -55,7 +62,9 @@ class SourceRow:
 
 
 class Slot(NamedTuple):
-    """One row and column of a table: the cell over it, the first column of that cell, and whether it begins here."""
+    """One row and column of a table: the cell over it, the first column of that cell,
+    and whether it begins here.
+    """
 
     cell: Cell
     column: int
@@ -63,7 +72,10 @@ class Slot(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Text of the cell in its first column, and in all rows that it spans; otherwise empty."""
+        """Text of the cell in its first column, and in all rows that it spans.
+
+        Otherwise empty.
+        """
         return self.cell.text if self.is_origin else ""
 
 
@@ -71,9 +83,10 @@ class Slot(NamedTuple):
 class SourceTable:
     """A table with all its continuations on later pages.
 
-    ``number`` is its place in the document, counted from 1. ``headings`` is the chain of section headings, the outermost
-    first. ``before`` are the texts since the table before, in reading order, headings among them; ``after`` those behind the
-    last table of the document.
+    ``number`` is its place in the document, counted from 1. ``headings`` is the chain
+    of section headings, the outermost first. ``before`` are the texts since the table
+    before, in reading order, headings among them; ``after`` those behind the last table
+    of the document.
     """
 
     number: int = 0
@@ -85,12 +98,20 @@ class SourceTable:
     after: list[str] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
     sheet: str = ""  # of a spreadsheet
-    run: int = 1  # which run of ascending labels it is in: parts of a document may number their tables anew
+    run: int = (
+        # Which run of ascending labels it is in: parts of a document may number their
+        # tables anew.
+        1
+    )
 
     @property
     def page(self) -> int | None:
         """First page of the table."""
-        return self.boxes[0].page if self.boxes else next((row.page for row in self.rows if row.page), None)
+        return (
+            self.boxes[0].page
+            if self.boxes
+            else next((row.page for row in self.rows if row.page), None)
+        )
 
     @property
     def line(self) -> int | None:
@@ -118,7 +139,9 @@ class SourceTable:
         return max((len(row) for row in self.grid()), default=0)
 
     def grid(self) -> list[list[Slot]]:
-        """Every row with a slot for each column, cells that span rows or columns in all of their slots."""
+        """Every row with a slot for each column, cells that span rows or columns in all
+        of their slots.
+        """
         grid: list[list[Slot]] = []
         reaching: dict[int, tuple[int, Cell, int]] = (
             {}
@@ -141,13 +164,19 @@ class SourceTable:
                         reaching[column + offset] = cell.rows - 1, cell, column
                 column += cell.columns
             width = max(slots, default=-1) + 1
-            grid.append([slots.get(column) or Slot(Cell(""), column, True) for column in range(width)])
+            grid.append(
+                [
+                    slots.get(column) or Slot(Cell(""), column, True)
+                    for column in range(width)
+                ]
+            )
         return grid
 
     @property
     def kind(self) -> tuple[str, ...]:
-        """Key of all tables with the same headings: the first row of several filled cells, without case and
-        punctuation."""
+        """Key of all tables with the same headings: the first row of several filled
+        cells, without case and punctuation.
+        """
         return tuple(squeezed(text) for text in self.titles)
 
     @property
@@ -168,7 +197,9 @@ class Heading:
     text: str
     page: int | None = None
     line: int | None = None
-    size: float = 0.0  # of its type; larger headings hold smaller ones that have no number
+    size: float = (
+        0.0  # of its type; larger headings hold smaller ones that have no number
+    )
 
     def contains(self, other: Heading) -> bool:
         """Return whether the section continues at another heading.

@@ -8,11 +8,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 _PAGE = Path(__file__).with_name("findings.md")
-_SECTION = re.compile(r"^## (IMP[0-9]{3}): (.+) \((error|warning|note)\)\n", re.MULTILINE)
+_SECTION = re.compile(
+    r"^## (IMP[0-9]{3}): (.+) \((error|warning|note)\)\n", re.MULTILINE
+)
 
 
 class Page(NamedTuple):
-    """``text`` is the reason, and below it an example as an indented block, in Markdown."""
+    """``text`` is the reason, and below it an example as an indented block, in
+    Markdown.
+    """
 
     title: str
     severity: str
@@ -24,7 +28,10 @@ def pages() -> dict[str, Page]:
     """Return the pages by code, in ascending order."""
     _, *parts = _SECTION.split(_PAGE.read_text(encoding="utf-8"))
     sections = zip(parts[0::4], parts[1::4], parts[2::4], parts[3::4], strict=True)
-    return {code: Page(title, severity, text.strip("\n")) for code, title, severity, text in sections}
+    return {
+        code: Page(title, severity, text.strip("\n"))
+        for code, title, severity, text in sections
+    }
 
 
 def explain(code: str) -> str:

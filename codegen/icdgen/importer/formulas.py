@@ -1,4 +1,6 @@
-"""Formulas in running text: ``(formatted value) [deg] = RAWVAL*0.01`` and its variants, in both directions."""
+"""Formulas in running text: ``(formatted value) [deg] = RAWVAL*0.01`` and its variants,
+in both directions.
+"""
 
 from __future__ import annotations
 
@@ -10,17 +12,36 @@ from icdgen.icd import formula as formulas
 from icdgen.importer.words import plain, tidy_unit
 
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?|\.[0-9]+")
-_TIMES = {"×": "*", "·": "*", "∙": "*", "⋅": "*", "∗": "*", "x": "*", "X": "*", "÷": "/", "–": "-", "−": "-", ":": "/"}
-# A colon divides in `RAWVAL:10` and `RAWVAL : 10`. In `RAWVAL: 10 means off` it ends the formula: blanks tell them apart.
-_OPERATOR = re.compile(r"[*/×·∙⋅∗÷+−–-]|[xX](?=\s*[0-9(.])|:(?=[0-9(.])|(?<=\s):(?=\s*[0-9(.])")
+_TIMES = {
+    "×": "*",
+    "·": "*",
+    "∙": "*",
+    "⋅": "*",
+    "∗": "*",
+    "x": "*",
+    "X": "*",
+    "÷": "/",
+    "–": "-",
+    "−": "-",
+    ":": "/",
+}
+# A colon divides in `RAWVAL:10` and `RAWVAL : 10`. In `RAWVAL: 10 means off` it ends
+# the formula: blanks tell them apart.
+_OPERATOR = re.compile(
+    r"[*/×·∙⋅∗÷+−–-]|[xX](?=\s*[0-9(.])|:(?=[0-9(.])|(?<=\s):(?=\s*[0-9(.])"
+)
 
 
-# What shows that an expression goes on in a way that is not understood: a power, a decimal comma, a name.
+# What shows that an expression goes on in a way that is not understood: a power, a
+# decimal comma, a name.
 _GOES_ON = re.compile(r"\s*[*/×·÷^²³]|\s*:\s*[0-9(.]|,[0-9]|[A-Za-z_%]|\s*[+]")
 
 
 class Read(NamedTuple):
-    """A formula in the notation of the ICD. ``gives`` is its result, "raw" or "physical"."""
+    """A formula in the notation of the ICD.
+
+    ``gives`` is its result, "raw" or "physical".
+    """
 
     formula: str
     unit: str
@@ -42,8 +63,14 @@ def words(raw: tuple[str, ...], physical: tuple[str, ...]) -> Words:
 
 
 def _names(names: tuple[str, ...]) -> re.Pattern[str]:
-    parts = [re.escape(name).replace(r"\ ", r"\s+") for name in sorted(names, key=len, reverse=True)]
-    return re.compile(rf"(?:\(\s*(?:{'|'.join(parts)})\s*\)|(?<![A-Za-z])(?:{'|'.join(parts)})(?![A-Za-z]))", re.I)
+    parts = [
+        re.escape(name).replace(r"\ ", r"\s+")
+        for name in sorted(names, key=len, reverse=True)
+    ]
+    return re.compile(
+        rf"(?:\(\s*(?:{'|'.join(parts)})\s*\)|(?<![A-Za-z])(?:{'|'.join(parts)})(?![A-Za-z]))",
+        re.I,
+    )
 
 
 def find(text: str, names: Words) -> Read | None:
@@ -54,8 +81,12 @@ def find(text: str, names: Words) -> Read | None:
             continue
         gives, unit, start = left
         variable = names.raw if gives == "physical" else names.physical
-        expression, end = _expression(text, sign.end(), variable, "raw" if gives == "physical" else "value")
-        if expression and _is_good(candidate := expression if gives == "physical" else f"raw = {expression}"):
+        expression, end = _expression(
+            text, sign.end(), variable, "raw" if gives == "physical" else "value"
+        )
+        if expression and _is_good(
+            candidate := expression if gives == "physical" else f"raw = {expression}"
+        ):
             return Read(candidate, unit, gives, start, end)
     return None
 
@@ -76,8 +107,12 @@ _FACTOR = re.compile(
 
 
 def per_step(text: str, names: Words | None) -> Scaled | None:
-    """Read a cell of a column of formulas or factors: an expression of the raw value, a factor (``0.01``, ``1e-7``, ``2^-20``,
-    ``1/256``), or a factor with its unit (``10 mV/LSB``). None for any other text."""
+    """Read a cell of a column of formulas or factors: an expression of the raw value, a
+    factor (``0.01``, ``1e-7``, ``2^-20``, ``1/256``), or a factor with its unit (``10
+    mV/LSB``).
+
+    None for any other text.
+    """
     if names is not None:
         announced = find(text, names)
         if announced:
@@ -89,8 +124,14 @@ def per_step(text: str, names: Words | None) -> Scaled | None:
     if match is None:
         return None
     if match["power"]:
-        exponent = int(re.sub(r"[−–]", "-", match["power"].split("^")[1].replace(" ", "")))
-        formula = f"raw/{2**-exponent}" if exponent < 0 else f"raw*{2**exponent}" if exponent else ""
+        exponent = int(
+            re.sub(r"[−–]", "-", match["power"].split("^")[1].replace(" ", ""))
+        )
+        formula = (
+            f"raw/{2**-exponent}"
+            if exponent < 0
+            else f"raw*{2**exponent}" if exponent else ""
+        )
     elif match["over"]:
         formula = f"raw/{match['over'].split('/')[1].strip()}"
     else:
@@ -107,7 +148,9 @@ def mentions(text: str, names: Words) -> bool:
 
 
 def _left(before: str, names: Words) -> tuple[str, str, int] | None:
-    """Read the left side of an equation: its value, the unit, and the position at which it begins."""
+    """Read the left side of an equation: its value, the unit, and the position at which
+    it begins.
+    """
     bare = before.rstrip()
     unit = ""
     bracket = re.search(r"\[\s*([^\[\]]*?)\s*\]\Z", bare)
@@ -122,8 +165,12 @@ def _left(before: str, names: Words) -> tuple[str, str, int] | None:
     return None
 
 
-def _expression(text: str, at: int, variable: re.Pattern[str], name: str) -> tuple[str, int]:
-    """Return the longest expression from ``at`` on in the notation of the ICD, and its end."""
+def _expression(
+    text: str, at: int, variable: re.Pattern[str], name: str
+) -> tuple[str, int]:
+    """Return the longest expression from ``at`` on in the notation of the ICD, and its
+    end.
+    """
     tokens: list[str] = []
     good, end = 0, at
     depth, operand, seen = 0, True, False
@@ -138,7 +185,9 @@ def _expression(text: str, at: int, variable: re.Pattern[str], name: str) -> tup
                 is_name = variable.match(text, at) is not None
                 seen = seen or is_name
                 number = match.group()
-                tokens.append(name if is_name else "0" + number if number[0] == "." else number)
+                tokens.append(
+                    name if is_name else "0" + number if number[0] == "." else number
+                )
                 at, operand = match.end(), False
             elif text[at] == "(":
                 tokens.append("(")

@@ -1,4 +1,6 @@
-"""Report of an import as a web page: the picture of each doubtful table next to its fields."""
+"""Report of an import as a web page: the picture of each doubtful table next to its
+fields.
+"""
 
 from __future__ import annotations
 
@@ -42,10 +44,16 @@ def report(result: Result) -> str:
     name = html.escape(result.document.file)
     about: dict[int | None, list[ImportFinding]] = {}
     for import_finding in result.import_findings:
-        for order in dict.fromkeys(spot.order for spot in (import_finding.spot, *import_finding.also)):
+        for order in dict.fromkeys(
+            spot.order for spot in (import_finding.spot, *import_finding.also)
+        ):
             about.setdefault(order, []).append(import_finding)
-    doubtful = [entry for entry in result.survey.found if result.sure_of(entry.table) != CERTAIN]
-    certain = [entry for entry in result.survey.found if result.sure_of(entry.table) == CERTAIN]
+    doubtful = [
+        entry for entry in result.survey.found if result.sure_of(entry.table) != CERTAIN
+    ]
+    certain = [
+        entry for entry in result.survey.found if result.sure_of(entry.table) == CERTAIN
+    ]
     parts = [
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>Import of {name}</title>',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -62,10 +70,15 @@ def report(result: Result) -> str:
     doubtful.sort(key=lambda entry: _stake(about.get(entry.table.spot.order, [])))
     with _Pictures(result) as pictures:
         for entry in doubtful:
-            parts += _table(entry, result, about.get(entry.table.spot.order, []), pictures)
+            parts += _table(
+                entry, result, about.get(entry.table.spot.order, []), pictures
+            )
     noted = [t for entry in certain for t in about.get(entry.table.spot.order, [])]
     if noted:
-        parts += ["<h2>Notes about tables that were read without doubt</h2>", _list(noted)]
+        parts += [
+            "<h2>Notes about tables that were read without doubt</h2>",
+            _list(noted),
+        ]
     return "\n".join(parts) + "\n</body></html>\n"
 
 
@@ -88,14 +101,23 @@ def _list(import_findings: list[ImportFinding], linked: bool = False) -> str:
     return "<ul>" + "\n".join(items) + "</ul>"
 
 
-def _table(entry: Found, result: Result, import_findings: list[ImportFinding], pictures: _Pictures) -> Iterator[str]:
+def _table(
+    entry: Found,
+    result: Result,
+    import_findings: list[ImportFinding],
+    pictures: _Pictures,
+) -> Iterator[str]:
     table = entry.table
     title = html.escape(table.title[:1].upper() + table.title[1:])
     yield f'<h2 id="table-{table.spot.order}">{title} <span class="sure">{entry.what}, {result.sure_of(table)}</span></h2>'
     yield _list(import_findings)
     images = "".join(pictures.of(table))
     read = _as_read(table)
-    yield f'<div class="pair"><div>{images}</div><div>{read}</div></div>' if images else f"<div>{read}</div>"
+    yield (
+        f'<div class="pair"><div>{images}</div><div>{read}</div></div>'
+        if images
+        else f"<div>{read}</div>"
+    )
 
 
 def _as_read(table: SourceTable) -> str:
@@ -104,7 +126,11 @@ def _as_read(table: SourceTable) -> str:
 
 
 def _cell(cell: Cell) -> str:
-    spans = "".join(f' {key}="{n}"' for key, n in (("colspan", cell.columns), ("rowspan", cell.rows)) if n > 1)
+    spans = "".join(
+        f' {key}="{n}"'
+        for key, n in (("colspan", cell.columns), ("rowspan", cell.rows))
+        if n > 1
+    )
     return f"<td{spans}>{html.escape(cell.text)}</td>"
 
 
@@ -121,7 +147,9 @@ class _Pictures:
 
             try:
                 self.file = pypdfium2.PdfDocument(self.result.document.file)
-            except pypdfium2.PdfiumError:  # it is stricter with broken files than the reader of text
+            except (
+                pypdfium2.PdfiumError
+            ):  # it is stricter with broken files than the reader of text
                 self.file = None
         return self
 
@@ -139,16 +167,27 @@ class _Pictures:
             if crop is None:
                 yield f"<p>page {box.page}: the table lies outside the visible page</p>"
                 continue
-            scale = min(RESOLUTION / 72, (MOST_PIXELS / (box.width * box.height + 1)) ** 0.5)
-            image = page.render(scale=scale, crop=crop).to_pil().convert("P", palette=1, colors=32)
+            scale = min(
+                RESOLUTION / 72, (MOST_PIXELS / (box.width * box.height + 1)) ** 0.5
+            )
+            image = (
+                page.render(scale=scale, crop=crop)
+                .to_pil()
+                .convert("P", palette=1, colors=32)
+            )
             data = io.BytesIO()
             image.save(data, "PNG", optimize=True)
             encoded = base64.b64encode(data.getvalue()).decode("ascii")
             yield f'<img alt="page {box.page}" title="page {box.page}" src="data:image/png;base64,{encoded}">'
 
 
-def _crop(box: Box, width: float, height: float) -> tuple[float, float, float, float] | None:
-    """Margins to cut off on the left, below, on the right and above; None if the whole page would be cut off."""
+def _crop(
+    box: Box, width: float, height: float
+) -> tuple[float, float, float, float] | None:
+    """Margins to cut off on the left, below, on the right and above.
+
+    None if the whole page would be cut off.
+    """
     x0, x1 = max(0.0, box.x0 - MARGIN), min(width, box.x1 + MARGIN)
     top, bottom = max(0.0, box.top - CAPTION), min(height, box.bottom + CAPTION)
     if x1 - x0 < 2 or bottom - top < 2:

@@ -16,7 +16,11 @@ from icdgen.importer.words import squeezed, table_name
 
 
 def tree(
-    node: NodeParts, document: Document, profile: Profile, prose: bool, import_findings: list[ImportFinding]
+    node: NodeParts,
+    document: Document,
+    profile: Profile,
+    prose: bool,
+    import_findings: list[ImportFinding],
 ) -> dict[str, Any]:
     """Return the ICD of a node as mappings and lists, in the order of the manual."""
     messages = [_message(item, prose) for item in node.messages]
@@ -25,13 +29,21 @@ def tree(
         units=_units(node, import_findings),
         enums=[_enum(item, prose) for item in node.enums],
         structs=[
-            {"name": item.name, "length": item.length, "fields": [_field(field, prose) for field in item.fields]}
+            {
+                "name": item.name,
+                "length": item.length,
+                "fields": [_field(field, prose) for field in item.fields],
+            }
             for message in node.messages
             for item in message.structs
         ],
         messages=messages,
         formula_for=_announced(messages),
-        loggable=[{"bit": b.bit, "id": b.id} | _given(name=b.name) for log in node.logs for b in log.bits],
+        loggable=[
+            {"bit": b.bit, "id": b.id} | _given(name=b.name)
+            for log in node.logs
+            for b in log.bits
+        ],
         missing=[entry for row in node.missing if (entry := _missing(row))],
     )
 
@@ -42,10 +54,18 @@ def _given(**keys: Any) -> dict[str, Any]:
 
 
 def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
-    """Move `formula_for` from the fields to the ICD for each kind of message in which all formulas agree."""
+    """Move `formula_for` from the fields to the ICD for each kind of message in which
+    all formulas agree.
+    """
     by_kind = {}
     for kind in dict.fromkeys(message["kind"] for message in messages):
-        fields = [f for m in messages if m["kind"] == kind for f in m.get("fields", ()) if "formula" in f]
+        fields = [
+            f
+            for m in messages
+            if m["kind"] == kind
+            for f in m.get("fields", ())
+            if "formula" in f
+        ]
         words = {field.get("formula_for") for field in fields}
         if len(fields) > 1 and len(words) == 1 and None not in words:
             by_kind[kind] = words.pop()
@@ -56,7 +76,11 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
 
 def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
     """Return the section `node` of the ICD."""
-    section = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
+    section = {
+        "name": node.name,
+        "title": node.title or node.name,
+        **profile.data["node"],
+    }
     # Without a title in its properties, a document is cited by its file name.
     title = document.title or re.split(r"[/\\]", document.file)[-1]
     section["source"] = {"document": title}
@@ -76,17 +100,31 @@ def _source(table: SourceTable) -> dict[str, Any]:
 
 def _enum(enum: ReadEnum, prose: bool) -> dict[str, Any]:
     also = [source for table in enum.also if (source := _source(table))]
-    members = [{"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)} for m in enum.members]
-    return {"name": enum.name, **_given(source=_source(enum.table), also=also, members=members)}
+    members = [
+        {"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)}
+        for m in enum.members
+    ]
+    return {
+        "name": enum.name,
+        **_given(source=_source(enum.table), also=also, members=members),
+    }
 
 
 def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
     """A summary where the description says more than the name."""
-    return {"summary": text} if wanted and text and squeezed(text) != squeezed(name) else {}
+    return (
+        {"summary": text}
+        if wanted and text and squeezed(text) != squeezed(name)
+        else {}
+    )
 
 
 def _message(message: ReadMessage, prose: bool) -> dict[str, Any]:
-    ids = {key: value for key in ("id", "set_id", "get_id") if (value := getattr(message, key)) is not None}
+    ids = {
+        key: value
+        for key in ("id", "set_id", "get_id")
+        if (value := getattr(message, key)) is not None
+    }
     return {
         "name": message.name, **ids, "kind": message.kind, "length": message.length, **_given(reserved=message.reserved_bytes),
         **_given(group=message.group, source=_source(message.table)),
@@ -106,12 +144,15 @@ def _field(field: ReadField, prose: bool) -> dict[str, Any]:
             count=field.count, enum=field.enum, unit=SIGNS.get(described.unit, described.unit), formula=described.formula,
             formula_for=described.formula_for,
         ),
-        **({"const": Spelled(described.const)} if described.const else {}),  # which may be 0
+        # Which may be 0.
+        **({"const": Spelled(described.const)} if described.const else {}),
         **_prose(field.name, described.rest, prose),
     }  # fmt: skip
 
 
-def _units(node: NodeParts, import_findings: list[ImportFinding]) -> list[dict[str, Any]]:
+def _units(
+    node: NodeParts, import_findings: list[ImportFinding]
+) -> list[dict[str, Any]]:
     """Units that icdgen does not know by any of their spellings."""
     first: dict[str, tuple[ReadMessage, ReadField]] = {}
     for message in node.messages:
@@ -131,5 +172,14 @@ def _missing(row: Listed) -> dict[str, Any] | None:
     number = row.id if row.id is not None else row.get_id
     if number is None or not row.kind:
         return None
-    where = f"Table {table_name(row.spot.table)} lists it" if row.spot.table else "A list names it"
-    return {"kind": row.kind, "id": number, "name": row.name, "why": f"{where}, no table describes it."}
+    where = (
+        f"Table {table_name(row.spot.table)} lists it"
+        if row.spot.table
+        else "A list names it"
+    )
+    return {
+        "kind": row.kind,
+        "id": number,
+        "name": row.name,
+        "why": f"{where}, no table describes it.",
+    }

@@ -1,4 +1,6 @@
-"""Rows above the fields of a message, such as ``ID 132, Frame Length (bytes) 6``, in any cells."""
+"""Rows above the fields of a message, such as ``ID 132, Frame Length (bytes) 6``, in
+any cells.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +10,17 @@ from typing import NamedTuple
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, growing_squeezed, grows, plain
 
-_VALUE = re.compile(r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z")
+_VALUE = re.compile(
+    r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z"
+)
 _COUNTED = frozenset({"byte", "bytes", "octet", "octets"})
 
 
 class Labelled(NamedTuple):
-    """A label and its value as text; ``what`` is the label's meaning by the profile, "" if it has none."""
+    """A label and its value as text.
+
+    ``what`` is the label's meaning by the profile, "" if it has none.
+    """
 
     what: str
     label: str
@@ -27,27 +34,43 @@ def parse(text: str, profile: Profile) -> list[Labelled]:
     """
     labelled: list[Labelled] = []
     label: list[str] = []
-    words = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", growing_squeezed(plain(text))).replace(":", " : ").split()
+    words = (
+        re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", growing_squeezed(plain(text)))
+        .replace(":", " : ")
+        .split()
+    )
     for word in words:
         bare = word.strip(",;|")
         if (_VALUE.match(bare) or grows(bare)) and label:
-            labelled.append(Labelled(meaning(" ".join(label), profile), " ".join(label), bare))
+            labelled.append(
+                Labelled(meaning(" ".join(label), profile), " ".join(label), bare)
+            )
             label = []
         elif bare in (":", "=", "-", "") and not folded(bare):
             continue
-        elif bare.startswith("(") and labelled and not label and _VALUE.match(bare.strip("()")):
+        elif (
+            bare.startswith("(")
+            and labelled
+            and not label
+            and _VALUE.match(bare.strip("()"))
+        ):
             continue  # the same number in another base
         elif bare.casefold() in _COUNTED and labelled and not label:
             continue  # `Length: 6 bytes`
         else:
             label.append(bare)
     if label:
-        labelled.append(Labelled(meaning(" ".join(label), profile), " ".join(label), ""))
+        labelled.append(
+            Labelled(meaning(" ".join(label), profile), " ".join(label), "")
+        )
     return labelled
 
 
 def meaning(label: str, profile: Profile) -> str:
-    """Return the meaning of a label, or "". The order of its words is ignored, because cells may be torn."""
+    """Return the meaning of a label, or "".
+
+    The order of its words is ignored, because cells may be torn.
+    """
     return profile.labels.get(tuple(sorted(folded(label))), "")
 
 
@@ -61,12 +84,20 @@ def begins(text: str, profile: Profile) -> bool:
         bool(labelled)
         and labelled[0].what in ("id", "both_ids", "set_id")
         and bool(labelled[0].value)
-        and all(label.what and (label.value or label.what in ("description", "fields")) for label in labelled)
+        and all(
+            label.what and (label.value or label.what in ("description", "fields"))
+            for label in labelled
+        )
     )
 
 
 def leads(text: str, profile: Profile) -> str:
-    """Return the meaning of the label at the begin of a line ("description", "fields" ...), or ""."""
+    """Return the meaning of the label at the begin of a line ("description", "fields"
+    ...), or "".
+    """
     words = plain(text).split()
-    meanings = (meaning(" ".join(words[:length]), profile) for length in range(min(5, len(words)), 0, -1))
+    meanings = (
+        meaning(" ".join(words[:length]), profile)
+        for length in range(min(5, len(words)), 0, -1)
+    )
     return next(filter(None, meanings), "")

@@ -1,4 +1,6 @@
-"""Messages, enumerations and lists that rules read from tables, before they become ICDs."""
+"""Messages, enumerations and lists that rules read from tables, before they become
+ICDs.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,11 @@ from icdgen.importer.profile import NodeWords
 
 @dataclass(slots=True)
 class ReadField:
-    """Field of a message. ``bits`` is the size of one element of an array; ``enum`` is set when references are resolved."""
+    """Field of a message.
+
+    ``bits`` is the size of one element of an array; ``enum`` is set when references are
+    resolved.
+    """
 
     name: str
     at: int
@@ -23,7 +29,9 @@ class ReadField:
     spot: SourcePlace
     count: int = 0  # elements of an array
     enum: str = ""
-    facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
+    facts: dict[str, Any] = field(
+        default_factory=dict
+    )  # further keys of the field in the ICD
 
     @property
     def end(self) -> int:
@@ -34,7 +42,9 @@ class ReadField:
 
 
 class Extent(NamedTuple):
-    """Run of bits of a message: the numbers of its first bit and of the bit behind it, in a bit order."""
+    """Run of bits of a message: the numbers of its first bit and of the bit behind it,
+    in a bit order.
+    """
 
     at: int
     end: int
@@ -46,7 +56,11 @@ class Extent(NamedTuple):
         Within a byte, bit 0 of one order is bit 7 of the other.
         """
         numbers = range(self.at, self.end)
-        return list(numbers) if bit_order == self.bit_order else [number ^ 7 for number in numbers]
+        return (
+            list(numbers)
+            if bit_order == self.bit_order
+            else [number ^ 7 for number in numbers]
+        )
 
 
 @dataclass(slots=True)
@@ -80,29 +94,54 @@ class ReadMessage:
     def extents(self) -> list[Extent]:
         """Return the bits of each field and of each run of reserved bits."""
         orders = [field.facts.get("bit_order", self.bit_order) for field in self.fields]
-        fields = [Extent(field.at, field.end, order) for field, order in zip(self.fields, orders, strict=True)]
+        fields = [
+            Extent(field.at, field.end, order)
+            for field, order in zip(self.fields, orders, strict=True)
+        ]
         return fields + self.reserved
 
     @property
     def all_fields(self) -> list[ReadField]:
         """Return the fields of the message and of its structs."""
-        return [*self.fields, *(field for struct in self.structs for field in struct.fields)]
+        return [
+            *self.fields,
+            *(field for struct in self.structs for field in struct.fields),
+        ]
 
     @property
     def gaps(self) -> list[tuple[int, int]]:
-        """First and last bit of each run that neither a field nor reserved bits cover, in the bit order of the message."""
-        covered = {number for extent in self.extents() for number in extent.numbers_in(self.bit_order)}
-        free = [number for number in range(8 * (self.length or 0)) if number not in covered]
+        """First and last bit of each run that neither a field nor reserved bits cover,
+        in the bit order of the message.
+        """
+        covered = {
+            number
+            for extent in self.extents()
+            for number in extent.numbers_in(self.bit_order)
+        }
+        free = [
+            number for number in range(8 * (self.length or 0)) if number not in covered
+        ]
         starts = [number for number in free if number - 1 in covered or number == 0]
-        ends = [number for number in free if number + 1 in covered or number == 8 * (self.length or 0) - 1]
+        ends = [
+            number
+            for number in free
+            if number + 1 in covered or number == 8 * (self.length or 0) - 1
+        ]
         return list(zip(starts, ends, strict=True))
 
     @property
     def reserved_bytes(self) -> int:
-        """Number of bytes at the end that contain only reserved bits; 0 if the length varies."""
+        """Number of bytes at the end that contain only reserved bits.
+
+        0 if the length varies.
+        """
         used = (max((field.end for field in self.fields), default=0) + 7) // 8
         is_variable = any("up_to" in field.facts for field in self.fields)
-        if self.length is None or is_variable or any(last >= 8 * used for _, last in self.gaps):
+        if (
+            self.length is None
+            or is_variable
+            or any(last >= 8 * used for _, last in self.gaps)
+        ):
             return 0
         return max(0, self.length - used)
 
@@ -174,7 +213,8 @@ class Found:
     """Result of one table, in the order of the document."""
 
     table: SourceTable
-    what: str  # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
+    # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
+    what: str
     thing: Thing | None
 
 
@@ -187,7 +227,11 @@ class Survey:
 
     def of(self, kind: type[T]) -> list[tuple[Found, T]]:
         """Return the tables that gave an object of this class, each with the object."""
-        return [(entry, entry.thing) for entry in self.found if isinstance(entry.thing, kind)]
+        return [
+            (entry, entry.thing)
+            for entry in self.found
+            if isinstance(entry.thing, kind)
+        ]
 
 
 @dataclass

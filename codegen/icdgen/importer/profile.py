@@ -1,4 +1,6 @@
-"""Profiles: the rules for the tables of a document, and the words by which its tables are found."""
+"""Profiles: the rules for the tables of a document, and the words by which its tables
+are found.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ _PLACEHOLDER = re.compile(r"\\?\{(unit|number|table|title)\\?\}")
 
 @dataclass(slots=True)
 class NodeWords:
-    """Entry of `nodes`: the words by which tables are assigned to the node, and the head of its file."""
+    """Entry of `nodes`: the words by which tables are assigned to the node, and the
+    head of its file.
+    """
 
     name: str
     match: list[str] = field(default_factory=list)  # words in list captions
@@ -37,18 +41,24 @@ class Profile:
     """A profile, ready for use."""
 
     data: dict[str, Any]
-    own: dict[str, Any] = field(default_factory=dict)  # what was laid over the profile that comes with icdgen
+    own: dict[str, Any] = field(
+        default_factory=dict
+    )  # what was laid over the profile that comes with icdgen
     rules: list[Rule] = field(default_factory=list)
 
     @cached_property
     def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
-        """Kind of table -> role -> the headings it may have, as folded words, longest first.
+        """Kind of table -> role -> the headings it may have, as folded words, longest
+        first.
 
-        The headings of a rule that the vocabulary does not know are a kind of their own: tables without vertical rules are
-        found by their headings.
+        The headings of a rule that the vocabulary does not know are a kind of their
+        own: tables without vertical rules are found by their headings.
         """
         return self._headings_of_vocabulary | {
-            f"rule {rule.name}": {title: [folded(title)] for title in (*rule.heading_titles, *rule.column_titles)}
+            f"rule {rule.name}": {
+                title: [folded(title)]
+                for title in (*rule.heading_titles, *rule.column_titles)
+            }
             for rule in self._rules_with_unknown_headings
         }
 
@@ -65,23 +75,39 @@ class Profile:
 
     @cached_property
     def _rules_with_unknown_headings(self) -> list[Rule]:
-        """Rules whose headings the vocabulary does not find: a row with all of them is a heading row."""
-        return [rule for rule in self.rules if rule.heading_titles and not self._finds_headings(rule)]
+        """Rules whose headings the vocabulary does not find: a row with all of them is
+        a heading row.
+        """
+        return [
+            rule
+            for rule in self.rules
+            if rule.heading_titles and not self._finds_headings(rule)
+        ]
 
     def _finds_headings(self, rule: Rule) -> bool:
-        """Return whether the vocabulary of one kind of table finds the heading row of a rule."""
+        """Return whether the vocabulary of one kind of table finds the heading row of a
+        rule.
+        """
         headings = {folded(title) for title in rule.heading_titles}
         columns = {folded(title) for title in rule.column_titles}
         for kind, roles in self._headings_of_vocabulary.items():
             vocabulary = {heading for titles in roles.values() for heading in titles}
-            # `head` with a title for each column states a whole heading row. Otherwise its
-            # titles can be of several rows, such as a group heading above the columns.
+            # `head` with a title for each column states a whole heading row. Otherwise
+            # its titles can be of several rows, such as a group heading above the
+            # columns.
             if columns <= headings:
                 if headings <= vocabulary:
                     return True
                 continue
-            roles_of_rule = {role for role, titles in roles.items() if not (headings | columns).isdisjoint(titles)}
-            if all(roles_of_rule.intersection(group) for group in self._needs_of_vocabulary[kind]):
+            roles_of_rule = {
+                role
+                for role, titles in roles.items()
+                if not (headings | columns).isdisjoint(titles)
+            }
+            if all(
+                roles_of_rule.intersection(group)
+                for group in self._needs_of_vocabulary[kind]
+            ):
                 return True
         return False
 
@@ -89,14 +115,21 @@ class Profile:
     def known_headings(self) -> dict[str, frozenset[tuple[str, ...]]]:
         """Kind of table -> the headings of all its columns."""
         return {
-            kind: frozenset(heading for headings in roles.values() for heading in headings)
+            kind: frozenset(
+                heading for headings in roles.values() for heading in headings
+            )
             for kind, roles in self.headings.items()
         }
 
     @cached_property
     def heading_words(self) -> frozenset[str]:
         """All words of all headings."""
-        return frozenset(word for titles in self.known_headings.values() for heading in titles for word in heading)
+        return frozenset(
+            word
+            for titles in self.known_headings.values()
+            for heading in titles
+            for word in heading
+        )
 
     @cached_property
     def needs(self) -> dict[str, list[tuple[str, ...]]]:
@@ -109,21 +142,32 @@ class Profile:
     @cached_property
     def _needs_of_vocabulary(self) -> dict[str, list[tuple[str, ...]]]:
         return {
-            kind: [tuple(alternatives.split("|")) for alternatives in roles.get("needs", ())]
+            kind: [
+                tuple(alternatives.split("|"))
+                for alternatives in roles.get("needs", ())
+            ]
             for kind, roles in self.data["headings"].items()
         }
 
     @cached_property
     def labels(self) -> dict[tuple[str, ...], str]:
         """Label as sorted folded words -> what it labels."""
-        return {tuple(sorted(folded(text))): what for what, texts in self.data["labels"].items() for text in texts}
+        return {
+            tuple(sorted(folded(text))): what
+            for what, texts in self.data["labels"].items()
+            for text in texts
+        }
 
     @cached_property
     def caption(self) -> re.Pattern[str]:
         """A line that begins like a caption."""
-        words = "|".join(re.escape(word) for word in sorted(self.data["captions"], key=len, reverse=True))
+        words = "|".join(
+            re.escape(word)
+            for word in sorted(self.data["captions"], key=len, reverse=True)
+        )
         return re.compile(
-            rf"(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)\s*(?P<mark>[:.–—|-]?)\s*(?P<title>.*)\Z", re.I | re.S
+            rf"(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)\s*(?P<mark>[:.–—|-]?)\s*(?P<title>.*)\Z",
+            re.I | re.S,
         )
 
     @cached_property
@@ -135,18 +179,27 @@ class Profile:
     def types_of_profile(self) -> dict[str, TypeName]:
         """Type names that the profile explains, without blanks and case."""
         own = self.own.get("types", {})
-        return {"".join(name.casefold().split()): TypeName(t["type"], t.get("bits", 0)) for name, t in own.items()}
+        return {
+            "".join(name.casefold().split()): TypeName(t["type"], t.get("bits", 0))
+            for name, t in own.items()
+        }
 
     @property
     def orders(self) -> tuple[str, str]:
-        """Byte order and bit order in which rules read positions, as the ICDs have them."""
+        """Byte order and bit order in which rules read positions, as the ICDs have
+        them.
+        """
         node = self.data["node"] | (self.nodes[0].head if self.nodes else {})
         return node.get("byte_order", "little"), node.get("bit_order", "lsb0")
 
     def states_order(self, key: str) -> bool:
-        """Return whether the profile states `byte_order` or `bit_order` for all of its nodes."""
+        """Return whether the profile states `byte_order` or `bit_order` for all of its
+        nodes.
+        """
         nodes = self.own.get("nodes", ())
-        return key in self.own.get("node", {}) or (bool(nodes) and all(key in node for node in nodes))
+        return key in self.own.get("node", {}) or (
+            bool(nodes) and all(key in node for node in nodes)
+        )
 
     @property
     def reads_descriptions(self) -> bool:
@@ -168,13 +221,17 @@ class Profile:
         """
         texts = self.data["reserved"]
         return (bool(folded(name)) and folded(name) in self.reserved) or any(
-            name.casefold() == text.casefold() or (text.startswith("~") and re.search(text[1:], name, re.I))
+            name.casefold() == text.casefold()
+            or (text.startswith("~") and re.search(text[1:], name, re.I))
             for text in texts
         )
 
     @cached_property
     def phrases(self) -> dict[str, list[re.Pattern[str]]]:
-        return {what: [phrase(text) for text in texts] for what, texts in self.data["phrases"].items()}
+        return {
+            what: [phrase(text) for text in texts]
+            for what, texts in self.data["phrases"].items()
+        }
 
     @cached_property
     def nodes(self) -> list[NodeWords]:
@@ -184,7 +241,11 @@ class Profile:
                 match=list(item.get("match", ())),
                 tables=tuple(item["tables"]) if "tables" in item else None,
                 group=item.get("group"),
-                head={k: v for k, v in item.items() if k not in ("match", "tables", "group", "include")},
+                head={
+                    k: v
+                    for k, v in item.items()
+                    if k not in ("match", "tables", "group", "include")
+                },
                 include=list(item.get("include", ())),
             )
             for item in self.data.get("nodes", ())
@@ -208,7 +269,10 @@ def _pattern(text: str, stand_ins: dict[str, str]) -> str:
 
 
 def find(name: str | None) -> Path | None:
-    """Return the path of a profile: a file, or the name of a shipped profile. Raises `UserError` for an unknown name."""
+    """Return the path of a profile: a file, or the name of a shipped profile.
+
+    Raises `UserError` for an unknown name.
+    """
     from icdgen import shipped
     from icdgen.errors import UserError
 
@@ -222,7 +286,10 @@ def find(name: str | None) -> Path | None:
     if ours.is_file():
         return ours
     names = ", ".join(sorted(p.stem for p in folder.glob("*.yaml"))) or "none"
-    raise UserError(f"there is no profile `{name}`", f"name a file, or one of those shipped: {names}")
+    raise UserError(
+        f"there is no profile `{name}`",
+        f"name a file, or one of those shipped: {names}",
+    )
 
 
 def load(path: Path | None = None) -> Profile:
@@ -236,7 +303,10 @@ def load(path: Path | None = None) -> Profile:
 
 
 def of_tree(tree: Map) -> Profile:
-    """Return the built-in words, extended by the tree of a profile. Raises `Findings` for errors of the profile."""
+    """Return the built-in words, extended by the tree of a profile.
+
+    Raises `Findings` for errors of the profile.
+    """
     base = plain(source.read(DEFAULT))
     _check(tree)
     own = plain(tree)
@@ -245,9 +315,11 @@ def of_tree(tree: Map) -> Profile:
 
 
 def _check_orders(tree: Map, base: dict[str, Any]) -> None:
-    """Raise `Findings` if nodes of a profile with rules have different byte or bit orders.
+    """Raise `Findings` if nodes of a profile with rules have different byte or bit
+    orders.
 
-    Rules read positions before it is known to which node a table belongs, so that one order must hold for all.
+    Rules read positions before it is known to which node a table belongs, so that one
+    order must hold for all.
     """
     shared = {**base["node"], **tree.get("node", {})}
     for key in ("byte_order", "bit_order"):
@@ -265,7 +337,11 @@ def _laid_over(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
         below = base.get(key)
         if isinstance(value, dict) and isinstance(below, dict):
             merged[key] = _laid_over(below, value)
-        elif isinstance(value, list) and isinstance(below, list) and key not in ("needs", "nodes"):
+        elif (
+            isinstance(value, list)
+            and isinstance(below, list)
+            and key not in ("needs", "nodes")
+        ):
             merged[key] = value + [item for item in below if item not in value]
         else:
             merged[key] = value
@@ -278,6 +354,13 @@ def _check(tree: Map) -> None:
         findings, _ = schema.check(tree, "profile")
     else:
         help = "`icdgen import FILE --explore` prints rules to complete, `--workbench` serves a page to write them"
-        findings = [Finding(CODE, "the profile has no `rules:`, which say what the tables mean", tree.place, help)]
+        findings = [
+            Finding(
+                CODE,
+                "the profile has no `rules:`, which say what the tables mean",
+                tree.place,
+                help,
+            )
+        ]
     if findings:
         raise Findings([finding._replace(code=CODE) for finding in findings])

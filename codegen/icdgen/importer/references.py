@@ -1,4 +1,7 @@
-"""References between tables: lists and messages, fields and enumerations; checks of complete messages."""
+"""References between tables: lists and messages, fields and enumerations.
+
+Checks of complete messages.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,9 @@ from icdgen.importer.words import plain, squeezed, table_name
 
 
 def listed(node: NodeParts, import_findings: list[ImportFinding]) -> None:
-    """Holds list tables and detail tables together: groups, names, what disagrees, what one of them lacks."""
+    """Holds list tables and detail tables together: groups, names, what disagrees, what
+    one of them lacks.
+    """
     rows = [row for list_table in node.lists for row in list_table.rows]
     for message in node.messages:
         row = _row_of(message, rows)
@@ -39,16 +44,27 @@ def listed(node: NodeParts, import_findings: list[ImportFinding]) -> None:
 
 def _row_of(message: ReadMessage, rows: list[Listed]) -> Listed | None:
     """Return the row of a list for a message, by kind and id, or else by name."""
-    free = [row for row in rows if not row.used and (not row.kind or not message.kind or row.kind == message.kind)]
+    free = [
+        row
+        for row in rows
+        if not row.used
+        and (not row.kind or not message.kind or row.kind == message.kind)
+    ]
     same = [row for row in free if (row.id, row.set_id, row.get_id) == message.ids]
     titled = [row for row in free if squeezed(row.name) == squeezed(message.name)]
     return next(iter([*same, *titled]), None)
 
 
-def _compare(message: ReadMessage, row: Listed, import_findings: list[ImportFinding]) -> None:
+def _compare(
+    message: ReadMessage, row: Listed, import_findings: list[ImportFinding]
+) -> None:
     for key, what in _SAID.items():
         own, value = getattr(message, key), getattr(row, key)
-        if value is None or value == own or (key == "name" and plain(str(value)) == plain(str(own))):
+        if (
+            value is None
+            or value == own
+            or (key == "name" and plain(str(value)) == plain(str(own)))
+        ):
             continue
         if own is None:
             setattr(message, key, value)
@@ -68,11 +84,20 @@ def _compare(message: ReadMessage, row: Listed, import_findings: list[ImportFind
         )  # fmt: skip
 
 
-_SAID = {"name": "name", "length": "length", "id": "id", "set_id": "set id", "get_id": "get id"}
+_SAID = {
+    "name": "name",
+    "length": "length",
+    "id": "id",
+    "set_id": "set id",
+    "get_id": "get id",
+}
 
 
 def enums(
-    node: NodeParts, nodes: list[NodeParts], everything: list[ReadEnum], import_findings: list[ImportFinding]
+    node: NodeParts,
+    nodes: list[NodeParts],
+    everything: list[ReadEnum],
+    import_findings: list[ImportFinding],
 ) -> None:
     """Finds the enumeration of each enum field, and brings it within reach of the node."""
     for message in node.messages:
@@ -80,7 +105,9 @@ def enums(
             if (
                 field.type == "enum"
                 and not field.enum
-                and (chosen := _meant(node, everything, message, field, import_findings))
+                and (
+                    chosen := _meant(node, everything, message, field, import_findings)
+                )
             ):
                 field.enum = _within_reach(node, nodes, chosen)
             elif field.type == "enum" and not field.enum:
@@ -94,18 +121,37 @@ def _meant(
     field: ReadField,
     import_findings: list[ImportFinding],
 ) -> ReadEnum | None:
-    """Return the enumeration to which a field refers; report a reference that cannot be resolved."""
+    """Return the enumeration to which a field refers.
+
+    Report a reference that cannot be resolved.
+    """
     described = field.described
     where = f"{message.table.title}, field `{field.name}`"
-    of_number = [enum for enum in everything if enum.table.label == described.enum_table is not None]
-    # Parts of a manual that number their tables from 1 have several tables with this number.
-    of_number.sort(key=lambda enum: enum.table.run != message.table.run)  # where numbers start anew, several have it
+    of_number = [
+        enum
+        for enum in everything
+        if enum.table.label == described.enum_table is not None
+    ]
+    # Parts of a manual that number their tables from 1 have several tables with this
+    # number.
+    of_number.sort(
+        key=lambda enum: enum.table.run != message.table.run
+    )  # where numbers start anew, several have it
     of_table = [enum for enum in of_number if enum.table is of_number[0].table]
     titled = _by_title(described.enum_title, everything, node)
     is_ambiguous = len(of_table) > 1 and titled not in of_table
-    numbered = titled if titled in of_table else None if is_ambiguous else next(iter(of_table), None)
+    numbered = (
+        titled
+        if titled in of_table
+        else None if is_ambiguous else next(iter(of_table), None)
+    )
     chosen = numbered or titled
-    if numbered and described.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
+    if (
+        numbered
+        and described.enum_title
+        and titled is not None
+        and squeezed(titled.name) != squeezed(numbered.name)
+    ):
         chosen = titled
         import_findings.append(
             ImportFinding("IMP051", f"{where}: it points to table {table_name(described.enum_table)} by number and to "
@@ -127,8 +173,12 @@ def _meant(
     return chosen
 
 
-def _by_title(title: str, everything: list[ReadEnum], node: NodeParts) -> ReadEnum | None:
-    """Return the enumeration of a title: its name, the caption of its table, or the beginning of both."""
+def _by_title(
+    title: str, everything: list[ReadEnum], node: NodeParts
+) -> ReadEnum | None:
+    """Return the enumeration of a title: its name, the caption of its table, or the
+    beginning of both.
+    """
     wanted = squeezed(title)
     if not wanted:
         return None
@@ -136,12 +186,21 @@ def _by_title(title: str, everything: list[ReadEnum], node: NodeParts) -> ReadEn
     tables = Counter(id(enum.table) for enum in everything)
     equal = (enum for enum in near if wanted == squeezed(enum.name))
     # The caption of a table with several enumerations is the title of none.
-    captioned = (enum for enum in near if wanted == squeezed(enum.table.caption) and tables[id(enum.table)] == 1)
-    # A cell can break off a title. A caption that goes on can also be about another enumeration.
+    captioned = (
+        enum
+        for enum in near
+        if wanted == squeezed(enum.table.caption) and tables[id(enum.table)] == 1
+    )
+    # A cell can break off a title. A caption that goes on can also be about another
+    # enumeration.
     torn = [
         enum
         for enum in near
-        if len(wanted) > 5 and all(squeezed(text).startswith(wanted) for text in (enum.table.caption, enum.name))
+        if len(wanted) > 5
+        and all(
+            squeezed(text).startswith(wanted)
+            for text in (enum.table.caption, enum.name)
+        )
     ]
     if len({squeezed(enum.name) for enum in torn}) > 1:
         torn = []
@@ -162,26 +221,48 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
     return enum.name
 
 
-def complete(node: NodeParts, head: dict[str, Any], import_findings: list[ImportFinding]) -> None:
-    """Report what messages lack and bits without a field; drop messages that an ICD cannot represent.
+def complete(
+    node: NodeParts, head: dict[str, Any], import_findings: list[ImportFinding]
+) -> None:
+    """Report what messages lack and bits without a field.
+
+    Drop messages that an ICD cannot represent.
 
     ``head`` is the section `node` of the ICD, which has the size of ids.
     """
     most = (1 << head.get("id_bits", DEFAULT_BITS)) - 1
-    node.messages = [message for message in node.messages if _is_held(message, most, import_findings)]
+    node.messages = [
+        message for message in node.messages if _is_held(message, most, import_findings)
+    ]
 
 
-def _is_held(message: ReadMessage, most: int, import_findings: list[ImportFinding]) -> bool:
+def _is_held(
+    message: ReadMessage, most: int, import_findings: list[ImportFinding]
+) -> bool:
     """Return whether an ICD can represent the message. ``most`` is the largest id."""
 
-    def say(code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY) -> None:
+    def say(
+        code: str, what: str, help: str, severity: str = "warning", sure: str = LIKELY
+    ) -> None:
         import_findings.append(
-            ImportFinding(code, f"{message.table.title}: {what}", message.table.spot, help, severity, sure)
+            ImportFinding(
+                code,
+                f"{message.table.title}: {what}",
+                message.table.spot,
+                help,
+                severity,
+                sure,
+            )
         )
 
     if large := [i for i in message.ids if i is not None and i > most]:
         what = f"its id {large[0]} (0x{large[0]:X}) is above {most}"
-        say("IMP037", what, "in the profile, `node: {id_bits: 16}` makes room; it was left out", "error")
+        say(
+            "IMP037",
+            what,
+            "in the profile, `node: {id_bits: 16}` makes room; it was left out",
+            "error",
+        )
         return False
     if lacking := _lacking(message):
         say("IMP031", f"its rule gives no {' and no '.join(lacking)}; the message was left out",
@@ -196,14 +277,28 @@ def _is_held(message: ReadMessage, most: int, import_findings: list[ImportFindin
         what = f"its fields need {needed} bytes, its length is {message.length}"
         say("IMP033", what, "look at the page; `icdgen check` names the fields")
     if message.length and not message.fields:
-        say("IMP034", f"it has {message.length} bytes and no field", "look at the page", "error", DOUBTFUL)
+        say(
+            "IMP034",
+            f"it has {message.length} bytes and no field",
+            "look at the page",
+            "error",
+            DOUBTFUL,
+        )
     elif free := message.gaps:
         bits = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in free)
-        say("IMP035", f"no field covers bit {bits}", "such bits are reserved; make sure that no row was lost")
+        say(
+            "IMP035",
+            f"no field covers bit {bits}",
+            "such bits are reserved; make sure that no row was lost",
+        )
     return True
 
 
 def _lacking(message: ReadMessage) -> list[str]:
     """Required attributes that the rule of a message does not give."""
-    given = {"name": message.name, "kind": message.kind, "id": any(number is not None for number in message.ids)}
+    given = {
+        "name": message.name,
+        "kind": message.kind,
+        "id": any(number is not None for number in message.ids),
+    }
     return [key for key, value in given.items() if not value]

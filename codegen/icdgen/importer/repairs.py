@@ -1,4 +1,6 @@
-"""Damage of the file that a profile names: repaired before rules read the tables, and reported each time."""
+"""Damage of the file that a profile names: repaired before rules read the tables, and
+reported each time.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,10 @@ from icdgen.importer.words import number
 
 
 def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFinding]:
-    """Replace damaged words and put lost group headings back; return a note for each repair."""
+    """Replace damaged words and put lost group headings back.
+
+    Return a note for each repair.
+    """
     notes = []
     for table in tables:
         for entry in profile.data["damage"]:
@@ -19,7 +24,9 @@ def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFindi
             if "printed" in entry:
                 pattern = re.compile(rf"(?<!\w){re.escape(entry['printed'])}(?!\w)")
                 for cell in (cell for row in table.rows for cell in row.cells):
-                    cell.text, times = pattern.subn(entry["meant"].replace("\\", r"\\"), cell.text)
+                    cell.text, times = pattern.subn(
+                        entry["meant"].replace("\\", r"\\"), cell.text
+                    )
                     count += times
                 if count:
                     what = f"`{entry['printed']}` is taken for `{entry['meant']}` {count} times"
@@ -27,12 +34,22 @@ def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFindi
             elif entry.get("table") == table.label and "group" in entry:
                 for index, row in enumerate(table.rows):
                     if row.cells and number(row.cells[0].text) == entry["before"]:
-                        table.rows.insert(index, SourceRow([Cell(entry["group"])], row.page, row.line))
+                        table.rows.insert(
+                            index, SourceRow([Cell(entry["group"])], row.page, row.line)
+                        )
                         what = f"the group heading `{entry['group']}` is put back before {entry['before']}"
-                        notes.append(_mended(f"{table.title}: {what}", table.spot_of(row)))
+                        notes.append(
+                            _mended(f"{table.title}: {what}", table.spot_of(row))
+                        )
                         break
     return notes
 
 
 def _mended(message: str, spot: SourcePlace) -> ImportFinding:
-    return ImportFinding("IMP028", f"{message}, as the profile says", spot, "compare with the page", "note")
+    return ImportFinding(
+        "IMP028",
+        f"{message}, as the profile says",
+        spot,
+        "compare with the page",
+        "note",
+    )

@@ -37,7 +37,13 @@ class Result:
     def import_findings(self) -> list[ImportFinding]:
         """All findings in the order of the document."""
         return sorted(
-            self.survey.import_findings, key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.order or 0, t.code)
+            self.survey.import_findings,
+            key=lambda t: (
+                t.spot.page or 0,
+                t.spot.line or 0,
+                t.spot.order or 0,
+                t.code,
+            ),
         )
 
     @property
@@ -48,14 +54,26 @@ class Result:
     def sureness(self) -> Counter[str]:
         """Count tables by certainty, without tables to which no rule applies."""
         # Several rules can read one table, each with a result.
-        tables = {entry.table.number: entry.table for entry in self.survey.found if entry.what != UNKNOWN}
+        tables = {
+            entry.table.number: entry.table
+            for entry in self.survey.found
+            if entry.what != UNKNOWN
+        }
         return Counter(self.sure_of(table) for table in tables.values())
 
     def sure_of(self, table: SourceTable) -> str:
         """Return the certainty of the reading of a table."""
-        about = [t for t in self.survey.import_findings if t.is_about_table(table.spot.order) and t.code != "IMP035"]
-        what = next((entry.what for entry in self.survey.found if entry.table is table), "")
-        if what == UNKNOWN or any(t.severity == "error" or t.sure == DOUBTFUL for t in about):
+        about = [
+            t
+            for t in self.survey.import_findings
+            if t.is_about_table(table.spot.order) and t.code != "IMP035"
+        ]
+        what = next(
+            (entry.what for entry in self.survey.found if entry.table is table), ""
+        )
+        if what == UNKNOWN or any(
+            t.severity == "error" or t.sure == DOUBTFUL for t in about
+        ):
             return DOUBTFUL
         return LIKELY if any(t.severity == "warning" for t in about) else CERTAIN
 
@@ -66,21 +84,31 @@ def run(
 ) -> tuple[Result, dict[str, dict[str, Any]]]:  # fmt: skip
     """Read a document by the rules of a profile and return the ICD trees by node name.
 
-    Raises `Findings` for a file that cannot be read. A document in which no rule gives a message has no tree and the
-    finding IMP004. ``pages``: the first and the last one to read of a PDF.
+    Raises `Findings` for a file that cannot be read. A document in which no rule gives
+    a message has no tree and the finding IMP004. ``pages``: the first and the last one
+    to read of a PDF.
     """
     document, tables = sources.read(manual, words, progress, jobs, pages)
     return apply_rules(document, tables, words, prose)
 
 
 def apply_rules(
-    document: Document, tables: list[SourceTable], words: profile.Profile, prose: bool = False
+    document: Document,
+    tables: list[SourceTable],
+    words: profile.Profile,
+    prose: bool = False,
 ) -> tuple[Result, dict[str, dict[str, Any]]]:
-    """Read the tables of a document by the rules of a profile. The tables themselves are not changed."""
-    # The workbench applies further rules to the same tables, and repairs change their cells.
+    """Read the tables of a document by the rules of a profile.
+
+    The tables themselves are not changed.
+    """
+    # The workbench applies further rules to the same tables, and repairs change their
+    # cells.
     tables = copy.deepcopy(tables)
     notes = repairs.mend_tables(tables, words)
-    interpretation = interpret.interpret(tables, words, [*document.import_findings, *notes])
+    interpretation = interpret.interpret(
+        tables, words, [*document.import_findings, *notes]
+    )
     trees = assemble.assemble(document, interpretation.survey, words, prose)
     if not trees:
         interpretation.survey.import_findings.append(_nothing(words, tables))

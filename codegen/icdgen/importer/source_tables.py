@@ -9,7 +9,10 @@ from icdgen.importer.words import table_name
 
 
 def from_document(document: Document) -> list[SourceTable]:
-    """Return the tables of a document, each with its number and the texts above it; those without any text are left out."""
+    """Return the tables of a document, each with its number and the texts above it.
+
+    Those without any text are left out.
+    """
     tables: list[SourceTable] = []
     chain: list[Heading] = []
     before: list[str] = []
@@ -20,7 +23,10 @@ def from_document(document: Document) -> list[SourceTable]:
         elif isinstance(block, Text):
             before.append(block.text)
         elif any(cell.text for row in block.rows for cell in row.cells):
-            block.boxes = [Box(box.page, *(round(value, 1) for value in box[1:])) for box in block.boxes]
+            block.boxes = [
+                Box(box.page, *(round(value, 1) for value in box[1:]))
+                for box in block.boxes
+            ]
             block.headings, block.before = [heading.title for heading in chain], before
             tables.append(block)
             block.number, before = len(tables), []
@@ -48,9 +54,13 @@ def kinds(tables: list[SourceTable]) -> list[list[SourceTable]]:
 
 
 def name_of(table: SourceTable) -> str:
-    """Return the name of a table: ``Table 4-12: Motor State``, its caption, or the heading above it."""
+    """Return the name of a table: ``Table 4-12: Motor State``, its caption, or the
+    heading above it.
+    """
     if table.label is not None:
-        return f"Table {table_name(table.label)}" + (f": {table.caption}" if table.caption else "")
+        return f"Table {table_name(table.label)}" + (
+            f": {table.caption}" if table.caption else ""
+        )
     return table.caption or (table.headings[-1] if table.headings else table.sheet)
 
 

@@ -1,4 +1,6 @@
-"""Every source of tables -> `SourceTable`: documents of all kinds, and folders of table files."""
+"""Every source of tables -> `SourceTable`: documents of all kinds, and folders of table
+files.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,10 @@ def read(
     jobs: int | None = None,
     pages: tuple[int, int] | None = None,
 ) -> tuple[Document, list[SourceTable]]:
-    """Return the document and its tables. Raises `Findings` for a file from which nothing can be read."""
+    """Return the document and its tables.
+
+    Raises `Findings` for a file from which nothing can be read.
+    """
     if table_files.is_folder_of_tables(path):
         tables = table_files.read(path)
         return table_files.document_of(path), tables

@@ -1,7 +1,9 @@
-"""Tables as files: written by `icdgen import FILE --tables DIR`, corrected by hand, read by `icdgen import DIR`.
+"""Tables as files: written by `icdgen import FILE --tables DIR`, corrected by hand,
+read by `icdgen import DIR`.
 
-One YAML file a table, ``012.table.yaml``, so that a correction is one line of a diff. A row is a list of cells: texts, or
-mappings with a text and its spans. An entry ``{page: 4}`` among the rows says that the rows below it stand on that page.
+One YAML file a table, ``012.table.yaml``, so that a correction is one line of a diff. A
+row is a list of cells: texts, or mappings with a text and its spans. An entry ``{page:
+4}`` among the rows says that the rows below it stand on that page.
 """
 
 from __future__ import annotations
@@ -28,9 +30,12 @@ def is_folder_of_tables(path: Path) -> bool:
 
 
 def write(tables: list[SourceTable], folder: Path, document: Document) -> list[Path]:
-    """Write a file for each table and return the paths. Raises `UserError` if one cannot be written.
+    """Write a file for each table and return the paths.
 
-    Table files in the folder that no table has any more are removed: a folder holds one document.
+    Raises `UserError` if one cannot be written.
+
+    Table files in the folder that no table has any more are removed: a folder holds one
+    document.
     """
     from icdgen.errors import UserError
     from icdgen.generation.write import replace
@@ -49,12 +54,18 @@ def write(tables: list[SourceTable], folder: Path, document: Document) -> list[P
         for old in set(folder.glob(f"*{SUFFIX}")) - set(paths):
             old.unlink()
     except OSError as error:
-        raise UserError(f"cannot write {folder}: {error.strerror}", "choose another folder with --tables") from None
+        raise UserError(
+            f"cannot write {folder}: {error.strerror}",
+            "choose another folder with --tables",
+        ) from None
     return paths
 
 
 def text_of(table: SourceTable, document: Document, same: list[int]) -> str:
-    """Return the text of a table file; ``same`` are the numbers of the tables with the same headings."""
+    """Return the text of a table file.
+
+    ``same`` are the numbers of the tables with the same headings.
+    """
     numbers = [str(number) for number in same if number != table.number]
     shown = ", ".join(numbers[:8]) + (" ..." if len(numbers) > 8 else "")
     lines = [f"# {name_of(table)}".replace("\n", " ").rstrip()]
@@ -62,13 +73,25 @@ def text_of(table: SourceTable, document: Document, same: list[int]) -> str:
     lines += [f"table: {table.number}", f"document: {_quoted(document.file)}"]
     lines += [f"title: {_quoted(document.title)}"] if document.title else []
     lines += [f"sheet: {_quoted(table.sheet)}"] if table.sheet else []
-    lines += [f"label: {_quoted(table_name(table.label))}"] if table.label is not None else []
+    lines += (
+        [f"label: {_quoted(table_name(table.label))}"]
+        if table.label is not None
+        else []
+    )
     lines += [f"caption: {_quoted(table.caption)}"] if table.caption else []
-    for key, texts in (("headings", table.headings), ("before", table.before), ("after", table.after)):
-        lines += [f"{key}:", *(f"  - {_quoted(text)}" for text in texts)] if texts else []
+    for key, texts in (
+        ("headings", table.headings),
+        ("before", table.before),
+        ("after", table.after),
+    ):
+        lines += (
+            [f"{key}:", *(f"  - {_quoted(text)}" for text in texts)] if texts else []
+        )
     if table.boxes:
         lines.append("boxes:  # page, then left, top, right and bottom in points")
-        lines += [f"  - [{', '.join(f'{value:g}' for value in box)}]" for box in table.boxes]
+        lines += [
+            f"  - [{', '.join(f'{value:g}' for value in box)}]" for box in table.boxes
+        ]
     lines.append("rows:")
     page, line = table.page, None
     for row in table.rows:
@@ -87,12 +110,23 @@ def _quoted(text: str) -> str:
 
 
 def _cell(cell: Cell) -> str:
-    spans = [f"{key}: {n}" for key, n in (("columns", cell.columns), ("rows", cell.rows)) if n > 1]
-    return f"{{text: {_quoted(cell.text)}, {', '.join(spans)}}}" if spans else _quoted(cell.text)
+    spans = [
+        f"{key}: {n}"
+        for key, n in (("columns", cell.columns), ("rows", cell.rows))
+        if n > 1
+    ]
+    return (
+        f"{{text: {_quoted(cell.text)}, {', '.join(spans)}}}"
+        if spans
+        else _quoted(cell.text)
+    )
 
 
 def read(folder: Path) -> list[SourceTable]:
-    """Return the tables of a folder in the order of their numbers. Raises `Findings` for files that are no tables."""
+    """Return the tables of a folder in the order of their numbers.
+
+    Raises `Findings` for files that are no tables.
+    """
     findings: list[Finding] = []
     tables: dict[int, SourceTable] = {}
     for path in sorted(folder.glob(f"*{SUFFIX}")):
@@ -108,7 +142,14 @@ def read(folder: Path) -> list[SourceTable]:
             continue
         if tree["table"] in tables:
             help = "give each table a number of its own"
-            findings.append(Finding(CODE, f"two files have the number {tree['table']}", tree.at("table"), help))
+            findings.append(
+                Finding(
+                    CODE,
+                    f"two files have the number {tree['table']}",
+                    tree.at("table"),
+                    help,
+                )
+            )
         tables[tree["table"]] = _table(tree)
     if findings:
         raise Findings(findings)
@@ -119,20 +160,32 @@ def _wrong_spans(tree: Map) -> list[Finding]:
     """Cells that another cell covers in part, or that span rows below the last one."""
     table = _table(tree)
     covered = Counter(id(slot.cell) for slots in table.grid() for slot in slots)
-    places = [tree["rows"].item_at(index) for index, row in enumerate(tree["rows"]) if isinstance(row, list)]
+    places = [
+        tree["rows"].item_at(index)
+        for index, row in enumerate(tree["rows"])
+        if isinstance(row, list)
+    ]
     wrong = []
     for row, place in zip(table.rows, places, strict=True):
         for cell in row.cells:
             if covered[id(cell)] < cell.columns * cell.rows:
                 message = f"the cell `{cell.text[:40]}` lies below another cell, or spans more rows than there are"
                 wrong.append(
-                    Finding(CODE, message, place, "correct `rows:` and `columns:` of the cells here and below")
+                    Finding(
+                        CODE,
+                        message,
+                        place,
+                        "correct `rows:` and `columns:` of the cells here and below",
+                    )
                 )
     return wrong
 
 
 def _table(tree: Map) -> SourceTable:
-    boxes = [Box(int(box[0]), *(float(value) for value in box[1:])) for box in tree.get("boxes", ())]
+    boxes = [
+        Box(int(box[0]), *(float(value) for value in box[1:]))
+        for box in tree.get("boxes", ())
+    ]
     page: int | None = boxes[0].page if boxes else None
     line: int | None = None
     rows: list[SourceRow] = []
@@ -163,6 +216,11 @@ def _cell_of(value: Any) -> Cell:
 
 
 def document_of(folder: Path) -> Document:
-    """Return the document that the tables of a folder come from, without its text. Raises `Findings`."""
+    """Return the document that the tables of a folder come from, without its text.
+
+    Raises `Findings`.
+    """
     first = source.read(min(folder.glob(f"*{SUFFIX}")))
-    return Document(str(first.get("document", folder.name)), title=str(first.get("title", "")))
+    return Document(
+        str(first.get("document", folder.name)), title=str(first.get("title", ""))
+    )

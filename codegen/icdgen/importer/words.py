@@ -8,7 +8,14 @@ from functools import lru_cache
 
 _LIGATURES = {c: unicodedata.normalize("NFKC", c) for c in "ﬀﬁﬂﬃﬄﬅﬆ"}
 HYPHENS = str.maketrans(dict.fromkeys("\u2010\u2011\u2212", "-"))
-_BLANKS = {"\u00a0": " ", "\u2007": " ", "\u202f": " ", "\u2009": " ", "\u200b": "", "\ufeff": ""}
+_BLANKS = {
+    "\u00a0": " ",
+    "\u2007": " ",
+    "\u202f": " ",
+    "\u2009": " ",
+    "\u200b": "",
+    "\ufeff": "",
+}
 _PLAIN = {**str.maketrans({**_LIGATURES, **_BLANKS}), **HYPHENS}
 _WORD = re.compile(r"[A-Za-z0-9%]+")
 SUPERSCRIPTS = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
@@ -20,7 +27,9 @@ _NUMBER = re.compile(r"[-+]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)\Z")
 
 
 def plain(text: str) -> str:
-    """Ligatures spelled out, odd blanks and hyphens made ordinary, runs of blanks made one."""
+    """Ligatures spelled out, odd blanks and hyphens made ordinary, runs of blanks made
+    one.
+    """
     return " ".join(text.translate(_PLAIN).split())
 
 
@@ -36,7 +45,9 @@ def folded(text: str) -> tuple[str, ...]:
 
 
 def squeezed(text: str) -> str:
-    """Letters and digits only: equal for texts that differ in spacing, hyphens and case."""
+    """Letters and digits only: equal for texts that differ in spacing, hyphens and
+    case.
+    """
     return "".join(folded(text))
 
 
@@ -57,7 +68,9 @@ def growing_squeezed(text: str) -> str:
 
 
 def number(text: str) -> int | None:
-    """Return the integer in a text, decimal or 0x, without a raised footnote mark, or None."""
+    """Return the integer in a text, decimal or 0x, without a raised footnote mark, or
+    None.
+    """
     text = _RAISED.sub("", plain(text)).rstrip("*†").strip()
     if not _NUMBER.match(text) or len(text) > 24:
         return None
@@ -68,7 +81,8 @@ _PART = 1_000_000  # more than the tables of a chapter
 
 
 def table_number(printed: str) -> int:
-    """Return a number that preserves the order of table numbers such as ``12`` and ``4-12``.
+    """Return a number that preserves the order of table numbers such as ``12`` and
+    ``4-12``.
 
     `table_name` is the reverse.
     """
@@ -89,19 +103,31 @@ def table_name(number: int | None) -> str:
 _SOFT = "\u00ad"
 
 
-def unbroken(lines: list[str], full: list[bool], document_words: frozenset[str]) -> list[str]:
-    """Return the lines of a wrapped cell, with words joined that were broken to fill a line."""
+def unbroken(
+    lines: list[str], full: list[bool], document_words: frozenset[str]
+) -> list[str]:
+    """Return the lines of a wrapped cell, with words joined that were broken to fill a
+    line.
+    """
     texts: list[str] = []
     for index, line in enumerate(lines):
         before = texts[-1].rsplit(" ", 1)[-1] if texts else ""
-        if texts and full[index - 1] and _is(before + line.split(" ", 1)[0], document_words):
+        if (
+            texts
+            and full[index - 1]
+            and _is(before + line.split(" ", 1)[0], document_words)
+        ):
             texts[-1] += line
         else:
             texts.append(line)
     return texts
 
 
-def join(lines: list[str], document_words: frozenset[str] = frozenset(), full: list[bool] | None = None) -> str:
+def join(
+    lines: list[str],
+    document_words: frozenset[str] = frozenset(),
+    full: list[bool] | None = None,
+) -> str:
     """Return the lines of a wrapped cell as one text.
 
     ``document_words`` are unbroken words of the document. They determine whether a
@@ -122,9 +148,14 @@ def join(lines: list[str], document_words: frozenset[str] = frozenset(), full: l
         elif len(before) > 1 and before.endswith("-") and after[:1].islower():
             joined = before[:-1] + after
             text = (
-                text[:-1] if _is(joined, document_words) and not _is(before + after, document_words) else text
+                text[:-1]
+                if _is(joined, document_words)
+                and not _is(before + after, document_words)
+                else text
             ) + line
-        elif _holds_on(before, after) or (full and full[index - 1] and _is(before + after, document_words)):
+        elif _holds_on(before, after) or (
+            full and full[index - 1] and _is(before + after, document_words)
+        ):
             text += line
         else:
             text += " " + line
@@ -136,7 +167,9 @@ def _holds_on(before: str, after: str) -> bool:
 
     This is the case after a hyphen or slash in a word, and within a formula.
     """
-    return (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit())
+    return (len(before) > 1 and before[-1] in "-/_") or (
+        before[-1:] in "*/" and after[:1].isdigit()
+    )
 
 
 def _is(word: str, document_words: frozenset[str]) -> bool:

@@ -49,9 +49,13 @@ def users_of(path: str) -> list[tuple[int, str]]:
     """
     target = os.path.realpath(path)
     pids = [pid for pid in _pids() if pid != os.getpid() and _has_open(pid, target)]
-    # A simulator has opened its own end of a pseudo-terminal. Only the owner of the lock prevents the use.
+    # A simulator has opened its own end of a pseudo-terminal. Only the owner of the
+    # lock prevents the use.
     owners = _lock_owners(target)
-    return [(pid, _command(pid)) for pid in sorted(set(pids) & owners or owners or set(pids))]
+    return [
+        (pid, _command(pid))
+        for pid in sorted(set(pids) & owners or owners or set(pids))
+    ]
 
 
 def _lock_owners(path: str) -> set[int]:
@@ -61,11 +65,18 @@ def _lock_owners(path: str) -> set[int]:
     """
     try:
         file = os.stat(path)
-        lines = [line.split() for line in Path("/proc/locks").read_text(encoding="ascii").splitlines()]
+        lines = [
+            line.split()
+            for line in Path("/proc/locks").read_text(encoding="ascii").splitlines()
+        ]
     except OSError:
         return set()
     place = f"{os.major(file.st_dev):02x}:{os.minor(file.st_dev):02x}:{file.st_ino}"
-    owners = {int(words[4]) for words in lines if len(words) > 5 and words[5] == place and words[1] == "FLOCK"}
+    owners = {
+        int(words[4])
+        for words in lines
+        if len(words) > 5 and words[5] == place and words[1] == "FLOCK"
+    }
     return {pid for pid in owners if pid > 0} - {os.getpid()}
 
 
@@ -78,14 +89,22 @@ def _pids() -> Iterator[int]:
 
 def _has_open(pid: int, target: str) -> bool:
     try:
-        return any(os.path.realpath(file) == target for file in Path(f"/proc/{pid}/fd").iterdir())
+        return any(
+            os.path.realpath(file) == target
+            for file in Path(f"/proc/{pid}/fd").iterdir()
+        )
     except OSError:
         return False  # the process has ended, or belongs to another user
 
 
 def _command(pid: int) -> str:
     try:
-        words = Path(f"/proc/{pid}/cmdline").read_bytes().decode(errors="replace").split("\0")
+        words = (
+            Path(f"/proc/{pid}/cmdline")
+            .read_bytes()
+            .decode(errors="replace")
+            .split("\0")
+        )
     except OSError:
         return "unknown"
     words = [word for word in words if word]

@@ -35,11 +35,15 @@ class LineStatistics:
 
     def message_of(self, id: int, data: bytes) -> Message | None:
         """Return the message of this id that matches the data, or None."""
-        return codec.message_of_frame_if_any(self.icd, [variant.message for variant in self.ids.get(id, ())], data)
+        return codec.message_of_frame_if_any(
+            self.icd, [variant.message for variant in self.ids.get(id, ())], data
+        )
 
     def text(self) -> str:
         """Return the errors as one line for a report; empty without errors."""
         counts = [f"{fault} ({times})" for fault, times in sorted(self.faults.items())]
         counts += [f"messages missing ({self.missing})"] if self.missing else []
-        counts += [f"messages that came again ({self.repeated})"] if self.repeated else []
+        counts += (
+            [f"messages that came again ({self.repeated})"] if self.repeated else []
+        )
         return f"on the line: {', '.join(counts)}" if counts else ""

@@ -39,10 +39,15 @@ class Monitor:
                 self.messages.append(message)
         if not names and not self.listens:
             if self.facts.identification is None:
-                raise UserError("it is not said what to show", "name messages: icdgen monitor NODE MESSAGE ...")
+                raise UserError(
+                    "it is not said what to show",
+                    "name messages: icdgen monitor NODE MESSAGE ...",
+                )
             self.messages.append(self.facts.identification.message)
         self.last: dict[str, bytes] = {}
-        self.received_at: dict[str, float] = {}  # time of reception, by time.monotonic()
+        self.received_at: dict[str, float] = (
+            {}
+        )  # time of reception, by time.monotonic()
         self.awaited: set[str] = set()  # messages not yet received in this round
         self.silent: set[str] = set()  # messages not received in the last round
         self.faults: dict[int, str] = {}  # last error of a message, by id
@@ -58,13 +63,19 @@ class Monitor:
     @property
     def failed(self) -> bool:
         """Whether a monitored message was missing in the last round."""
-        return bool(self.silent) or (self.listens and not self.messages and not self.last)
+        return bool(self.silent) or (
+            self.listens and not self.messages and not self.last
+        )
 
     def requested(self) -> Iterator[Message]:
         """Return the messages that must be requested."""
         rows = self.facts.stream.telecommands if self.facts.stream else ()
         asking = {row.reply for row in rows if row.least == 0}
-        yield from (message for message in self.messages if not self.listens or message.telemetry_id in asking)
+        yield from (
+            message
+            for message in self.messages
+            if not self.listens or message.telemetry_id in asking
+        )
 
     def begin(self) -> None:
         """Begin a round."""
@@ -103,7 +114,11 @@ class Monitor:
         self.statistics.event(event)
         if isinstance(event, Malformed):
             self.faults[event.id] = "wrong length"
-        elif isinstance(event, LineError) and event.id is not None and event.error in FAULTS:
+        elif (
+            isinstance(event, LineError)
+            and event.id is not None
+            and event.error in FAULTS
+        ):
             self.faults[event.id] = FAULTS[event.error]
         elif isinstance(event, Arrived):
             message = self.statistics.message_of(event.id, event.data)
@@ -111,13 +126,21 @@ class Monitor:
                 self._received(message, event.id, event.data)
         elif isinstance(event, Log):
             for log_frame in event.log.frames:
-                message = self.facts.telemetry.get(log_frame.id) if log_frame.id is not None else None
+                message = (
+                    self.facts.telemetry.get(log_frame.id)
+                    if log_frame.id is not None
+                    else None
+                )
                 if message and message.length == len(log_frame.data):
                     self._keep(message, log_frame.data)
 
     def frames(self) -> Iterator[Frame]:
         """Return the received frames of messages that are not silent."""
-        yield from (self._frame(name) for name in self._names() if name in self.last and name not in self.silent)
+        yield from (
+            self._frame(name)
+            for name in self._names()
+            if name in self.last and name not in self.silent
+        )
 
     def _frame(self, name: str) -> Frame:
         message = next(m for m in self.icd.messages_of(self.node) if m.name == name)
@@ -142,8 +165,12 @@ class Monitor:
             if name in self.silent or age >= OLD_SECONDS:
                 remarks.append(f"last value, {_age_text(age)} old")
             for number, row in enumerate(self._frame(name).rows):
-                of_row = "; ".join([*remarks, *row.remarks] if number == 0 else row.remarks)
-                yield name if number == 0 else "", row.field.name, row.text, row.field.unit_symbol, of_row
+                of_row = "; ".join(
+                    [*remarks, *row.remarks] if number == 0 else row.remarks
+                )
+                yield (
+                    name if number == 0 else ""
+                ), row.field.name, row.text, row.field.unit_symbol, of_row
 
     def _names(self) -> list[str]:
         names = [message.name for message in self.messages]
@@ -152,7 +179,9 @@ class Monitor:
     def text(self) -> str:
         """Return the table for a pipe, or for a single round."""
         columns = [Column(title, right=title == "value") for title in COLUMNS]
-        table = tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
+        table = tables.render(
+            columns, list(self.rows()), tables.width_of(sys.stdout)
+        ).rstrip("\n")
         return "\n".join(filter(None, (table, self.statistics.text())))
 
 
@@ -161,4 +190,8 @@ def _age_text(seconds: float) -> str:
     minutes, hours = int(seconds // 60), int(seconds // 3600)
     if not minutes:
         return f"{int(seconds)} s"
-    return f"{hours} h {minutes % 60} min" if hours else f"{minutes} min {int(seconds) % 60} s"
+    return (
+        f"{hours} h {minutes % 60} min"
+        if hours
+        else f"{minutes} min {int(seconds) % 60} s"
+    )

@@ -29,8 +29,15 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             metavar="PORT",
             help="tcp://HOST:PORT, udp://HOST:PORT, a terminal or serial port (/dev/ttyUSB0, COM3), can://INTERFACE/CHANNEL.",
         ),
-        click.option("--crc", is_flag=True, help="Use checksums that are optional in the ICD."),
-        click.option("--address", type=click.IntRange(0), default=0, help="Address of the client on CAN."),
+        click.option(
+            "--crc", is_flag=True, help="Use checksums that are optional in the ICD."
+        ),
+        click.option(
+            "--address",
+            type=click.IntRange(0),
+            default=0,
+            help="Address of the client on CAN.",
+        ),
         click.option(
             "--envelope",
             "chosen",
@@ -38,8 +45,17 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             metavar="ROLE=NUMBER",
             help="Value of a header field, such as source=3. Repeatable.",
         ),
-        click.option("--timeout", type=click.IntRange(1), metavar="MS", help="Time-out of a response in milliseconds."),
-        click.option("--retries", type=click.IntRange(0, 255), help="Number of repetitions of a request."),
+        click.option(
+            "--timeout",
+            type=click.IntRange(1),
+            metavar="MS",
+            help="Time-out of a response in milliseconds.",
+        ),
+        click.option(
+            "--retries",
+            type=click.IntRange(0, 255),
+            help="Number of repetitions of a request.",
+        ),
     ]
     for option in reversed(options):
         command = option(command)
@@ -58,7 +74,10 @@ def open_session(
     chosen: Sequence[str] = (),
     on_event: OnEvent | None = None,
 ) -> Iterator[BusSession]:
-    """Open a session with the node that ``facts`` describe. Raise `icdgen.errors.UserError`."""
+    """Open a session with the node that ``facts`` describe.
+
+    Raise `icdgen.errors.UserError`.
+    """
     from icdgen.link.ports import open_port
     from icdgen.link.session import session
     from icdgen.runtime_objects.links import link_of
@@ -67,16 +86,28 @@ def open_session(
     if (facts.can if is_can else facts.framing or facts.stream) is None:
         what = "CAN" if is_can else "a stream of bytes"
         raise UserError(
-            f"the ICD does not say how to talk to {node.name} over {what}", "see docs/reference/protocol.md"
+            f"the ICD does not say how to talk to {node.name} over {what}",
+            "see docs/reference/protocol.md",
         )
     if facts.can and not 0 <= address < 1 << facts.can.parts["source"].bits:
-        raise UserError(f"--address {address} does not fit", f"{facts.can.parts['source'].bits} bits hold it")
+        raise UserError(
+            f"--address {address} does not fit",
+            f"{facts.can.parts['source'].bits} bits hold it",
+        )
     link = link_of(icd, facts)
     options = {"reply_timeout": timeout, "retries": retries}
-    settings = link.settings._replace(**{key: value for key, value in options.items() if value is not None})
+    settings = link.settings._replace(
+        **{key: value for key, value in options.items() if value is not None}
+    )
     values = values_of(facts, chosen)
     with session(
-        link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event, values
+        link,
+        open_port(port, icd.protocol_of(node)),
+        crc,
+        address,
+        settings,
+        on_event,
+        values,
     ) as opened_session:
         yield opened_session
 
@@ -96,7 +127,11 @@ def identity_problem(session: BusSession, faults: Mapping[int, str]) -> str | No
     outcome = session.start(Request("telemetry", link.identification.telemetry))
     if not isinstance(outcome, Done):
         fault = faults.get(link.identification.telemetry)
-        return f"the device answers, but: {fault}" if fault else "the device does not answer"
+        return (
+            f"the device answers, but: {fault}"
+            if fault
+            else "the device does not answer"
+        )
     identity = identify(link, outcome.data)
     if identity.matches:
         return None

@@ -26,7 +26,9 @@ CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
 MOST_OF_A_PACKET = 1400  # bytes of a stream in one datagram
 MOST_OF_A_DATAGRAM = 65507
-_BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")  # host and port without tcp:// or udp://
+_BARE_ADDRESS = re.compile(
+    r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}"
+)  # host and port without tcp:// or udp://
 FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
 
 
@@ -48,7 +50,9 @@ def _failures(name: str, *kinds: type[Exception], help: str = "") -> Iterator[No
     try:
         yield
     except kinds as error:
-        raise PortError(f"{name}: {getattr(error, 'strerror', None) or error}", help) from None
+        raise PortError(
+            f"{name}: {getattr(error, 'strerror', None) or error}", help
+        ) from None
 
 
 class Socket:
@@ -57,25 +61,34 @@ class Socket:
     ``piece`` is the maximum length of a datagram. Longer data is split.
     """
 
-    def __init__(self, kind: str, host: str, port: int, piece: int = MOST_OF_A_PACKET) -> None:
+    def __init__(
+        self, kind: str, host: str, port: int, piece: int = MOST_OF_A_PACKET
+    ) -> None:
         self.piece = piece
         self.name = f"{kind}://{host}:{port}"
-        with _failures(f"cannot connect to {self.name}", OSError, help="is it running?"):
+        with _failures(
+            f"cannot connect to {self.name}", OSError, help="is it running?"
+        ):
             if kind == "tcp":
                 self.socket = socket.create_connection((host, port), CONNECT_TIMEOUT)
                 # Send short requests at once, without waiting for further data.
                 self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             else:
-                family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
+                family, *_, address = socket.getaddrinfo(
+                    host, port, type=socket.SOCK_DGRAM
+                )[0]
                 self.socket = socket.socket(family, socket.SOCK_DGRAM)
-                # A burst of packets arrives faster than it is read. The default buffer would lose some.
+                # A burst of packets arrives faster than it is read. The default buffer
+                # would lose some.
                 self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
                 self.socket.connect(address)
         self.stream = kind == "tcp"
 
     def read(self, timeout: float) -> bytes:
         try:
-            self.socket.settimeout(max(timeout, 1e-6))  # 0 would make the socket non-blocking
+            self.socket.settimeout(
+                max(timeout, 1e-6)
+            )  # 0 would make the socket non-blocking
             data = self.socket.recv(65536)
         except (TimeoutError, BlockingIOError):
             return b""
@@ -106,7 +119,9 @@ class Terminal:
         import tty
 
         self.path = path
-        with _failures(f"cannot open {path}", OSError, help="check the path and your rights to it"):
+        with _failures(
+            f"cannot open {path}", OSError, help="check the path and your rights to it"
+        ):
             self.file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         try:
             lock_port(self.file, path)
@@ -126,7 +141,9 @@ class Terminal:
         except BlockingIOError:
             pass
         except OSError as error:
-            raise PortError(f"{self.path}: {error.strerror}", "the other end is gone") from None
+            raise PortError(
+                f"{self.path}: {error.strerror}", "the other end is gone"
+            ) from None
         return b""
 
     def write(self, data: bytes) -> None:
@@ -150,7 +167,12 @@ class Serial:
     def __init__(self, name: str, settings: dict[str, Any]) -> None:
         serial = _library("serial", "pyserial")
         self.name, self.errors = name, (serial.SerialException, OSError)
-        with _failures(f"cannot open {name}", *self.errors, ValueError, help=f"a port is named so: {FORMS}"):
+        with _failures(
+            f"cannot open {name}",
+            *self.errors,
+            ValueError,
+            help=f"a port is named so: {FORMS}",
+        ):
             try:
                 self.serial = serial.Serial(
                     name,
@@ -188,8 +210,12 @@ class Can:
         self.name = f"can://{interface}/{channel}"
         self.errors = self.can.CanError, OSError
         help = f"a port is named so: {FORMS}"
-        with _failures(f"cannot open {self.name}", *self.errors, ValueError, ImportError, help=help):
-            self.bus = self.can.Bus(interface=interface, channel=channel, bitrate=bit_rate)
+        with _failures(
+            f"cannot open {self.name}", *self.errors, ValueError, ImportError, help=help
+        ):
+            self.bus = self.can.Bus(
+                interface=interface, channel=channel, bitrate=bit_rate
+            )
 
     def receive(self, timeout: float) -> CanPacket | None:
         """Return the next packet with a 29-bit identifier, or None after ``timeout``.
@@ -198,12 +224,19 @@ class Can:
         """
         with _failures(self.name, *self.errors):
             message = self.bus.recv(max(timeout, 0))
-        if message is None or not message.is_extended_id or message.is_error_frame or message.is_remote_frame:
+        if (
+            message is None
+            or not message.is_extended_id
+            or message.is_error_frame
+            or message.is_remote_frame
+        ):
             return None
         return CanPacket(message.arbitration_id, bytes(message.data))
 
     def send(self, packet: CanPacket) -> None:
-        message = self.can.Message(arbitration_id=packet.id, data=packet.data, is_extended_id=True)
+        message = self.can.Message(
+            arbitration_id=packet.id, data=packet.data, is_extended_id=True
+        )
         with _failures(self.name, *self.errors):
             self.bus.send(message, timeout=WRITE_TIMEOUT)
 
@@ -212,31 +245,46 @@ class Can:
 
 
 def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
-    """Open a port. ``protocol`` is the section of the ICD, with settings such as baud rate.
+    """Open a port.
+
+    ``protocol`` is the section of the ICD, with settings such as baud rate.
 
     Raise `icdgen.errors.UserError`.
     """
     scheme, separator, remainder = text.partition("://")
     is_packet = protocol.get("stream", {}).get("delimited_by") == "none"
     if is_packet and scheme != "udp":
-        raise PortError(f"{text} keeps no packets apart, and only they delimit messages here", "udp://HOST:PORT does")
+        raise PortError(
+            f"{text} keeps no packets apart, and only they delimit messages here",
+            "udp://HOST:PORT does",
+        )
     if separator:
         openers: dict[str, Callable[[], Port | Can]] = {
             "tcp": lambda: Socket("tcp", *address(text)),
-            "udp": lambda: Socket("udp", *address(text), MOST_OF_A_DATAGRAM if is_packet else MOST_OF_A_PACKET),
+            "udp": lambda: Socket(
+                "udp",
+                *address(text),
+                MOST_OF_A_DATAGRAM if is_packet else MOST_OF_A_PACKET,
+            ),
             "can": lambda: _can(remainder, protocol.get("can", {})),
         }
         if scheme not in openers:
-            raise PortError(f"there is no port `{text}`", f"a port is named so: {FORMS}")
+            raise PortError(
+                f"there is no port `{text}`", f"a port is named so: {FORMS}"
+            )
         return openers[scheme]()
     if _is_pty(text):
         return Terminal(text)
     if text.isdecimal() and not os.path.exists(text):
-        raise PortError(f"there is no port `{text}`", f"did you mean tcp://localhost:{text}?")
+        raise PortError(
+            f"there is no port `{text}`", f"did you mean tcp://localhost:{text}?"
+        )
     if _BARE_ADDRESS.fullmatch(text) and not os.path.exists(text):
         raise PortError(f"there is no port `{text}`", f"did you mean tcp://{text}?")
     if "/" in text and not os.path.exists(text):
-        raise PortError(f"there is no port `{text}`: no such file", f"a port is named so: {FORMS}")
+        raise PortError(
+            f"there is no port `{text}`: no such file", f"a port is named so: {FORMS}"
+        )
     return Serial(text, protocol.get("uart", {}))
 
 
@@ -255,7 +303,10 @@ def address(text: str) -> tuple[str, int]:
 def _can(path: str, section: dict[str, Any]) -> Can:
     interface, separator, channel = path.partition("/")
     if not separator or not interface or not channel:
-        raise PortError(f"`can://{path}` is no CAN bus", "can://INTERFACE/CHANNEL, as python-can names them")
+        raise PortError(
+            f"`can://{path}` is no CAN bus",
+            "can://INTERFACE/CHANNEL, as python-can names them",
+        )
     return Can(interface, channel, section.get("bit_rate", 500_000))
 
 
@@ -264,15 +315,20 @@ def _is_pty(path: str) -> bool:
         status = os.stat(path)
     except OSError:
         return False
-    return stat.S_ISCHR(status.st_mode) and os.path.realpath(path).startswith("/dev/pts/")
+    return stat.S_ISCHR(status.st_mode) and os.path.realpath(path).startswith(
+        "/dev/pts/"
+    )
 
 
 def _is_in_use(error: Exception) -> bool:
     """Return whether pyserial failed because another program uses the port."""
     if getattr(error, "errno", None) in (errno.EAGAIN, errno.EBUSY):
         return True
-    # pyserial reports a lock of another program only by its text. Windows reports an open port as access denied.
-    return "exclusively lock" in str(error) or (os.name == "nt" and "PermissionError" in str(error))
+    # pyserial reports a lock of another program only by its text. Windows reports an
+    # open port as access denied.
+    return "exclusively lock" in str(error) or (
+        os.name == "nt" and "PermissionError" in str(error)
+    )
 
 
 def _library(name: str, package: str) -> Any:
@@ -281,4 +337,6 @@ def _library(name: str, package: str) -> Any:
     try:
         return import_module(name)
     except ImportError:
-        raise PortError(f"{package} is not installed", "pip install 'icdgen[link]'") from None
+        raise PortError(
+            f"{package} is not installed", "pip install 'icdgen[link]'"
+        ) from None

@@ -35,7 +35,10 @@ _ENDS = {
 
 
 class Screen:
-    """A table at a fixed position of the terminal. Without ``live``, it does nothing."""
+    """A table at a fixed position of the terminal.
+
+    Without ``live``, it does nothing.
+    """
 
     def __init__(self, monitor: Monitor, live: bool) -> None:
         self.monitor, self.live = monitor, None
@@ -75,18 +78,28 @@ class Screen:
             return
         self.show()
 
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
+    def __rich_console__(
+        self, console: Console, options: ConsoleOptions
+    ) -> Iterator[Segment]:
         from rich.segment import Segment
 
-        lines = console.render_lines(self._table(), options.update(height=None), pad=False)
+        lines = console.render_lines(
+            self._table(), options.update(height=None), pad=False
+        )
         head, body = lines[:1], lines[1:]
         if len(lines) < console.size.height:
             self.top, footer = 0, ""
         else:
-            self.page = max(1, console.size.height - 3)  # the titles, the footer, and the line of the cursor
+            self.page = max(
+                1, console.size.height - 3
+            )  # the titles, the footer, and the line of the cursor
             if not self.keyboard.is_open:
                 pages = -(-len(body) // self.page)
-                self.top = int((time.monotonic() - self.begin) / PAGE_SECONDS) % pages * self.page
+                self.top = (
+                    int((time.monotonic() - self.begin) / PAGE_SECONDS)
+                    % pages
+                    * self.page
+                )
             self.top = max(0, min(self.top, len(body) - self.page))
             last = min(self.top + self.page, len(body))
             keys = "; up, down, PgUp, PgDn, Home, End" if self.keyboard.is_open else ""
@@ -169,7 +182,9 @@ class _Keyboard:
 
 
 def _keys(text: str) -> Iterator[str]:
-    """Split the input of a terminal into characters and escape sequences such as ``ESC [ 5 ~``."""
+    """Split the input of a terminal into characters and escape sequences such as ``ESC
+    [ 5 ~``.
+    """
     import re
 
     yield from re.findall(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", text, re.DOTALL)

@@ -21,7 +21,13 @@ class CanSession(BusSession):
     """A session over a CAN bus."""
 
     def __init__(
-        self, link: Link, port: Can, crc: bool, address: int, settings: Settings, on_event: OnEvent | None
+        self,
+        link: Link,
+        port: Can,
+        crc: bool,
+        address: int,
+        settings: Settings,
+        on_event: OnEvent | None,
     ) -> None:
         self._can = Client(link, "can", crc, address, settings)
         super().__init__(self._can, on_event)
@@ -33,7 +39,11 @@ class CanSession(BusSession):
 
     def _receive(self, seconds: float) -> list[Event]:
         packet = self._port.receive(seconds)
-        return self._can.packet(self._now(), packet) if packet else self._can.tick(self._now())
+        return (
+            self._can.packet(self._now(), packet)
+            if packet
+            else self._can.tick(self._now())
+        )
 
 
 @contextmanager
@@ -54,9 +64,13 @@ def session(
     """
     try:
         if isinstance(port, Can):
-            yield CanSession(link, port, crc, address, settings or link.settings, on_event)
+            yield CanSession(
+                link, port, crc, address, settings or link.settings, on_event
+            )
         else:
-            yield Session(link, port.write, port.read, crc, settings, on_event, values=values)
+            yield Session(
+                link, port.write, port.read, crc, settings, on_event, values=values
+            )
     except IcdError as error:
         raise UserError(str(error), "see docs/reference/wire.md") from None
     finally:

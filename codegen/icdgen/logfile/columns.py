@@ -20,7 +20,10 @@ TIME = "time"
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A field of a frame, or a slot of an unassigned bit. Offsets count from the start of an entry."""
+    """A field of a frame, or a slot of an unassigned bit.
+
+    Offsets count from the start of an entry.
+    """
 
     name: str
     frame: str
@@ -84,7 +87,10 @@ def plan(icd: Icd, facts: Facts, mask: bytes) -> Plan:
 
     Raise `icdgen.protocol.facts.Unsupported`.
     """
-    form, slot_bytes = need(facts.log_file, "telemetry_log"), need(facts.mask, "log_mask").slot_bytes
+    form, slot_bytes = (
+        need(facts.log_file, "telemetry_log"),
+        need(facts.mask, "log_mask").slot_bytes,
+    )
     slots = need(facts.mask, "log_mask").selected(mask)
     columns: list[Column] = []
     for number, slot in enumerate(slots):
@@ -104,12 +110,23 @@ def _columns(icd: Icd, facts: Facts, slot: LogBit, start: int) -> Iterator[Colum
     """Return the columns of a slot, which begins at byte ``start`` of an entry."""
     message = facts.telemetry.get(slot.id) if slot.id is not None else None
     if message is None:
-        yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
+        yield Column(
+            f"bit_{slot.bit}",
+            slot.name or f"bit {slot.bit}",
+            None,
+            None,
+            start,
+            slot.length,
+            "",
+            (),
+        )
     else:
         yield from columns_of(icd, message, start, slot.length)
 
 
-def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = None) -> Iterator[Column]:
+def columns_of(
+    icd: Icd, message: Message, start: int = 0, length: int | None = None
+) -> Iterator[Column]:
     """Return the columns of a message that begins at byte ``start``.
 
     ``length`` excludes fields beyond this number of bytes.
@@ -128,10 +145,20 @@ def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = 
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
-        pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
+        pieces = tuple(
+            p._replace(byte=p.byte + start) for p in layout.pieces(field, owner)
+        )
         operands = tuple(columns[operand] for operand in operand_names)
         columns[field.name] = Column(
-            name, message.name, message, field, start, size, field.byte_order, pieces, operands
+            name,
+            message.name,
+            message,
+            field,
+            start,
+            size,
+            field.byte_order,
+            pieces,
+            operands,
         )
         yield columns[field.name]
 

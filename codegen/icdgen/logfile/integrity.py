@@ -1,12 +1,16 @@
 """Damage and clock jumps of a telemetry log, found by the times of its entries.
 
-Entries of a log have no sync word and no checksum. Their times are the only redundancy: milliseconds below 1000, and seconds that
-rise by little from one entry to the next. `LogSurvey` reads the file once and returns the spans of whole entries, the ranges of
-bytes that belong to none, and the places where the clock was set. `icdgen.logfile.source` gives the spans to the converters.
+Entries of a log have no sync word and no checksum. Their times are the only redundancy:
+milliseconds below 1000, and seconds that rise by little from one entry to the next.
+`LogSurvey` reads the file once and returns the spans of whole entries, the ranges of
+bytes that belong to none, and the places where the clock was set.
+`icdgen.logfile.source` gives the spans to the converters.
 
-Limits: a change of data bytes that leaves all times in place cannot be detected, nor can a loss of exactly as many bytes as bring
-another copy of the time, in the data, to the place of the time. The first entry after a damaged range may have a wrong time if the
-lowest byte of its time was damaged. Damage within the very first time of a file shows only by what follows.
+Limits: a change of data bytes that leaves all times in place cannot be detected, nor
+can a loss of exactly as many bytes as bring another copy of the time, in the data, to
+the place of the time. The first entry after a damaged range may have a wrong time if
+the lowest byte of its time was damaged. Damage within the very first time of a file
+shows only by what follows.
 """
 
 from __future__ import annotations
@@ -24,7 +28,9 @@ from icdgen.logfile.strided import numbers_at
 MINUTE, DAY, MONTH, YEAR = 60_000, 86_400_000, 30 * 86_400_000, 366 * 86_400_000  # ms
 YEAR_1990 = 631_152_000_000  # ms: an earlier time may be a counter
 LATEST_SECOND = 253_402_300_799  # the last one of the year 9999
-STEPS_IN_LIMIT = 5  # an entry later than this number of usual steps is checked for damage
+STEPS_IN_LIMIT = (
+    5  # an entry later than this number of usual steps is checked for damage
+)
 LEARNED_ENTRIES = 64  # entries that determine the usual step
 COMPARED_ENTRIES = 8  # entries that determine the positions of other times in an entry
 FIRST_CHUNK, LAST_CHUNK = 16, 1 << 20  # entries, bytes
@@ -54,7 +60,10 @@ class Damage:
 
 @dataclass(frozen=True, slots=True)
 class TimeJump:
-    """A change of the clock at the entry at byte ``at``. Times are milliseconds since 1970."""
+    """A change of the clock at the entry at byte ``at``.
+
+    Times are milliseconds since 1970.
+    """
 
     at: int
     before: int
@@ -79,7 +88,9 @@ class Integrity:
 
 
 class LogSurvey:
-    """Search for complete entries in an open log of ``size`` bytes that begin at ``begin``."""
+    """Search for complete entries in an open log of ``size`` bytes that begin at
+    ``begin``.
+    """
 
     def __init__(self, file: BinaryIO, size: int, begin: int, plan: Plan) -> None:
         self.file, self.size, self.begin, self.plan = file, size, begin, plan
@@ -87,10 +98,15 @@ class LogSurvey:
         self.time_end = max(at + size for at, size in (plan.seconds, plan.milliseconds))
         self.step = 0.0  # usual milliseconds from an entry to the next
         self.limit = float(MINUTE)  # a longer step is checked for damage
-        self.other_times: list[int] = []  # offsets in an entry at which its data also contain the time
+        self.other_times: list[int] = (
+            []
+        )  # offsets in an entry at which its data also contain the time
 
     def run(self, most: int | None = None) -> Integrity:
-        """Read the file up to ``most`` complete entries. Without entries, there is no span."""
+        """Read the file up to ``most`` complete entries.
+
+        Without entries, there is no span.
+        """
         result, size = Integrity(), self.entry_bytes
         start = self._anchor()
         if start is None:
@@ -130,7 +146,9 @@ class LogSurvey:
         return self.file.read(size)
 
     def _time(self, at: int, needed: int | None = None) -> int | None:
-        """Return the time of an entry at byte ``at`` in milliseconds since 1970, or None if invalid."""
+        """Return the time of an entry at byte ``at`` in milliseconds since 1970, or
+        None if invalid.
+        """
         if at < 0 or at + (self.entry_bytes if needed is None else needed) > self.size:
             return None
         time = self._times(self._read(at, self.time_end), 1, 1)
@@ -141,85 +159,148 @@ class LogSurvey:
 
         A time is -1 if milliseconds or seconds are out of range.
         """
-        (seconds_at, seconds_size), (milliseconds_at, milliseconds_size) = self.plan.seconds, self.plan.milliseconds
+        (seconds_at, seconds_size), (milliseconds_at, milliseconds_size) = (
+            self.plan.seconds,
+            self.plan.milliseconds,
+        )
         little = self.plan.order == "little"
         count = min(count, (len(data) - self.time_end) // stride + 1)
         if count < FIRST_CHUNK or not _has_numpy():
             times = []
             for at in range(0, count * stride, stride):
                 milliseconds = int.from_bytes(
-                    data[at + milliseconds_at : at + milliseconds_at + milliseconds_size], self.plan.order
+                    data[
+                        at + milliseconds_at : at + milliseconds_at + milliseconds_size
+                    ],
+                    self.plan.order,
                 )
-                seconds = int.from_bytes(data[at + seconds_at : at + seconds_at + seconds_size], self.plan.order)
-                times.append(seconds * 1000 + milliseconds if milliseconds < 1000 and seconds <= LATEST_SECOND else -1)
+                seconds = int.from_bytes(
+                    data[at + seconds_at : at + seconds_at + seconds_size],
+                    self.plan.order,
+                )
+                times.append(
+                    seconds * 1000 + milliseconds
+                    if milliseconds < 1000 and seconds <= LATEST_SECOND
+                    else -1
+                )
             return times
         import numpy as np
 
-        seconds_array = numbers_at(data, stride, seconds_at, seconds_size, little, count=count)
-        milliseconds_array = numbers_at(data, stride, milliseconds_at, milliseconds_size, little, count=count)
-        times_array = seconds_array.astype(np.int64) * 1000 + milliseconds_array.astype(np.int64)
+        seconds_array = numbers_at(
+            data, stride, seconds_at, seconds_size, little, count=count
+        )
+        milliseconds_array = numbers_at(
+            data, stride, milliseconds_at, milliseconds_size, little, count=count
+        )
+        times_array = seconds_array.astype(np.int64) * 1000 + milliseconds_array.astype(
+            np.int64
+        )
         result: Sequence[int] = np.where((milliseconds_array < 1000) & (seconds_array <= LATEST_SECOND), times_array, -1)  # type: ignore[assignment]
         return result
 
     def _anchor(self) -> int | None:
-        """Return the first byte at which entries begin, normally the first one behind the header."""
+        """Return the first byte at which entries begin, normally the first one behind
+        the header.
+        """
         begin, size = self.begin, self.entry_bytes
         if begin + size > self.size:
             return begin
         first = self._time(begin)
         is_clock = first is not None and self._is_clock(begin)
         second = self._time(begin + size)
-        is_trusted = first is not None and first >= YEAR_1990 and second is not None and abs(second - first) <= DAY
+        is_trusted = (
+            first is not None
+            and first >= YEAR_1990
+            and second is not None
+            and abs(second - first) <= DAY
+        )
         for low in range(begin + 1, self.size - 3 * size + 1, WINDOW):
-            fresh = [at for at in self._candidates(low, WINDOW) if self._rises(at, MONTH)]
-            # Data may contain counters and times, too. Prefer a start with which the file ends with a complete
-            # entry, or one that continues the first entry.
+            fresh = [
+                at for at in self._candidates(low, WINDOW) if self._rises(at, MONTH)
+            ]
+            # Data may contain counters and times, too. Prefer a start with which the
+            # file ends with a complete entry, or one that continues the first entry.
             recent = [at for at in fresh if (self._time(at) or 0) >= YEAR_1990]
-            following = [at for at in recent if first is not None and 0 <= (self._time(at) or 0) - first <= MONTH]
+            following = [
+                at
+                for at in recent
+                if first is not None and 0 <= (self._time(at) or 0) - first <= MONTH
+            ]
             pool = recent or fresh
             near = [at for at in pool if at < pool[0] + size]
             ending = [at for at in near if (self.size - at) % size == 0]
-            steadier = [at for at in ending if self._unsteadiness(at) < self._unsteadiness(begin)]
+            steadier = [
+                at
+                for at in ending
+                if self._unsteadiness(at) < self._unsteadiness(begin)
+            ]
             if is_trusted and not steadier:
                 return begin
-            if is_clock and not any((self._time(at) or 0) >= YEAR_1990 for at in ending):
+            if is_clock and not any(
+                (self._time(at) or 0) >= YEAR_1990 for at in ending
+            ):
                 return begin
             if near:
                 start = (ending or following or near)[0]
                 self._learn(start)
                 # A clock that is set within the first entries leaves them in place.
-                return begin if (start - begin) % size == 0 and first is not None else self._regular(start)
+                return (
+                    begin
+                    if (start - begin) % size == 0 and first is not None
+                    else self._regular(start)
+                )
         if is_clock or is_trusted:
             return begin
-        # Too few entries to compare: believe the positions that the header gives, if most of them are times.
-        aligned = range(begin, min(self.size - size, begin + LEARNED_ENTRIES * size) + 1, size)
+        # Too few entries to compare: believe the positions that the header gives, if
+        # most of them are times.
+        aligned = range(
+            begin, min(self.size - size, begin + LEARNED_ENTRIES * size) + 1, size
+        )
         timed = [at for at in aligned if self._time(at) is not None]
         return timed[0] if len(timed) * 2 >= len(aligned) else None
 
     def _learn(self, at: int) -> None:
-        """Take the usual step, and the places of other times, from the entries that begin at ``at``."""
+        """Take the usual step, and the places of other times, from the entries that
+        begin at ``at``.
+        """
         size = self.entry_bytes
         data = self._read(at, LEARNED_ENTRIES * size)
         count = len(data) // size
         times = [int(time) for time in self._times(data, size, count)]
         # After a break, there is another time base or damage.
-        chain = takewhile(lambda pair: pair[0] >= 0 and 0 <= pair[1] - pair[0] <= MONTH, pairwise(times))
+        chain = takewhile(
+            lambda pair: pair[0] >= 0 and 0 <= pair[1] - pair[0] <= MONTH,
+            pairwise(times),
+        )
         steps = [after - before for before, after in chain if after > before]
         if steps:
             self.step = float(median(steps))
             self.limit = max(float(MINUTE), STEPS_IN_LIMIT * self.step)
-        regular = takewhile(lambda pair: pair[0] >= 0 and abs(pair[1] - pair[0]) <= self.limit, pairwise(times))
+        regular = takewhile(
+            lambda pair: pair[0] >= 0 and abs(pair[1] - pair[0]) <= self.limit,
+            pairwise(times),
+        )
         count = 1 + sum(1 for _ in regular)
         if count > 1:
             places = set(range(1, size))
             for number in range(min(count - 1, COMPARED_ENTRIES)):
                 here = self._times(data[number * size :], 1, size)
-                places = {at for at in places if here[at] >= 0 and abs(here[at] - times[number]) <= self.limit}
+                places = {
+                    at
+                    for at in places
+                    if here[at] >= 0 and abs(here[at] - times[number]) <= self.limit
+                }
             self.other_times = sorted(places)
 
     def _first_break(self, at: int) -> int:
-        """Return the first entry behind ``at`` whose time does not follow that of its predecessor, or the end of whole entries."""
-        size, position, previous = self.entry_bytes, at + self.entry_bytes, self._time(at)
+        """Return the first entry behind ``at`` whose time does not follow that of its
+        predecessor, or the end of whole entries.
+        """
+        size, position, previous = (
+            self.entry_bytes,
+            at + self.entry_bytes,
+            self._time(at),
+        )
         amount = FIRST_CHUNK * size
         if previous is None:
             return at
@@ -232,11 +313,17 @@ class LogSurvey:
             index = _first_irregular(previous, times, self.limit)
             if index is not None:
                 return position + index * size
-            previous, position, amount = int(times[-1]), position + count * size, min(2 * amount, LAST_CHUNK)
+            previous, position, amount = (
+                int(times[-1]),
+                position + count * size,
+                min(2 * amount, LAST_CHUNK),
+            )
         return position
 
     def _ends_well(self, end: int) -> bool:
-        """Whether the bytes behind the last whole entry are the beginning of the next one."""
+        """Whether the bytes behind the last whole entry are the beginning of the next
+        one.
+        """
         remaining, last = self.size - end, end - self.entry_bytes
         if not remaining or last < self.begin:
             return True
@@ -252,16 +339,22 @@ class LogSurvey:
         data may be damaged already.
         """
         size = self.entry_bytes
-        before, previous = self._time(broken - 2 * size) if broken - 2 * size >= run else None, self._time(
-            broken - size
+        before, previous = (
+            self._time(broken - 2 * size) if broken - 2 * size >= run else None
+        ), self._time(broken - size)
+        here, next_, second = (
+            self._time(broken + number * size) for number in range(3)
         )
-        here, next_, second = (self._time(broken + number * size) for number in range(3))
         lead = self._deviation(before, previous) if before is not None else 0.0
         lead = min(lead, self.limit)
-        follow = self._deviation(next_, second) if broken + 3 * size <= self.size else 0.0
+        follow = (
+            self._deviation(next_, second) if broken + 3 * size <= self.size else 0.0
+        )
         jump = lead + self._deviation(here, next_) + follow
         only_here = lead + self._deviation(previous, next_, 2) + follow
-        only_previous = self._deviation(before, here, 2) + self._deviation(here, next_) + follow
+        only_previous = (
+            self._deviation(before, here, 2) + self._deviation(here, next_) + follow
+        )
         is_restart = here is not None and 0 < here < DAY
         if min(only_here, only_previous) < NEVER and not is_restart:
             if jump <= min(only_here, only_previous):
@@ -269,57 +362,92 @@ class LogSurvey:
             if only_here < only_previous:
                 return broken - size, broken + size
             return broken - 2 * size, broken
-        resume = self._search(broken - size + 1, broken + 3 * size, previous, is_aligned=False)
+        resume = self._search(
+            broken - size + 1, broken + 3 * size, previous, is_aligned=False
+        )
         if resume is not None:
             return broken - size, resume
-        is_clock = bool(here or next_) and self._is_clock(broken)  # zeros are erased or lost memory
+        is_clock = bool(here or next_) and self._is_clock(
+            broken
+        )  # zeros are erased or lost memory
         if is_clock and (here != next_ or next_ != second):
             return broken, broken
         low = broken - size + 1
         while low + size <= self.size:
             resume = self._search(low, low + WINDOW, previous, broken - size)
             if resume is None and not is_clock:
-                fresh = (at for at in self._candidates(low, WINDOW) if self._rises(at, self.limit))
+                fresh = (
+                    at
+                    for at in self._candidates(low, WINDOW)
+                    if self._rises(at, self.limit)
+                )
                 resume = next((at for at in fresh if self._has_other_times(at)), None)
             if resume is not None:
                 return broken - size, resume
             low += WINDOW
         return (broken, broken) if is_clock else (broken - size, self.size)
 
-    def _deviation(self, before: int | None, after: int | None, entries: int = 1) -> float:
-        """Return the difference between the step over ``entries`` and the usual one, in ms."""
-        if before is None or after is None or abs(after - before) > entries * self.limit:
+    def _deviation(
+        self, before: int | None, after: int | None, entries: int = 1
+    ) -> float:
+        """Return the difference between the step over ``entries`` and the usual one, in
+        ms.
+        """
+        if (
+            before is None
+            or after is None
+            or abs(after - before) > entries * self.limit
+        ):
             return NEVER
         return abs(after - before - entries * self.step)
 
     def _is_clock(self, at: int) -> bool:
-        """Return whether up to two entries continue the entry at ``at``, also after a pause."""
+        """Return whether up to two entries continue the entry at ``at``, also after a
+        pause.
+        """
         times = [self._time(at + number * self.entry_bytes) for number in range(3)]
-        available = [time for number, time in enumerate(times) if at + (number + 1) * self.entry_bytes <= self.size]
+        available = [
+            time
+            for number, time in enumerate(times)
+            if at + (number + 1) * self.entry_bytes <= self.size
+        ]
         if len(available) == 1:
             return available[0] is not None and (self.size - at) % self.entry_bytes == 0
         for before, after in pairwise(available):
             if (
                 before is None
                 or after is None
-                or not (0 <= after - before <= YEAR or abs(after - before) <= self.limit)
+                or not (
+                    0 <= after - before <= YEAR or abs(after - before) <= self.limit
+                )
             ):
                 return False
         return True
 
     def _rises(self, at: int, limit: float) -> bool:
-        """Return whether two more entries follow the one at ``at``, each slightly later."""
+        """Return whether two more entries follow the one at ``at``, each slightly
+        later.
+        """
         times = [self._time(at + number * self.entry_bytes) for number in range(3)]
         pairs = pairwise(times)
-        return all(a is not None and b is not None and 0 < b - a <= limit for a, b in pairs)
+        return all(
+            a is not None and b is not None and 0 < b - a <= limit for a, b in pairs
+        )
 
     def _unsteadiness(self, at: int) -> float:
         """Return the difference of the first two steps from ``at``, from 0 to 1.
 
         Return infinity without two steps.
         """
-        first, second, third = (self._time(at + number * self.entry_bytes) for number in range(3))
-        if first is None or second is None or third is None or not first <= second <= third:
+        first, second, third = (
+            self._time(at + number * self.entry_bytes) for number in range(3)
+        )
+        if (
+            first is None
+            or second is None
+            or third is None
+            or not first <= second <= third
+        ):
             return NEVER
         return abs((third - second) - (second - first)) / max(third - first, 1)
 
@@ -332,9 +460,15 @@ class LogSurvey:
         return [low + index for index, time in enumerate(times) if time >= 0]
 
     def _search(
-        self, low: int, high: int, previous: int | None, origin: int | None = None, is_aligned: bool = True
+        self,
+        low: int,
+        high: int,
+        previous: int | None,
+        origin: int | None = None,
+        is_aligned: bool = True,
     ) -> int | None:
-        """Return the first byte from ``low`` to before ``high`` at which entries continue.
+        """Return the first byte from ``low`` to before ``high`` at which entries
+        continue.
 
         ``previous`` is the time before. ``origin`` is the start of the last entry, by
         default ``low``. ``is_aligned`` includes positions that are correct if no byte
@@ -353,32 +487,59 @@ class LogSurvey:
                 continue
             if not 0 <= time - previous <= self.limit * (2 + (at - origin) / size):
                 continue
-            following = [self._time(at + number * size) for number in (1, 2) if at + (number + 1) * size <= self.size]
+            following = [
+                self._time(at + number * size)
+                for number in (1, 2)
+                if at + (number + 1) * size <= self.size
+            ]
             chain = [int(time), *following]
             steps = pairwise(chain)
-            if all(self._deviation(a, b) < NEVER for a, b in steps) and self._has_other_times(at):
+            if all(
+                self._deviation(a, b) < NEVER for a, b in steps
+            ) and self._has_other_times(at):
                 return self._regular(at)
         return None
 
     def _regular(self, at: int) -> int:
-        """Return ``at``, or the next entry if the lowest byte of the time at ``at`` is damaged.
+        """Return ``at``, or the next entry if the lowest byte of the time at ``at`` is
+        damaged.
 
         A damaged time has an unusual step to the next entry.
         """
-        first, second, third = (self._time(at + number * self.entry_bytes) for number in range(3))
-        is_odd = self._deviation(first, second) > self.step / 2 >= self._deviation(second, third)
+        first, second, third = (
+            self._time(at + number * self.entry_bytes) for number in range(3)
+        )
+        is_odd = (
+            self._deviation(first, second)
+            > self.step / 2
+            >= self._deviation(second, third)
+        )
         return at + self.entry_bytes if is_odd else at
 
     def _has_other_times(self, at: int) -> bool:
-        """Return whether entries from ``at`` contain further times at the usual positions.
+        """Return whether entries from ``at`` contain further times at the usual
+        positions.
 
         Otherwise ``at`` may be one of these positions.
         """
         size = self.entry_bytes
         for place in self.other_times:
-            starts = [start for start in (at, at + size, at + 2 * size) if start + place + self.time_end <= self.size]
-            pairs = [(self._time(start, self.time_end), self._time(start + place, self.time_end)) for start in starts]
-            if pairs and not any(a is not None and b is not None and abs(b - a) <= self.limit for a, b in pairs):
+            starts = [
+                start
+                for start in (at, at + size, at + 2 * size)
+                if start + place + self.time_end <= self.size
+            ]
+            pairs = [
+                (
+                    self._time(start, self.time_end),
+                    self._time(start + place, self.time_end),
+                )
+                for start in starts
+            ]
+            if pairs and not any(
+                a is not None and b is not None and abs(b - a) <= self.limit
+                for a, b in pairs
+            ):
                 return False
         return True
 

@@ -8,8 +8,14 @@ from icdgen.logfile.source import Source, time_text
 from icdgen.tables import Column, clean, render
 
 _NAMES = ("frame", "message")
-_COLUMNS = [Column(title, right=title not in _NAMES) for title in ("bit", "id", "frame", "bytes", "fields")]
-_MESSAGES = [Column(title, right=title not in _NAMES) for title in ("id", "message", "times", "bytes", "fields")]
+_COLUMNS = [
+    Column(title, right=title not in _NAMES)
+    for title in ("bit", "id", "frame", "bytes", "fields")
+]
+_MESSAGES = [
+    Column(title, right=title not in _NAMES)
+    for title in ("id", "message", "times", "bytes", "fields")
+]
 
 
 def recording_text(recording: Recording, tally: Tally, width: int | None) -> str:
@@ -19,9 +25,23 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
     rows = []
     for name, message in recording.messages.items():
         if tally.messages[name]:
-            id = message.telemetry_id if recording.direction == "telemetry" else message.telecommand_id
-            fields = sum(field.role != "count" for field in recording.icd.longest_frame(message))
-            rows.append((str(id), message.name, f"{tally.messages[name]:,}", f"{tally.sizes[name]:,}", str(fields)))
+            id = (
+                message.telemetry_id
+                if recording.direction == "telemetry"
+                else message.telecommand_id
+            )
+            fields = sum(
+                field.role != "count" for field in recording.icd.longest_frame(message)
+            )
+            rows.append(
+                (
+                    str(id),
+                    message.name,
+                    f"{tally.messages[name]:,}",
+                    f"{tally.sizes[name]:,}",
+                    str(fields),
+                )
+            )
     text = clean(f"{line}{times:,} message{'' if times == 1 else 's'}") + "\n"
     text += "\n" + render(_MESSAGES, rows, width) if rows else ""
     return text + "".join(f"\nnote: {note}\n" for note in tally.notes())
@@ -31,15 +51,33 @@ def to_text(source: Source, width: int | None) -> str:
     """List size, times, mask and frames of a log."""
     plan, entries = source.plan, source.entries
     lines = [f"{source.path}: log of {plan.node.name}, {source.size:,} bytes"]
-    span = f"{entries:,} entr{'y' if entries == 1 else 'ies'} of {plan.entry_bytes} bytes"
+    span = (
+        f"{entries:,} entr{'y' if entries == 1 else 'ies'} of {plan.entry_bytes} bytes"
+    )
     if times := source.first_and_last():
-        span += f", {time_text(times[0])}" + (f" to {time_text(times[1])}" if entries > 1 else "")
+        span += f", {time_text(times[0])}" + (
+            f" to {time_text(times[1])}" if entries > 1 else ""
+        )
     lines += [span, f"mask {source.mask.hex(' ')}"]
     rows = []
     for slot in plan.slots:
         fields = sum(c.field is not None for c in plan.columns if c.frame == slot.name)
         id = "" if slot.id is None else str(slot.id)
-        rows.append((str(slot.bit), id, slot.name or "(not assigned)", str(slot.length), str(fields)))
+        rows.append(
+            (
+                str(slot.bit),
+                id,
+                slot.name or "(not assigned)",
+                str(slot.length),
+                str(fields),
+            )
+        )
     text = "".join(clean(line) + "\n" for line in lines)
-    text += "\n" + render(_COLUMNS, rows, width) if rows else "\nThe mask selects no frame.\n"
-    return text + "".join(f"\nnote: {note}\n" for note in source.notes(source.integrity))
+    text += (
+        "\n" + render(_COLUMNS, rows, width)
+        if rows
+        else "\nThe mask selects no frame.\n"
+    )
+    return text + "".join(
+        f"\nnote: {note}\n" for note in source.notes(source.integrity)
+    )

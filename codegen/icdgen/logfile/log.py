@@ -1,4 +1,6 @@
-"""Common interface of log files of devices and of recordings of links, for `icdgen log`."""
+"""Common interface of log files of devices and of recordings of links, for `icdgen
+log`.
+"""
 
 from __future__ import annotations
 
@@ -51,24 +53,39 @@ class Log(Protocol):
         """Write a Parquet file."""
 
 
-def open_log(icd: Icd, node: Node, path: Path, direction: Direction, messages: Sequence[Message]) -> Log:
-    """Open a log. ``messages`` selects messages; empty for all. Raise `icdgen.errors.UserError`."""
+def open_log(
+    icd: Icd, node: Node, path: Path, direction: Direction, messages: Sequence[Message]
+) -> Log:
+    """Open a log.
+
+    ``messages`` selects messages; empty for all. Raise `icdgen.errors.UserError`.
+    """
     if facts.of(icd, node).stream is not None:
         return _Recorded(Recording(icd, node, path, direction, messages))
     return _Entries(_only(open_source(icd, node, path), messages))
 
 
 def _only(source: Source, messages: Sequence[Message]) -> Source:
-    """Return the log with the columns of these messages. Raise `icdgen.errors.UserError`."""
+    """Return the log with the columns of these messages.
+
+    Raise `icdgen.errors.UserError`.
+    """
     if not messages:
         return source
     keys = {key(message) for message in messages}
     columns = tuple(
-        column for column in source.plan.columns if column.message is not None and key(column.message) in keys
+        column
+        for column in source.plan.columns
+        if column.message is not None and key(column.message) in keys
     )
-    if missing := keys - {key(column.message) for column in columns if column.message is not None}:
+    if missing := keys - {
+        key(column.message) for column in columns if column.message is not None
+    }:
         names = ", ".join(sorted(name for _, name in missing))
-        raise UserError(f"{source.path} has no {names}", f"`icdgen log {source.path}` lists what it holds")
+        raise UserError(
+            f"{source.path} has no {names}",
+            f"`icdgen log {source.path}` lists what it holds",
+        )
     return replace(source, plan=replace(source.plan, columns=columns))
 
 
@@ -105,7 +122,10 @@ class _Entries:
 
 
 class _Recorded:
-    """A recording of a link. It is read twice, as only received messages have columns."""
+    """A recording of a link.
+
+    It is read twice, as only received messages have columns.
+    """
 
     def __init__(self, recording: Recording) -> None:
         self.recording = recording
@@ -116,18 +136,23 @@ class _Recorded:
         return self.sheet.names
 
     def listing(self, width: int | None, done: Done) -> str:
-        return listing.recording_text(self.recording, self.recording.survey(None, done), width)
+        return listing.recording_text(
+            self.recording, self.recording.survey(None, done), width
+        )
 
     def steps(self, head: int | None) -> int:
         return 2 * self.recording.size
 
     def prepare(self, head: int | None, done: Done) -> list[str]:
         tally = self.recording.survey(head, done)
-        self.sheet = Sheet(self.recording, self.recording.chosen & tally.messages.keys())
+        self.sheet = Sheet(
+            self.recording, self.recording.chosen & tally.messages.keys()
+        )
         return tally.notes()
 
     def is_damaged(self, head: int | None) -> bool:
-        return False  # noise on a line is normal; it is counted and does not affect decoded messages
+        # Noise on a line is normal; it is counted and does not affect decoded messages.
+        return False
 
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         return self.sheet.rows(head, done)

@@ -1,4 +1,7 @@
-"""Conversion to Parquet with numpy and pyarrow. One thread decodes while another writes."""
+"""Conversion to Parquet with numpy and pyarrow.
+
+One thread decodes while another writes.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +29,13 @@ PIECE = 6 << 20  # bytes decoded at a time: fits the cache of the processor
 GROUP = 24 << 20  # approximate bytes of the log in a row group
 
 
-def to_parquet(source: Source, path: Path, head: int | None, done: Callable[[int], None]) -> None:
-    """Write the file. Units and names are metadata of the columns. Raise `icdgen.errors.UserError`."""
+def to_parquet(
+    source: Source, path: Path, head: int | None, done: Callable[[int], None]
+) -> None:
+    """Write the file.
+
+    Units and names are metadata of the columns. Raise `icdgen.errors.UserError`.
+    """
     check_installed()
     decoder = Decoder(source.plan)
     write(path, decoder.schema, _ahead(_groups(source, decoder, head, done)))
@@ -37,7 +45,9 @@ def write(path: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
     """Write a file with these row groups."""
     import pyarrow.parquet as pq
 
-    with pq.ParquetWriter(path, schema, compression="lz4", write_page_index=True) as writer:
+    with pq.ParquetWriter(
+        path, schema, compression="lz4", write_page_index=True
+    ) as writer:
         for table in tables:
             writer.write_table(table, row_group_size=table.num_rows)
 
@@ -46,7 +56,9 @@ def schema_of(fields: Iterable[pa.Field], node: Node) -> pa.Schema:
     """Return the schema of the columns, with the node as metadata."""
     import pyarrow as pa
 
-    return pa.schema(fields, {"icdgen.node": node.name, "icdgen.icd_sha256": node.digest})
+    return pa.schema(
+        fields, {"icdgen.node": node.name, "icdgen.icd_sha256": node.digest}
+    )
 
 
 def check_installed() -> None:
@@ -55,10 +67,14 @@ def check_installed() -> None:
         import numpy  # noqa: F401
         import pyarrow.parquet  # noqa: F401
     except ImportError:
-        raise UserError("pyarrow and numpy are not installed", "pip install 'icdgen[arrow]'") from None
+        raise UserError(
+            "pyarrow and numpy are not installed", "pip install 'icdgen[arrow]'"
+        ) from None
 
 
-def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[int], None]) -> Iterator[pa.Table]:
+def _groups(
+    source: Source, decoder: Decoder, head: int | None, done: Callable[[int], None]
+) -> Iterator[pa.Table]:
     """Decode row groups of about `GROUP` bytes."""
     import pyarrow as pa
 
@@ -90,9 +106,13 @@ class Decoder:
         import pyarrow as pa
 
         self.plan = plan
-        self.columns = [ColumnReader(column, plan.entry_bytes) for column in plan.columns]
+        self.columns = [
+            ColumnReader(column, plan.entry_bytes) for column in plan.columns
+        ]
         time = pa.field(TIME, pa.timestamp("ms", tz="UTC"), nullable=False)
-        self.schema = schema_of([time, *(reader.field for reader in self.columns)], plan.node)
+        self.schema = schema_of(
+            [time, *(reader.field for reader in self.columns)], plan.node
+        )
 
     def batch(self, data: bytes) -> pa.RecordBatch:
         """Return the entries in ``data`` as a record batch."""
@@ -100,9 +120,15 @@ class Decoder:
         import pyarrow as pa
 
         plan, count = self.plan, len(data) // self.plan.entry_bytes
-        seconds = numbers_at(data, plan.entry_bytes, *plan.seconds, plan.order == "little")
-        milliseconds = numbers_at(data, plan.entry_bytes, *plan.milliseconds, plan.order == "little")
-        time = pa.array(seconds.astype(np.int64) * 1000 + milliseconds, pa.int64()).cast(self.schema.field(0).type)
+        seconds = numbers_at(
+            data, plan.entry_bytes, *plan.seconds, plan.order == "little"
+        )
+        milliseconds = numbers_at(
+            data, plan.entry_bytes, *plan.milliseconds, plan.order == "little"
+        )
+        time = pa.array(
+            seconds.astype(np.int64) * 1000 + milliseconds, pa.int64()
+        ).cast(self.schema.field(0).type)
         arrays = [time, *(reader.read(data, count) for reader in self.columns)]
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)
 
@@ -114,12 +140,22 @@ class ColumnReader:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes
-        self.operands = [ColumnReader(operand, entry_bytes) for operand in column.operands]
+        self.operands = [
+            ColumnReader(operand, entry_bytes) for operand in column.operands
+        ]
         self.names: pa.Array | None = None  # names of all values of a small enumeration
-        metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
+        metadata = {
+            "frame": column.frame,
+            "field": column.field.name if column.field else "",
+            "unit": column.unit,
+        }
         if column.field and column.field.enum:
-            metadata["members"] = json.dumps({m.values: m.name for m in column.field.enum.members})
-        self.field = pa.field(column.name, self._type(), nullable=False, metadata=metadata)
+            metadata["members"] = json.dumps(
+                {m.values: m.name for m in column.field.enum.members}
+            )
+        self.field = pa.field(
+            column.name, self._type(), nullable=False, metadata=metadata
+        )
 
     def _type(self) -> pa.DataType:
         import pyarrow as pa
@@ -154,19 +190,29 @@ class ColumnReader:
         if pa.types.is_fixed_size_binary(type_):
             table = np.frombuffer(data, np.uint8).reshape(count, self.stride)
             part = np.ascontiguousarray(table[:, column.at : column.at + column.size])
-            return pa.FixedSizeBinaryArray.from_buffers(type_, count, [None, pa.py_buffer(part)])
+            return pa.FixedSizeBinaryArray.from_buffers(
+                type_, count, [None, pa.py_buffer(part)]
+            )
         if column.kind == "text":
             places = range(column.at, count * self.stride, self.stride)
-            return pa.array([codec.text(data[at : at + column.size]) for at in places], type_)
+            return pa.array(
+                [codec.text(data[at : at + column.size]) for at in places], type_
+            )
         if self.operands or column.steps or column.curve or column.kind == "float":
             return pa.array(self._numbers(data))
         raw = self._raw(data)
         if self.names is not None:
-            return pa.DictionaryArray.from_arrays(pa.array(raw.astype(np.uint8)), self.names)
+            return pa.DictionaryArray.from_arrays(
+                pa.array(raw.astype(np.uint8)), self.names
+            )
         if column.kind == "enum":
             different, where = np.unique(raw, return_inverse=True)
-            names = pa.array(self._named(int(value) for value in different), pa.string())
-            return pa.DictionaryArray.from_arrays(pa.array(where.astype(np.int32)), names)
+            names = pa.array(
+                self._named(int(value) for value in different), pa.string()
+            )
+            return pa.DictionaryArray.from_arrays(
+                pa.array(where.astype(np.int32)), names
+            )
         if column.kind == "bool":
             return pa.array(raw != 0)
         return pa.array(raw.astype(type_.to_pandas_dtype()))
@@ -178,7 +224,11 @@ class ColumnReader:
         column = self.column
         result: np.ndarray
         if column.field is not None and column.field.derived is not None:
-            result = derived_column(np, column.field.derived, [operand._numbers(data) for operand in self.operands])
+            result = derived_column(
+                np,
+                column.field.derived,
+                [operand._numbers(data) for operand in self.operands],
+            )
             return result
         raw = self._raw(data)
         if column.steps:
@@ -192,7 +242,9 @@ class ColumnReader:
     def _named(self, values: Iterable[int]) -> list[str]:
         enum = self.column.field.enum if self.column.field else None
         members = ((value, enum.member_of(value) if enum else None) for value in values)
-        return [member.name if member else f"unknown {value}" for value, member in members]
+        return [
+            member.name if member else f"unknown {value}" for value, member in members
+        ]
 
     def _raw(self, data: bytes) -> np.ndarray:
         import numpy as np
@@ -201,7 +253,14 @@ class ColumnReader:
         assert field
         if field.at % 8 == 0 and field.bits in (8, 16, 32, 64):
             little = column.byte_order == "little"
-            return numbers_at(data, self.stride, column.at, field.bits // 8, little, "i" if field.is_signed else "u")
+            return numbers_at(
+                data,
+                self.stride,
+                column.at,
+                field.bits // 8,
+                little,
+                "i" if field.is_signed else "u",
+            )
         if len(column.pieces) == 1:
             (piece,) = column.pieces
             value = numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask
@@ -211,10 +270,13 @@ class ColumnReader:
         else:
             value = np.zeros(len(data) // self.stride, np.uint64)
             for piece in column.pieces:
-                part = (numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask) >> piece.shift
+                part = (
+                    numbers_at(data, self.stride, piece.byte, 1, True) & piece.mask
+                ) >> piece.shift
                 value |= part.astype(np.uint64) << np.uint64(piece.at)
         if field.is_signed:
-            # Shift to the top of a word and back, which copies the sign to the upper bits.
+            # Shift to the top of a word and back, which copies the sign to the upper
+            # bits.
             up = np.int64(64 - field.bits)
             return value.astype(np.uint64).view(np.int64) << up >> up
         return value
@@ -235,6 +297,9 @@ class ColumnReader:
             if d != 1:
                 result /= d
             return result
-        # Numbers this large need Python's integers. Compute each different value only once.
+        # Numbers this large need Python's integers. Compute each different value only
+        # once.
         different, where = np.unique(raw, return_inverse=True)
-        return np.array([(int(raw_value) * a + b) / d for raw_value in different], np.float64)[where]
+        return np.array(
+            [(int(raw_value) * a + b) / d for raw_value in different], np.float64
+        )[where]

@@ -1,4 +1,6 @@
-"""Recordings: files with the received bytes of a link whose messages have header and trailer."""
+"""Recordings: files with the received bytes of a link whose messages have header and
+trailer.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +64,11 @@ class Tally:
         if event.event == "gap":
             self.missing += event.missing
             self.repeated += event.missing == 0
-        elif event.event == "unknown_id" and event.id is not None and self._has_own_counter(event.id):
+        elif (
+            event.event == "unknown_id"
+            and event.id is not None
+            and self._has_own_counter(event.id)
+        ):
             self.unknown[event.id] += 1
         else:
             self.faults[FAULTS.get(event.event, event.event)] += 1
@@ -76,7 +82,10 @@ class Tally:
         listed = [f"{what} ({times:,})" for what, times in sorted(self.faults.items())]
         notes = [f"not taken: {', '.join(listed)}"] if listed else []
         if self.unknown:
-            listed = [f"{id} ({times:,})" for id, times in self.unknown.most_common(_MOST_LISTED)]
+            listed = [
+                f"{id} ({times:,})"
+                for id, times in self.unknown.most_common(_MOST_LISTED)
+            ]
             remaining = len(self.unknown) - len(listed)
             notes.append(
                 f"ids that the ICD does not have: {', '.join(listed)}{f' and {remaining} others' if remaining else ''}"
@@ -97,7 +106,12 @@ class Recording:
     """
 
     def __init__(
-        self, icd: Icd, node: Node, path: Path, direction: Direction = "telemetry", chosen: Sequence[Message] = ()
+        self,
+        icd: Icd,
+        node: Node,
+        path: Path,
+        direction: Direction = "telemetry",
+        chosen: Sequence[Message] = (),
     ) -> None:
         self.icd, self.node, self.path, self.direction = icd, node, path, direction
         self.link = link_of(icd, facts.of(icd, node))
@@ -105,8 +119,16 @@ class Recording:
             id: [variant.message for variant in variants]
             for id, variants in getattr(ids_of(icd, node), direction).items()
         }
-        self.messages = {key(message): message for messages in self._known.values() for message in messages}
-        self._with_equal_frames = {name for name, message in self.messages.items() if _has_equal_frames(message)}
+        self.messages = {
+            key(message): message
+            for messages in self._known.values()
+            for message in messages
+        }
+        self._with_equal_frames = {
+            name
+            for name, message in self.messages.items()
+            if _has_equal_frames(message)
+        }
         self.chosen = {key(message) for message in chosen} or set(self.messages)
         if unknown := self.chosen - set(self.messages):
             names = ", ".join(sorted(name for _, name in unknown))
@@ -128,8 +150,12 @@ class Recording:
         assert self.link.stream is not None
         return self.link.stream
 
-    def read(self, tally: Tally, head: int | None, done: Done) -> Iterator[ReceivedMessage]:
-        """Iterate over the chosen messages, up to ``head``. Count all events in ``tally``.
+    def read(
+        self, tally: Tally, head: int | None, done: Done
+    ) -> Iterator[ReceivedMessage]:
+        """Iterate over the chosen messages, up to ``head``.
+
+        Count all events in ``tally``.
 
         Raise `icdgen.errors.UserError`.
         """
@@ -166,7 +192,11 @@ class Recording:
             tally.fault(event)
             return None
         messages = self._known[event.id]
-        message = messages[0] if len(messages) == 1 else codec.message_of_frame_if_any(self.icd, messages, event.data)
+        message = (
+            messages[0]
+            if len(messages) == 1
+            else codec.message_of_frame_if_any(self.icd, messages, event.data)
+        )
         unpacked: Unpacked = (event.data, None, {})
         try:
             if message is not None and key(message) not in self._with_equal_frames:
@@ -181,7 +211,9 @@ class Recording:
         if key(message) not in self.chosen:
             return None
         data, present, ends = unpacked
-        return ReceivedMessage(message, data.ljust(message.length, b"\0"), event.values, present, ends)
+        return ReceivedMessage(
+            message, data.ljust(message.length, b"\0"), event.values, present, ends
+        )
 
     def _pieces(self) -> Iterator[bytes]:
         try:
@@ -193,13 +225,18 @@ class Recording:
 
 
 def key(message: Message) -> Key:
-    """Return the node that declares a message, and its name. They are unique for a node."""
+    """Return the node that declares a message, and its name.
+
+    They are unique for a node.
+    """
     return message.node, message.name
 
 
 def _has_equal_frames(message: Message) -> bool:
     """Return whether all frames of a message have the same fields."""
-    return not message.layout.parts and not any(node.present_if for node in message.layout.nodes)
+    return not message.layout.parts and not any(
+        node.present_if for node in message.layout.nodes
+    )
 
 
 def _unpacked(node: Node, message: Message, data: bytes) -> Unpacked:

@@ -17,7 +17,9 @@ Done = Callable[[int], None]  # called with the number of bytes read
 
 def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
     """Iterate over time and values of each entry."""
-    readers, size = [reader(column) for column in source.plan.columns], source.plan.entry_bytes
+    readers, size = [
+        reader(column) for column in source.plan.columns
+    ], source.plan.entry_bytes
     for piece in source.pieces(head):
         for at in range(0, len(piece), size):
             entry = piece[at : at + size]
@@ -35,7 +37,9 @@ def reader(column: Column) -> Callable[[bytes], Value]:
 def _derived(column: Column) -> Callable[[bytes], float]:
     """Return the function that computes a derived value from an entry."""
     assert column.field and column.field.derived
-    how, numbers = column.field.derived, [_number(operand) for operand in column.operands]
+    how, numbers = column.field.derived, [
+        _number(operand) for operand in column.operands
+    ]
     return lambda entry: how.double([number(entry) for number in numbers])
 
 
@@ -88,7 +92,9 @@ def _enum(column: Column) -> Callable[[bytes], Value]:
     assert column.field and column.field.enum
     raw, enum = _raw(column), column.field.enum
     named = lru_cache(maxsize=1024)(
-        lambda value: member.name if (member := enum.member_of(value)) else f"unknown {value}"
+        lambda value: (
+            member.name if (member := enum.member_of(value)) else f"unknown {value}"
+        )
     )
     return lambda entry: named(raw(entry))
 
@@ -104,7 +110,9 @@ def _float(column: Column) -> Callable[[bytes], Value]:
         value = struct.unpack(form, struct.pack(integer_form, raw(entry)))[0]
         if curve is not None:
             return curve.double(value)
-        return float(floats.text_of(value, bits)) if math.isfinite(value) else value  # 0.1, not 0.10000000149011612
+        return (
+            float(floats.text_of(value, bits)) if math.isfinite(value) else value
+        )  # 0.1, not 0.10000000149011612
 
     return read
 

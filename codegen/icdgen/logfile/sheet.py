@@ -18,7 +18,10 @@ MESSAGE = "message"  # column with the name of the message
 
 
 class Entry(NamedTuple):
-    """A column of the table: its index and its field. ``is_cut``: the number of bytes varies."""
+    """A column of the table: its index and its field.
+
+    ``is_cut``: the number of bytes varies.
+    """
 
     place: int
     column: Column
@@ -30,11 +33,21 @@ class Sheet:
 
     def __init__(self, recording: Recording, received: Iterable[Key]) -> None:
         self.recording = recording
-        messages = [message for name, message in recording.messages.items() if name in set(received)]
+        messages = [
+            message
+            for name, message in recording.messages.items()
+            if name in set(received)
+        ]
         roles = {field.role for field in recording.form.fields}
         self.roles = [role for role in GIVEN if role in roles]
-        columns = unique(column for message in messages for column in columns_of(recording.icd, message))
-        self.entries: dict[Key, list[Entry]] = {key(message): [] for message in messages}
+        columns = unique(
+            column
+            for message in messages
+            for column in columns_of(recording.icd, message)
+        )
+        self.entries: dict[Key, list[Entry]] = {
+            key(message): [] for message in messages
+        }
         for place, column in enumerate(columns, 1 + len(self.roles)):
             assert column.message and column.field
             is_cut = column.field.scalar.length is not None and column.kind == "bytes"
@@ -53,17 +66,23 @@ class Sheet:
     def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
         """Iterate over the rows, one for each message."""
         readers = {
-            name: [(column_entry, reader(column_entry.column)) for column_entry in entries]
+            name: [
+                (column_entry, reader(column_entry.column)) for column_entry in entries
+            ]
             for name, entries in self.entries.items()
         }
         for received in self.recording.read(Tally(), head, done):
             row: list[Value] = [None] * len(self.names)
             row[0] = received.message.name
-            row[1 : 1 + len(self.roles)] = [received.values.get(role) for role in self.roles]
+            row[1 : 1 + len(self.roles)] = [
+                received.values.get(role) for role in self.roles
+            ]
             for entry, read in readers[key(received.message)]:
                 if is_present(received, entry.column):
                     row[entry.place] = read(
-                        received.data[: end_of_field(received, entry.column)] if entry.is_cut else received.data
+                        received.data[: end_of_field(received, entry.column)]
+                        if entry.is_cut
+                        else received.data
                     )
             yield row
 
@@ -76,4 +95,6 @@ def end_of_field(received: ReceivedMessage, column: Column) -> int:
 
 def is_present(received: ReceivedMessage, column: Column) -> bool:
     """Return whether the message has the field."""
-    return received.present is None or (column.field is not None and column.field.name in received.present)
+    return received.present is None or (
+        column.field is not None and column.field.name in received.present
+    )

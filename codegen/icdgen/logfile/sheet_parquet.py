@@ -18,18 +18,23 @@ from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of_field, is_present
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_CELLS = 4_000_000  # approximate cells of a row group: limits the memory for wide, sparse tables
+# Approximate cells of a row group: limits the memory for wide, sparse tables.
+_CELLS = 4_000_000
 
 
 def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
     """Write the file. Missing values are null. Raise `icdgen.errors.UserError`."""
     check_installed()
     builder = _TableBuilder(sheet)
-    batches = _batches(sheet.recording.read(Tally(), head, done), max(256, _CELLS // len(sheet.names)))
+    batches = _batches(
+        sheet.recording.read(Tally(), head, done), max(256, _CELLS // len(sheet.names))
+    )
     write(path, builder.schema, map(builder.table, batches))
 
 
-def _batches(messages: Iterator[ReceivedMessage], size: int) -> Iterator[list[ReceivedMessage]]:
+def _batches(
+    messages: Iterator[ReceivedMessage], size: int
+) -> Iterator[list[ReceivedMessage]]:
     while batch := list(islice(messages, size)):
         yield batch
 
@@ -42,12 +47,22 @@ class _TableBuilder:
 
         self.sheet = sheet
         self.readers = {
-            name: [(entry, ColumnReader(entry.column, sheet.recording.messages[name].length)) for entry in entries]
+            name: [
+                (
+                    entry,
+                    ColumnReader(entry.column, sheet.recording.messages[name].length),
+                )
+                for entry in entries
+            ]
             for name, entries in sheet.entries.items()
         }
-        fields = [pa.field(MESSAGE, pa.dictionary(pa.int32(), pa.string()), nullable=False)]
+        fields = [
+            pa.field(MESSAGE, pa.dictionary(pa.int32(), pa.string()), nullable=False)
+        ]
         fields += [pa.field(role, pa.uint32(), nullable=False) for role in sheet.roles]
-        for entry, reader in (pair for pairs in self.readers.values() for pair in pairs):
+        for entry, reader in (
+            pair for pairs in self.readers.values() for pair in pairs
+        ):
             field = reader.field.with_nullable(True)
             fields.append(field.with_type(pa.binary()) if entry.is_cut else field)
         self.schema = schema_of(fields, sheet.recording.node)
@@ -59,22 +74,36 @@ class _TableBuilder:
         places: dict[Key, list[int]] = {}
         for place, received in enumerate(batch):
             places.setdefault(key(received.message), []).append(place)
-        arrays = [pa.array([received.message.name for received in batch]).dictionary_encode()]
-        arrays += [pa.array([received.values[role] for received in batch], pa.uint32()) for role in self.sheet.roles]
+        arrays = [
+            pa.array([received.message.name for received in batch]).dictionary_encode()
+        ]
+        arrays += [
+            pa.array([received.values[role] for received in batch], pa.uint32())
+            for role in self.sheet.roles
+        ]
         for name, readers in self.readers.items():
             here = places.get(name, [])
             data = b"".join(batch[place].data for place in here)
             for entry, reader in readers:
                 type_ = self.schema.field(entry.place).type
                 arrays.append(
-                    self._column_of_batch(batch, here, entry, reader, data) if here else pa.nulls(len(batch), type_)
+                    self._column_of_batch(batch, here, entry, reader, data)
+                    if here
+                    else pa.nulls(len(batch), type_)
                 )
         return pa.Table.from_arrays(arrays, schema=self.schema)
 
     def _column_of_batch(
-        self, batch: list[ReceivedMessage], here: list[int], entry: Entry, reader: ColumnReader, data: bytes
+        self,
+        batch: list[ReceivedMessage],
+        here: list[int],
+        entry: Entry,
+        reader: ColumnReader,
+        data: bytes,
     ) -> pa.Array:
-        """Return a column with its values in the rows of its message, and null in the others."""
+        """Return a column with its values in the rows of its message, and null in the
+        others.
+        """
         import numpy as np
         import pyarrow as pa
 
@@ -83,10 +112,13 @@ class _TableBuilder:
             for place in here:
                 received = batch[place]
                 if is_present(received, entry.column):
-                    values[place] = received.data[entry.column.at : end_of_field(received, entry.column)]
+                    values[place] = received.data[
+                        entry.column.at : end_of_field(received, entry.column)
+                    ]
             return pa.array(values, pa.binary())
         indices, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
-        # Row number -> index of its message among the decoded ones; the other rows are null.
+        # Row number -> index of its message among the decoded ones; the other rows are
+        # null.
         indices[here] = np.arange(len(here))
         is_null[here] = [not is_present(batch[place], entry.column) for place in here]
         return reader.read(data, len(here)).take(pa.array(indices, mask=is_null))

@@ -22,7 +22,10 @@ _PIECE = 1 << 18  # approximate bytes of a read
 
 @dataclass(frozen=True)
 class Source:
-    """A log file and its header. `icdgen.logfile.integrity` finds its complete entries."""
+    """A log file and its header.
+
+    `icdgen.logfile.integrity` finds its complete entries.
+    """
 
     path: Path
     mask: bytes
@@ -32,14 +35,22 @@ class Source:
 
     @cached_property
     def integrity(self) -> Integrity:
-        """Entries, damage and clock jumps of the complete file. Raises `icdgen.errors.UserError`."""
+        """Entries, damage and clock jumps of the complete file.
+
+        Raises `icdgen.errors.UserError`.
+        """
         return self.survey(None)
 
     def survey(self, head: int | None) -> Integrity:
-        """Entries, damage and clock jumps up to the first ``head`` entries. Raises `icdgen.errors.UserError`."""
+        """Entries, damage and clock jumps up to the first ``head`` entries.
+
+        Raises `icdgen.errors.UserError`.
+        """
         try:
             with self.path.open("rb") as file:
-                return LogSurvey(file, self.size, self.header_bytes, self.plan).run(head)
+                return LogSurvey(file, self.size, self.header_bytes, self.plan).run(
+                    head
+                )
         except OSError as error:
             raise unreadable(self.path, error) from None
 
@@ -54,7 +65,10 @@ class Source:
         Raise `icdgen.errors.UserError`.
         """
         integrity = self.integrity if head is None else self.survey(head)
-        chunk_entries, entry_bytes = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
+        chunk_entries, entry_bytes = (
+            max(1, size // self.plan.entry_bytes),
+            self.plan.entry_bytes,
+        )
         try:
             with self.path.open("rb") as file:
                 for span in integrity.spans:
@@ -73,13 +87,19 @@ class Source:
     def time(self, entry: bytes) -> int:
         """Return the time of an entry in milliseconds since 1970."""
         order = self.plan.order
-        (at, size), (milliseconds_at, milliseconds_size) = self.plan.seconds, self.plan.milliseconds
+        (at, size), (milliseconds_at, milliseconds_size) = (
+            self.plan.seconds,
+            self.plan.milliseconds,
+        )
         return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(
             entry[milliseconds_at : milliseconds_at + milliseconds_size], order
         )
 
     def first_and_last(self) -> tuple[int, int] | None:
-        """Times of the first and the last entry; None without entries. Raises `icdgen.errors.UserError`."""
+        """Times of the first and the last entry; None without entries.
+
+        Raises `icdgen.errors.UserError`.
+        """
         spans = [span for span in self.integrity.spans if span.entries]
         if not spans:
             return None
@@ -95,16 +115,28 @@ class Source:
         return times[0], times[1]
 
     def notes(self, integrity: Integrity) -> list[str]:
-        """Return notes about damage, clock jumps, an incomplete last entry, and doubts about the node."""
-        notes = [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in self._doubts(integrity)]
-        notes += _summary([_damage_text(damage) for damage in integrity.damages], "damaged range")
+        """Return notes about damage, clock jumps, an incomplete last entry, and doubts
+        about the node.
+        """
+        notes = [
+            f"{doubt}; is this a log of {self.plan.node.name}?"
+            for doubt in self._doubts(integrity)
+        ]
+        notes += _summary(
+            [_damage_text(damage) for damage in integrity.damages], "damaged range"
+        )
         notes += _summary([_jump_text(jump) for jump in integrity.jumps], "time jump")
         if integrity.truncated:
-            notes.append(f"the last {integrity.truncated} bytes belong to no whole entry")
+            notes.append(
+                f"the last {integrity.truncated} bytes belong to no whole entry"
+            )
         return notes
 
     def _doubts(self, integrity: Integrity) -> Iterator[str]:
-        """Return reasons to doubt that the file is a log. Nearly any file can be read as one."""
+        """Return reasons to doubt that the file is a log.
+
+        Nearly any file can be read as one.
+        """
         unknown = sum(slot.id is None for slot in self.plan.slots)
         if unknown:
             yield f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has"
@@ -126,19 +158,32 @@ def _jump_text(jump: TimeJump) -> str:
 def _summary(texts: list[str], what: str) -> list[str]:
     """Return the first texts and the number of the remaining ones."""
     remaining = len(texts) - _MOST_NOTES
-    return texts[:_MOST_NOTES] + ([f"and {remaining:,} more {what}{'s' * (remaining > 1)}"] if remaining > 0 else [])
+    return texts[:_MOST_NOTES] + (
+        [f"and {remaining:,} more {what}{'s' * (remaining > 1)}"]
+        if remaining > 0
+        else []
+    )
 
 
 def time_text(milliseconds: int) -> str:
     """Return a time as ISO 8601 text in UTC."""
-    return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(timespec="milliseconds")[:-6] + "Z"
+    return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(
+        timespec="milliseconds"
+    )[:-6] + "Z"
 
 
 def node_of(icd: Icd, name: str | None) -> Node:
-    """Return the node of this name, or the only node with logs. Raise `icdgen.errors.UserError`."""
+    """Return the node of this name, or the only node with logs.
+
+    Raise `icdgen.errors.UserError`.
+    """
     if name is not None:
         return find_node(icd, name)
-    candidates = [node for node in icd.nodes if (node_facts := facts.of(icd, node)).log_file or node_facts.stream]
+    candidates = [
+        node
+        for node in icd.nodes
+        if (node_facts := facts.of(icd, node)).log_file or node_facts.stream
+    ]
     if len(candidates) == 1:
         return candidates[0]
     if not candidates:
@@ -152,7 +197,9 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
     """Open a log file. Raise `icdgen.errors.UserError`."""
     node_facts = facts.of(icd, node)
     if node_facts.log_file is None or node_facts.mask is None:
-        raise UserError(f"the ICD of {node.name} describes no logs", "name another node")
+        raise UserError(
+            f"the ICD of {node.name} describes no logs", "name another node"
+        )
     header = node_facts.log_file.header_bytes
     try:
         if path.is_dir():
@@ -162,11 +209,20 @@ def open_source(icd: Icd, node: Node, path: Path) -> Source:
     except OSError as error:
         raise unreadable(path, error) from None
     if len(head) < header:
-        raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
-    mask = head[node_facts.log_file.mask_at : node_facts.log_file.mask_at + node_facts.mask.size]
+        raise UserError(
+            f"{path} is no log: it has {size} bytes, the header alone has {header}",
+            "is it whole?",
+        )
+    mask = head[
+        node_facts.log_file.mask_at : node_facts.log_file.mask_at + node_facts.mask.size
+    ]
     source = Source(path, mask, header, size, plan(icd, node_facts, mask))
-    # The header has no magic number: the times of the entries are the only evidence that this is a log.
+    # The header has no magic number: the times of the entries are the only evidence
+    # that this is a log.
     if size >= header + source.plan.entry_bytes and not source.survey(1).spans:
         why = "its entries have no times, their milliseconds are above 999"
-        raise UserError(f"{path} is no log of {node.name}: {why}", "name a log file as it was downloaded, or --node")
+        raise UserError(
+            f"{path} is no log of {node.name}: {why}",
+            "name a log file as it was downloaded, or --node",
+        )
     return source

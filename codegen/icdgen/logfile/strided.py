@@ -9,9 +9,16 @@ if TYPE_CHECKING:
 
 
 def numbers_at(
-    data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u", count: int | None = None
+    data: bytes,
+    stride: int,
+    at: int,
+    size: int,
+    little: bool,
+    kind: str = "u",
+    count: int | None = None,
 ) -> np.ndarray:
-    """Return the number of ``size`` bytes at ``at`` and every ``stride`` bytes after it.
+    """Return the number of ``size`` bytes at ``at`` and every ``stride`` bytes after
+    it.
 
     By default, there is one number for each complete stride. The array is a view of
     ``data`` if numpy has a type of that size.
@@ -20,7 +27,9 @@ def numbers_at(
 
     count = len(data) // stride if count is None else count
     if size in (1, 2, 4, 8):
-        return np.ndarray((count,), f"{'<' if little else '>'}{kind}{size}", data, at, (stride,))
+        return np.ndarray(
+            (count,), f"{'<' if little else '>'}{kind}{size}", data, at, (stride,)
+        )
     value = np.zeros(count, np.uint64)
     for number in range(size):
         byte = np.ndarray((count,), np.uint8, data, at + number, (stride,))

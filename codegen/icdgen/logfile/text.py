@@ -22,14 +22,23 @@ def to_csv(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) 
         writer.writerow([_csv_value(value) for value in values])
 
 
-def to_json_lines(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) -> None:
+def to_json_lines(
+    names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO
+) -> None:
     """Write an object for each row, without missing values.
 
     NaN and infinity become null, as JSON cannot represent them.
     """
     for values in rows:
-        present = ((name, value) for name, value in zip(names, values, strict=True) if value is not None)
-        record = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in present}
+        present = (
+            (name, value)
+            for name, value in zip(names, values, strict=True)
+            if value is not None
+        )
+        record = {
+            name: None if isinstance(v, float) and not math.isfinite(v) else v
+            for name, v in present
+        }
         file.write(json.dumps(record, ensure_ascii=False) + "\n")
 
 

@@ -65,14 +65,19 @@ def identifier(can: Can, **parts: int) -> int:
     value = 0
     for role, part in can.parts.items():
         if not 0 <= parts[role] < 1 << part.bits:
-            raise ValueError(f"{role} takes 0 to {(1 << part.bits) - 1}, not {parts[role]}")
+            raise ValueError(
+                f"{role} takes 0 to {(1 << part.bits) - 1}, not {parts[role]}"
+            )
         value |= parts[role] << part.shift
     return value
 
 
 def parts_of(can: Can, id: int) -> dict[str, int]:
     """Return the parts of an identifier by role."""
-    return {role: id >> part.shift & (1 << part.bits) - 1 for role, part in can.parts.items()}
+    return {
+        role: id >> part.shift & (1 << part.bits) - 1
+        for role, part in can.parts.items()
+    }
 
 
 def split(facts: Facts, message: Message) -> list[Packet]:
@@ -84,7 +89,13 @@ def split(facts: Facts, message: Message) -> list[Packet]:
 
     def packet(types: dict[str, int], data: bytes) -> Packet:
         type_ = need(types.get(message.kind), f"can: {message.kind}")
-        id = identifier(can, type=type_, channel=message.id, source=message.source, destination=message.destination)
+        id = identifier(
+            can,
+            type=type_,
+            channel=message.id,
+            source=message.source,
+            destination=message.destination,
+        )
         return Packet(id, data)
 
     data, size = message.data, len(message.data)
@@ -101,7 +112,10 @@ def split(facts: Facts, message: Message) -> list[Packet]:
     # packet.
     width, fill = max(form.data_bytes, form.left_at), bytes([form.fill])
     packets_left = range(form.left_in_last + len(pieces) - 1, form.left_in_last - 1, -1)
-    filled = [piece.ljust(width, fill) + bytes([count]) for piece, count in zip(pieces, packets_left, strict=True)]
+    filled = [
+        piece.ljust(width, fill) + bytes([count])
+        for piece, count in zip(pieces, packets_left, strict=True)
+    ]
     return [packet(can.extended_types, data) for data in filled]
 
 
@@ -135,11 +149,17 @@ class Joiner:
     of messages that can be under reassembly at once.
     """
 
-    def __init__(self, facts: Facts, address: int | None = None, senders: int = 4) -> None:
+    def __init__(
+        self, facts: Facts, address: int | None = None, senders: int = 4
+    ) -> None:
         self.facts, self.can = facts, need(facts.can, "can")
         self.address, self.senders = address, senders
         # In packets
-        self.room = ceil(facts.longest_data / self.can.extended.data_bytes) if self.can.extended else 0
+        self.room = (
+            ceil(facts.longest_data / self.can.extended.data_bytes)
+            if self.can.extended
+            else 0
+        )
         self.open: list[_PartialMessage] = []
 
     def expire(self, now: int) -> list[Event]:
@@ -147,28 +167,51 @@ class Joiner:
         began.
         """
         form = self.can.extended
-        overdue = [message for message in self.open if form and now - message.last >= form.packet_timeout]
+        overdue = [
+            message
+            for message in self.open
+            if form and now - message.last >= form.packet_timeout
+        ]
         return [event for message in overdue for event in self._give_up(message)]
 
     def feed(self, now: int, packet: Packet) -> list[Event]:
         """Process one packet; ``now`` in milliseconds."""
         events = self.expire(now)
         parts = parts_of(self.can, packet.id)
-        type_, id, source, destination = (parts[role] for role in ("type", "channel", "source", "destination"))
+        type_, id, source, destination = (
+            parts[role] for role in ("type", "channel", "source", "destination")
+        )
         # Packets for other receivers are no errors.
         if self.address is not None and destination != self.address:
             return events
-        kind = next((k for k, number in self.can.types.items() if number == type_), None)
+        kind = next(
+            (k for k, number in self.can.types.items() if number == type_), None
+        )
         if kind is not None:
             if len(packet.data) > (self.can.data_bytes if kind in CAN_WITH_DATA else 0):
                 return [*events, Event(MALFORMED, id, source)]
-            return [*events, Event(MESSAGE, id, source, Message(kind, id, source, destination, packet.data))]
-        kind = next((k for k, number in self.can.extended_types.items() if number == type_), None)
+            return [
+                *events,
+                Event(
+                    MESSAGE,
+                    id,
+                    source,
+                    Message(kind, id, source, destination, packet.data),
+                ),
+            ]
+        kind = next(
+            (k for k, number in self.can.extended_types.items() if number == type_),
+            None,
+        )
         if kind is None or self.can.extended is None:
             return [*events, Event(UNKNOWN_TYPE, id, source)]
-        return events + self._extended((type_, id, source, destination), kind, packet.data, now)
+        return events + self._extended(
+            (type_, id, source, destination), kind, packet.data, now
+        )
 
-    def _extended(self, key: tuple[int, int, int, int], kind: str, data: bytes, now: int) -> list[Event]:
+    def _extended(
+        self, key: tuple[int, int, int, int], kind: str, data: bytes, now: int
+    ) -> list[Event]:
         form = need(self.can.extended, "can.extended")
         _, id, source, destination = key
         pending = next((message for message in self.open if message.key == key), None)
@@ -187,26 +230,43 @@ class Joiner:
             return [*self._give_up(pending), Event(MALFORMED, id, source)]
         number, events, retained = count - 1 - left, [], {}
         # A repeated packet is a duplicate as long as it cannot begin the next message.
-        if pending and (pending.completed_by in (None, number)) and pending.packets.get(number) == piece:
+        if (
+            pending
+            and (pending.completed_by in (None, number))
+            and pending.packets.get(number) == piece
+        ):
             pending.record_packet(number, now)
             return [Event(DUPLICATE, id, source)]
-        # Another message has begun. Its packets so far may equal those of the pending message:
-        if pending and (pending.completed_by is not None or pending.count != count or number in pending.packets):
+        # Another message has begun. Its packets so far may equal those of the pending
+        # message:
+        if pending and (
+            pending.completed_by is not None
+            or pending.count != count
+            or number in pending.packets
+        ):
             # They are not sent again, so they must be retained.
             if pending.completed_by is None and number == pending.in_order:
                 retained = {n: pending.packets[n] for n in range(number)}
             events += self._give_up(pending)
             pending = None
         if pending is None:
-            pending = _PartialMessage(key, kind, count, length, retained, now, len(retained))
+            pending = _PartialMessage(
+                key, kind, count, length, retained, now, len(retained)
+            )
             if not self._make_room(pending):
                 return [*events, Event(BUSY, id, source)]
         pending.packets[number] = piece
         pending.record_packet(number, now)
         if len(pending.packets) == pending.count:
             pending.completed_by = number
-            joined = b"".join(pending.packets[n] for n in range(pending.count))[: pending.length]
-            events.append(Event(MESSAGE, id, source, Message(kind, id, source, destination, joined)))
+            joined = b"".join(pending.packets[n] for n in range(pending.count))[
+                : pending.length
+            ]
+            events.append(
+                Event(
+                    MESSAGE, id, source, Message(kind, id, source, destination, joined)
+                )
+            )
         return events
 
     def _make_room(self, new: _PartialMessage) -> bool:
@@ -214,7 +274,10 @@ class Joiner:
         it. Return whether there is room.
         """
         if len(self.open) == self.senders:
-            finished = next((message for message in self.open if message.completed_by is not None), None)
+            finished = next(
+                (message for message in self.open if message.completed_by is not None),
+                None,
+            )
             if finished is None:
                 return False
             self.open.remove(finished)
@@ -225,8 +288,12 @@ class Joiner:
         """Return the data length of a message of several packets; None if the ICD does
         not define it.
         """
-        message = (self.facts.telecommands if kind == "telecommand" else self.facts.telemetry).get(id)
-        return message.length if message and message.length > self.can.data_bytes else None
+        message = (
+            self.facts.telecommands if kind == "telecommand" else self.facts.telemetry
+        ).get(id)
+        return (
+            message.length if message and message.length > self.can.data_bytes else None
+        )
 
     def _give_up(self, message: _PartialMessage | None) -> list[Event]:
         """Remove a message under reassembly.
@@ -240,4 +307,6 @@ class Joiner:
         if message.completed_by is not None:
             return []
         _, id, source, _ = message.key
-        return [Event(INCOMPLETE, id, source, missing=message.count - len(message.packets))]
+        return [
+            Event(INCOMPLETE, id, source, missing=message.count - len(message.packets))
+        ]

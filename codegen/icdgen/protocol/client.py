@@ -56,15 +56,24 @@ class Client:
     """
 
     def __init__(
-        self, facts: Facts, bus: str, crc: bool = False, address: int = 0, settings: Settings | None = None
+        self,
+        facts: Facts,
+        bus: str,
+        crc: bool = False,
+        address: int = 0,
+        settings: Settings | None = None,
     ) -> None:
         self.facts, self.bus, self.address = facts, bus, address
         self.settings = settings or facts.client
         form = facts.checksum
         # `..._always`: the node rejects messages without checksum, so the client has no
         # choice.
-        self._checks_sent = bool(form and bus in (form.telecommand_buses if crc else form.telecommand_always))
-        self._checks_frames = bool(form and bus in (form.telemetry_buses if crc else form.telemetry_always))
+        self._checks_sent = bool(
+            form and bus in (form.telecommand_buses if crc else form.telecommand_always)
+        )
+        self._checks_frames = bool(
+            form and bus in (form.telemetry_buses if crc else form.telemetry_always)
+        )
         if bus == UART:
             self._decoder = uart.Decoder(need(facts.framing, "uart"), facts.longest)
         elif bus == CAN:
@@ -73,7 +82,8 @@ class Client:
             need(facts.i2c_address, "i2c")
         # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
         self.out: list[Any] = []
-        # I2C: number of transactions put into `out`, and of those whose result was reported.
+        # I2C: number of transactions put into `out`, and of those whose result was
+        # reported.
         self._transfers_asked = self._transfers_reported = 0
         self.state = IDLE
         self.request: Request | None = None
@@ -135,7 +145,11 @@ class Client:
         """UART: process the next bytes of the stream."""
         events = self.tick(now)
         for decoded in self._decoder.feed(data):
-            events += self._uart_message(now, decoded.message) if decoded.message else [{"event": decoded.event}]
+            events += (
+                self._uart_message(now, decoded.message)
+                if decoded.message
+                else [{"event": decoded.event}]
+            )
         return events
 
     def packet(self, now: int, packet: can.Packet) -> list[Event]:
@@ -160,15 +174,23 @@ class Client:
         if not (awaited and self._awaits_transfer):
             return [*events, {"event": "stray", "bytes": (data or b"").hex()}]
         if self.state == POLL:
-            return events + (self._pause(now) if data is None else self._polled(now, data))
+            return events + (
+                self._pause(now) if data is None else self._polled(now, data)
+            )
         request = self._current
         if data is None:
             return events + self._no_reply(now)
         if request.kind == TELEMETRY:
             try:
-                return events + self._done(now, i2c.reply(self.facts, request.id, data, self._checks_frames))
+                return events + self._done(
+                    now, i2c.reply(self.facts, request.id, data, self._checks_frames)
+                )
             except ValueError:
-                return [*events, {"event": "malformed", "id": request.id}, *self._no_reply(now)]
+                return [
+                    *events,
+                    {"event": "malformed", "id": request.id},
+                    *self._no_reply(now),
+                ]
         message = self._message(request)
         if not message.acknowledge:
             return events + self._done(now)
@@ -209,7 +231,11 @@ class Client:
         return self.request
 
     def _message(self, request: Request) -> Message:
-        table = self.facts.telecommands if request.kind == TELECOMMAND else self.facts.telemetry
+        table = (
+            self.facts.telecommands
+            if request.kind == TELECOMMAND
+            else self.facts.telemetry
+        )
         if request.id not in table:
             raise UnknownIdError(request.id)
         return table[request.id]
@@ -228,9 +254,16 @@ class Client:
         elif self.bus == CAN:
             kind = "telecommand" if request.kind == TELECOMMAND else "request"
             node = need(self.facts.can, "can").node_address
-            self.out += can.split(self.facts, can.Message(kind, request.id, self.address, node, message_bytes[1:]))
+            self.out += can.split(
+                self.facts,
+                can.Message(kind, request.id, self.address, node, message_bytes[1:]),
+            )
         else:
-            size = i2c.read_length(self.facts, message, self._checks_frames) if request.kind == TELEMETRY else 0
+            size = (
+                i2c.read_length(self.facts, message, self._checks_frames)
+                if request.kind == TELEMETRY
+                else 0
+            )
             self._transact(message_bytes, size)
         if self.bus != I2C and request.kind == TELECOMMAND and not message.acknowledge:
             return self._done(now)
@@ -239,16 +272,32 @@ class Client:
     def _done(self, now: int, data: bytes = b"") -> list[Event]:
         return self._end(now, {"event": "done", "bytes": data.hex()})
 
-    def _refused(self, now: int, code: int | None, parameter: int | None = None) -> list[Event]:
+    def _refused(
+        self, now: int, code: int | None, parameter: int | None = None
+    ) -> list[Event]:
         """Process a negative acknowledge.
 
         After a checksum error of the transmission, the request is sent again.
         """
-        reason = next((name for name, value in self.facts.errors.items() if value == code), None)
+        reason = next(
+            (name for name, value in self.facts.errors.items() if value == code), None
+        )
         # The request itself was valid.
-        if reason == "checksum" and self._checks_sent and self.attempts <= self.settings.retries:
+        if (
+            reason == "checksum"
+            and self._checks_sent
+            and self.attempts <= self.settings.retries
+        ):
             return self._transmit(now)
-        return self._end(now, {"event": "refused", "code": code, "reason": reason, "parameter": parameter})
+        return self._end(
+            now,
+            {
+                "event": "refused",
+                "code": code,
+                "reason": reason,
+                "parameter": parameter,
+            },
+        )
 
     def _timeout(self, now: int) -> list[Event]:
         return self._end(now, {"event": "timeout"})
@@ -256,8 +305,13 @@ class Client:
     def _end(self, now: int, event: Event) -> list[Event]:
         # Each attempt may have its response, and the last one may come after the time
         # limit.
-        id, may_respond_again = self._current.id, self.attempts > 1 or event["event"] == "timeout"
-        self._late = (id, now + self.settings.reply_timeout) if may_respond_again else None
+        id, may_respond_again = (
+            self._current.id,
+            self.attempts > 1 or event["event"] == "timeout",
+        )
+        self._late = (
+            (id, now + self.settings.reply_timeout) if may_respond_again else None
+        )
         self.state, self.request = IDLE, None
         return [{**event, "id": id, "attempts": self.attempts}]
 
@@ -278,14 +332,29 @@ class Client:
             return [{"event": "log", "bytes": message.hex()}]
         if kind == uart.PACKET:
             at = 1 + need(self.facts.files, "file_transfer").counter_bytes
-            return [{"event": "packet", "number": self.facts.number(message[1:at]), "bytes": message[at:].hex()}]
+            return [
+                {
+                    "event": "packet",
+                    "number": self.facts.number(message[1:at]),
+                    "bytes": message[at:].hex(),
+                }
+            ]
         request = self._current if self.state == WAIT else None
-        if request and kind == uart.REPLY and request.kind == TELEMETRY and id == request.id:
+        if (
+            request
+            and kind == uart.REPLY
+            and request.kind == TELEMETRY
+            and id == request.id
+        ):
             return self._replied(now, id, message[1:])
         if request and kind == uart.ACKNOWLEDGE and request.kind == TELECOMMAND:
             acknowledged, code = uart.acknowledged(self.facts, message)
             if acknowledged == request.id:
-                return self._done(now) if code == self.facts.errors.get("none", 0) else self._refused(now, code)
+                return (
+                    self._done(now)
+                    if code == self.facts.errors.get("none", 0)
+                    else self._refused(now, code)
+                )
         return [{"event": "stray", "bytes": message.hex()}]
 
     def _can_message(self, now: int, message: can.Message) -> list[Event]:
@@ -294,11 +363,16 @@ class Client:
         if request and message.id == request.id and message.source == node:
             if request.kind == TELECOMMAND and message.kind == "acknowledge":
                 return self._done(now)
-            if (request.kind, message.kind) in ((TELECOMMAND, "refusal"), (TELEMETRY, "request_refusal")):
+            if (request.kind, message.kind) in (
+                (TELECOMMAND, "refusal"),
+                (TELEMETRY, "request_refusal"),
+            ):
                 return self._refused(now, None)
             if request.kind == TELEMETRY and message.kind == "reply":
                 return self._replied(now, message.id, message.data)
-        return [{"event": "stray", "bytes": bytes([message.id]).hex() + message.data.hex()}]
+        return [
+            {"event": "stray", "bytes": bytes([message.id]).hex() + message.data.hex()}
+        ]
 
     def _replied(self, now: int, id: int, data: bytes) -> list[Event]:
         """Process a reply.
@@ -308,14 +382,22 @@ class Client:
         """
         form, length = self.facts.checksum, self.facts.telemetry[id].length
         # The length of the reply shows whether it has a checksum.
-        if form and self.bus in form.telemetry_buses and len(data) == length + form.bytes:
+        if (
+            form
+            and self.bus in form.telemetry_buses
+            and len(data) == length + form.bytes
+        ):
             try:
                 return self._done(now, i2c.reply(self.facts, id, data, True))
             except ChecksumError:
                 return [{"event": "checksum", "id": id}]
         if len(data) != length:
             return [{"event": "malformed", "id": id}]
-        return [{"event": "unchecked", "id": id}] if self._checks_frames else self._done(now, data)
+        return (
+            [{"event": "unchecked", "id": id}]
+            if self._checks_frames
+            else self._done(now, data)
+        )
 
     def _line_errors(self, events: list[can.Event]) -> list[Event]:
         return [{"event": event.event, "id": event.id} for event in events]
@@ -340,9 +422,14 @@ class Client:
     def _polled(self, now: int, data: bytes) -> list[Event]:
         polled = need(self.facts.polled, "i2c.acknowledge")
         try:
-            frame = i2c.reply(self.facts, polled.message.ids[0], data, self._checks_frames)
+            frame = i2c.reply(
+                self.facts, polled.message.ids[0], data, self._checks_frames
+            )
         except ValueError:
-            return [{"event": "malformed", "id": polled.message.ids[0]}, *self._pause(now)]
+            return [
+                {"event": "malformed", "id": polled.message.ids[0]},
+                *self._pause(now),
+            ]
         raw = codec.decode(self.facts.node, polled.message, frame)
         # The frame still describes an earlier telecommand, or this one is not
         # processed.

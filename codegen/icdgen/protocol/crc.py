@@ -10,4 +10,12 @@ def compute(crc: Crc, data: bytes) -> int:
     """Return the CRC of the bytes."""
     if not data and crc.empty is not None:
         return crc.empty
-    return checksum.crc(data, crc.width, crc.polynomial, crc.init, crc.reflect_in, crc.reflect_out, crc.xor_out)
+    return checksum.crc(
+        data,
+        crc.width,
+        crc.polynomial,
+        crc.init,
+        crc.reflect_in,
+        crc.reflect_out,
+        crc.xor_out,
+    )

@@ -72,7 +72,9 @@ class Fact:
     @property
     def meaning(self) -> str:
         """Meaning with its unit."""
-        return f"{self.about}, in milliseconds" if self.kind is Kind.TIME else self.about
+        return (
+            f"{self.about}, in milliseconds" if self.kind is Kind.TIME else self.about
+        )
 
     def given(self, section: Mapping[str, Any]) -> object:
         """Return the value in the ICD; None if the key is missing."""
@@ -81,7 +83,9 @@ class Fact:
             value = value.get(part) if isinstance(value, Mapping) else None
         return value
 
-    def read(self, section: Mapping[str, Any], preceding: Mapping[str, object]) -> object:
+    def read(
+        self, section: Mapping[str, Any], preceding: Mapping[str, object]
+    ) -> object:
         """Return the value of the fact in a section.
 
         ``preceding``: values of the facts before it; a default may be computed from
@@ -101,7 +105,9 @@ class Fact:
 Default = object
 
 
-def _declare(kind: Kind, key: str, about: str, default: Default = REQUIRED, **more: Any) -> Any:
+def _declare(
+    kind: Kind, key: str, about: str, default: Default = REQUIRED, **more: Any
+) -> Any:
     """Return the field of a dataclass that carries the declaration."""
     metadata = {"fact": (kind, key, about, default, more)}
     # A computed default depends on other facts, so `read` supplies it.
@@ -111,17 +117,43 @@ def _declare(kind: Kind, key: str, about: str, default: Default = REQUIRED, **mo
 
 
 def number(
-    key: str, about: str, least: int = 0, most: int | None = None, default: Default = REQUIRED, holds: int | None = None
+    key: str,
+    about: str,
+    least: int = 0,
+    most: int | None = None,
+    default: Default = REQUIRED,
+    holds: int | None = None,
 ) -> Any:
     """Declare a number."""
-    return _declare(Kind.NUMBER, key, about, default, least=least, most=most, holds=holds or most or U32)
+    return _declare(
+        Kind.NUMBER,
+        key,
+        about,
+        default,
+        least=least,
+        most=most,
+        holds=holds or most or U32,
+    )
 
 
 def octets(
-    key: str, about: str, least: int = 1, most: int | None = U16, default: Default = REQUIRED, holds: int | None = None
+    key: str,
+    about: str,
+    least: int = 1,
+    most: int | None = U16,
+    default: Default = REQUIRED,
+    holds: int | None = None,
 ) -> Any:
     """Declare a number of bytes, or a byte position."""
-    return _declare(Kind.SIZE, key, about, default, least=least, most=most, holds=holds or most or U32)
+    return _declare(
+        Kind.SIZE,
+        key,
+        about,
+        default,
+        least=least,
+        most=most,
+        holds=holds or most or U32,
+    )
 
 
 def time(key: str, about: str, default: Default = REQUIRED) -> Any:
@@ -131,7 +163,9 @@ def time(key: str, about: str, default: Default = REQUIRED) -> Any:
     milliseconds.
     """
     if key.endswith("_s"):
-        return _declare(Kind.TIME, key, about, default, least=0, most=MOST_MS // 1000, factor=1000)
+        return _declare(
+            Kind.TIME, key, about, default, least=0, most=MOST_MS // 1000, factor=1000
+        )
     return _declare(Kind.TIME, key, about, default, least=1, most=MOST_MS)
 
 
@@ -158,7 +192,9 @@ def flag(
     ``words``: values in the ICD for false and for true. ``listed``: entry of a list in
     the ICD that sets the flag; then ``words`` are the entries of the list.
     """
-    return _declare(Kind.FLAG, key, about, default, words=words, listed=listed, key_about=key_about)
+    return _declare(
+        Kind.FLAG, key, about, default, words=words, listed=listed, key_about=key_about
+    )
 
 
 def allowed(key: str, about: str, key_about: str) -> Any:
@@ -201,14 +237,22 @@ def facts_of(part: Any) -> tuple[Fact, ...]:
 @cache
 def _facts(part: Hashable) -> tuple[Fact, ...]:
     assert isinstance(part, type)
-    declarations = ((item.name, *item.metadata["fact"]) for item in fields(part) if "fact" in item.metadata)
+    declarations = (
+        (item.name, *item.metadata["fact"])
+        for item in fields(part)
+        if "fact" in item.metadata
+    )
     return tuple(
-        Fact(name, kind, key, about, default=default, **more) for name, kind, key, about, default, more in declarations
+        Fact(name, kind, key, about, default=default, **more)
+        for name, kind, key, about, default, more in declarations
     )
 
 
 def read(
-    part: type[Any], section: Mapping[str, Any], step: Callable[[Fact], object] | None = None, **computed: object
+    part: type[Any],
+    section: Mapping[str, Any],
+    step: Callable[[Fact], object] | None = None,
+    **computed: object,
 ) -> Any:
     """Read a part from its section; None if a key without a default is missing.
 
@@ -220,7 +264,11 @@ def read(
     for fact in facts_of(part):
         if fact.name in values:
             continue
-        value = step(fact) if fact.kind is Kind.STEP and step else fact.read(section, values)
+        value = (
+            step(fact)
+            if fact.kind is Kind.STEP and step
+            else fact.read(section, values)
+        )
         if value is REQUIRED or (value is None and fact.kind is Kind.STEP):
             return None
         values[fact.name] = value

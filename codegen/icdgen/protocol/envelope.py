@@ -11,7 +11,13 @@ from icdgen.frozen import dataclass
 from icdgen.icd import checksum
 from icdgen.protocol.sections import Crc
 
-LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = ("length", "slip", "cobs", "hdlc", "none")
+LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = (
+    "length",
+    "slip",
+    "cobs",
+    "hdlc",
+    "none",
+)
 """Delimiters of messages; `none`: the packet that carries the message."""
 
 GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
@@ -98,13 +104,18 @@ class Stream:
         return self.telemetry if direction == "telemetry" else self.telecommands
 
     def of(self, role: str) -> EnvelopeField | None:
-        """Return the field of a role that occurs at most once; None without such a field."""
+        """Return the field of a role that occurs at most once.
+
+        Returns None without such a field.
+        """
         return next((field for field in self.fields if field.role == role), None)
 
     @property
     def longest_data(self) -> int:
         """Largest number of data bytes of a message."""
-        return max((row.most for row in (*self.telecommands, *self.telemetry)), default=0)
+        return max(
+            (row.most for row in (*self.telecommands, *self.telemetry)), default=0
+        )
 
     @property
     def longest_request(self) -> int:
@@ -135,4 +146,6 @@ class Stream:
         # bytes (COBS).
         if self.delimited_by in (SLIP, HDLC):
             return 2 * self.longest + 2
-        return self.longest + (self.longest // 254 + 2 if self.delimited_by == COBS else 0)
+        return self.longest + (
+            self.longest // 254 + 2 if self.delimited_by == COBS else 0
+        )

@@ -9,7 +9,15 @@ from typing import Any
 
 from icdgen.icd.model import Node
 from icdgen.icd.variants import Ids, Variant
-from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.envelope import (
+    DATA,
+    DIRECTIONS,
+    ROLES,
+    Check,
+    EnvelopeField,
+    Stream,
+    StreamRow,
+)
 from icdgen.protocol.sections import Crc
 
 Section = Mapping[str, Any]
@@ -33,7 +41,9 @@ def field_of(node: Node, row: Section, in_trailer: bool) -> EnvelopeField:
     little = row.get("byte_order", node.byte_order) == "little"
     role = "constant" if row["role"] == "sync" else row["role"]
     size = last - first + 1
-    return EnvelopeField(role, in_trailer, first, size, shift, bits, little, values_of(row, little))
+    return EnvelopeField(
+        role, in_trailer, first, size, shift, bits, little, values_of(row, little)
+    )
 
 
 def values_of(row: Section, little: bool) -> tuple[int, int]:
@@ -42,16 +52,25 @@ def values_of(row: Section, little: bool) -> tuple[int, int]:
     A list of bytes is in sending order.
     """
     value = row.get("value", 0)
-    sent, received = (value.get(direction, 0) if isinstance(value, Mapping) else value for direction in DIRECTIONS)
+    sent, received = (
+        value.get(direction, 0) if isinstance(value, Mapping) else value
+        for direction in DIRECTIONS
+    )
     return _number(sent, little), _number(received, little)
 
 
 def _number(value: Any, little: bool) -> int:
-    return int.from_bytes(bytes(value), "little" if little else "big") if isinstance(value, list) else value
+    return (
+        int.from_bytes(bytes(value), "little" if little else "big")
+        if isinstance(value, list)
+        else value
+    )
 
 
 def rows_of(
-    ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int], replies: Mapping[str, int]
+    ids: Mapping[int, tuple[Variant, ...]],
+    seeds: Mapping[str, int],
+    replies: Mapping[str, int],
 ) -> tuple[StreamRow, ...]:
     """Return the messages of a direction.
 
@@ -61,10 +80,25 @@ def rows_of(
     rows = []
     for id, variants in sorted(ids.items()):
         messages = [variant.message for variant in variants]
-        least, most = min(message.layout.shortest for message in messages), max(message.length for message in messages)
+        least, most = min(message.layout.shortest for message in messages), max(
+            message.length for message in messages
+        )
         first, name = messages[0], " or ".join(message.name for message in messages)
-        reply = next((replies[message.name] for message in messages if message.name in replies), None)
-        rows.append(StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), reply, name))
+        reply = next(
+            (replies[message.name] for message in messages if message.name in replies),
+            None,
+        )
+        rows.append(
+            StreamRow(
+                id,
+                least,
+                most,
+                bool(first.may_end_early),
+                seeds.get(first.name, 0),
+                reply,
+                name,
+            )
+        )
     return tuple(rows)
 
 
@@ -82,15 +116,23 @@ def check_of(section: Section, checksums: Section) -> Check | None:
     if not declaration:
         return None
     kind = declaration["kind"]
-    width, polynomial, init, xor_out = (declaration.get(key, 0) for key in ("width", "polynomial", "init", "xor_out"))
-    reflected = declaration.get("reflect_in", False), declaration.get("reflect_out", False)
+    width, polynomial, init, xor_out = (
+        declaration.get(key, 0) for key in ("width", "polynomial", "init", "xor_out")
+    )
+    reflected = declaration.get("reflect_in", False), declaration.get(
+        "reflect_out", False
+    )
     crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
     first = place_of(header, declaration["covers"]["from"], False)
     last = place_of(trailer, declaration["covers"]["to"], True)
     return Check(
         kind,
         crc,
-        first["at"] // 8 if first else bytes_of((row["at"], row["bits"]) for row in header),
+        (
+            first["at"] // 8
+            if first
+            else bytes_of((row["at"], row["bits"]) for row in header)
+        ),
         bytes_of([(last["at"], last["bits"])]) if last else 0,
         bool(declaration.get("seeds")),
     )
@@ -99,14 +141,31 @@ def check_of(section: Section, checksums: Section) -> Check | None:
 def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Stream:
     """Return the packet format of a `stream` section."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
-    fields = [field_of(node, row, row_in is trailer) for row_in in (header, trailer) for row in row_in]
-    sizes = [bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)]
+    fields = [
+        field_of(node, row, row_in is trailer)
+        for row_in in (header, trailer)
+        for row in row_in
+    ]
+    sizes = [
+        bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)
+    ]
     # At most one field has each of these roles (checked by rules of the ICD).
-    length, sequence = (place_of((*header, *trailer), role, False) or {} for role in ("length", "sequence"))
+    length, sequence = (
+        place_of((*header, *trailer), role, False) or {}
+        for role in ("length", "sequence")
+    )
     check = place_of((*header, *trailer), "checksum", False) or {}
     seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
-    named = {variant.message.name: id for id, variants in ids.telemetry.items() for variant in variants}
-    replies = {sent: named[reply] for sent, reply in section.get("replies", {}).items() if reply in named}
+    named = {
+        variant.message.name: id
+        for id, variants in ids.telemetry.items()
+        for variant in variants
+    }
+    replies = {
+        sent: named[reply]
+        for sent, reply in section.get("replies", {}).items()
+        if reply in named
+    }
     # `counts: message` includes header and trailer in the length field.
     counts_all = length.get("counts", DATA) == "message"
     assert all(field.role in ROLES for field in fields)

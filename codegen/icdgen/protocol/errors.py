@@ -26,7 +26,11 @@ class Mismatch(Refused, ValueError):
     text: ClassVar[str]
 
     def __init__(self, expected: int, actual: int) -> None:
-        super().__init__(self.text.format(expected=expected, actual=actual), expected=expected, actual=actual)
+        super().__init__(
+            self.text.format(expected=expected, actual=actual),
+            expected=expected,
+            actual=actual,
+        )
         self.expected, self.actual = expected, actual
 
 

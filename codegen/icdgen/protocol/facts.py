@@ -1,8 +1,8 @@
 """Protocol facts of a node, read from its ICD and from included ICDs, in a form for
 generators.
 
-None stands for a part that the ICD does not describe. Times are in milliseconds, sizes in
-bytes.
+None stands for a part that the ICD does not describe. Times are in milliseconds, sizes
+in bytes.
 """
 
 from __future__ import annotations
@@ -98,7 +98,10 @@ class Facts:
         """Names of the nodes that define the messages: the node itself, then included
         nodes.
         """
-        nodes = {message.node for message in (*self.telecommands.values(), *self.telemetry.values())}
+        nodes = {
+            message.node
+            for message in (*self.telecommands.values(), *self.telemetry.values())
+        }
         return [self.node.name, *sorted(nodes - {self.node.name})]
 
     @property
@@ -106,7 +109,9 @@ class Facts:
         """Bytes of the longest telecommand with its id and checksum."""
         # The leading 1 is the id byte.
         extra = self.checksum.bytes if self.checksum else 0
-        return 1 + extra + max((m.length for m in self.telecommands.values()), default=0)
+        return (
+            1 + extra + max((m.length for m in self.telecommands.values()), default=0)
+        )
 
     @property
     def longest_reply(self) -> int:
@@ -117,7 +122,9 @@ class Facts:
         if self.acknowledge:
             sizes.append(self.acknowledge.length)
         if self.log_message and self.mask:
-            sizes.append(self.log_message.frames_at + self.mask.size * 8 * self.mask.slot_bytes)
+            sizes.append(
+                self.log_message.frames_at + self.mask.size * 8 * self.mask.slot_bytes
+            )
         if self.files:
             sizes.append(1 + self.files.counter_bytes + self.files.packet_bytes)
         return max(sizes, default=1)
@@ -127,7 +134,10 @@ class Facts:
         """Largest number of data bytes of a message in either direction, without id and
         checksum.
         """
-        return max((m.length for m in (*self.telecommands.values(), *self.telemetry.values())), default=0)
+        return max(
+            (m.length for m in (*self.telecommands.values(), *self.telemetry.values())),
+            default=0,
+        )
 
     @property
     def longest(self) -> int:
@@ -180,7 +190,11 @@ def of(icd: Icd, node: Node) -> Facts:
         i2c_address=reader.i2c_address(),
         i2c_repeated_start=reader.i2c_repeated_start(),
         can=reader.can(),
-        errors={key: code for key, code in reader.section("errors").items() if isinstance(code, int)},
+        errors={
+            key: code
+            for key, code in reader.section("errors").items()
+            if isinstance(code, int)
+        },
         checksum=reader.checksum(),
         crc16=reader.part("crc16", Crc),
         mask=reader.mask(),

@@ -15,14 +15,21 @@ def hole_map(facts: Facts, packets: int, received: Iterable[int]) -> bytes:
     Raises `RangeError` if a received packet is not in the block or the map is too
     short.
     """
-    form, first = need(facts.hole_map, "file_transfer.hole_map"), need(facts.files, "file_transfer").first_packet
+    form, first = (
+        need(facts.hole_map, "file_transfer.hole_map"),
+        need(facts.files, "file_transfer").first_packet,
+    )
     positions = {number - first for number in received}
     if packets > form.bytes * 8 or not positions <= set(range(packets)):
         raise RangeError("packet")
     out = bytearray(form.bytes)
     for bit in range(form.bytes * 8):
         # Bits beyond the end of the block have their own value (`beyond_end`).
-        state = form.beyond_end if bit >= packets else form.received if bit in positions else 1 - form.received
+        state = (
+            form.beyond_end
+            if bit >= packets
+            else form.received if bit in positions else 1 - form.received
+        )
         out[bit // 8] |= state << (7 - bit % 8 if form.msb0 else bit % 8)
     return bytes(out)
 
@@ -33,14 +40,20 @@ def missing(facts: Facts, packets: int, map_: bytes) -> list[int]:
 
     Raises `RangeError` and `LengthError`.
     """
-    form, first = need(facts.hole_map, "file_transfer.hole_map"), need(facts.files, "file_transfer").first_packet
+    form, first = (
+        need(facts.hole_map, "file_transfer.hole_map"),
+        need(facts.files, "file_transfer").first_packet,
+    )
     if len(map_) != form.bytes:
         raise LengthError(form.bytes, len(map_))
     if packets > form.bytes * 8:
         raise RangeError("packet")
     numbers = []
     for bit in range(packets):
-        if map_[bit // 8] >> (7 - bit % 8 if form.msb0 else bit % 8) & 1 != form.received:
+        if (
+            map_[bit // 8] >> (7 - bit % 8 if form.msb0 else bit % 8) & 1
+            != form.received
+        ):
             numbers.append(first + bit)
     return numbers
 

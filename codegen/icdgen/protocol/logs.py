@@ -13,8 +13,8 @@ from icdgen.protocol.sections import LogBit
 class Frame(NamedTuple):
     """Frame of a log entry.
 
-    If the ICD assigns no frame to the mask bit, ``id`` has the value None and ``data`` is
-    the content of the slot.
+    If the ICD assigns no frame to the mask bit, ``id`` has the value None and ``data``
+    is the content of the slot.
     """
 
     bit: int
@@ -55,22 +55,34 @@ def decode(facts: Facts, data: bytes) -> Log:
     # All entries have the same size: the mask of the header applies to the whole file.
     size = form.frames_at + len(slots) * layout.slot_bytes
     starts = range(0, len(body) - size + 1, size)
-    return Log(mask, [_entry(facts, slots, body[at : at + size]) for at in starts], len(body) % size)
+    return Log(
+        mask,
+        [_entry(facts, slots, body[at : at + size]) for at in starts],
+        len(body) % size,
+    )
 
 
 def _entry(facts: Facts, slots: Iterable[LogBit], data: bytes) -> Entry:
     form = need(facts.log_file, "telemetry_log")
-    seconds, milliseconds = (facts.number(data[at : at + size]) for at, size in (form.seconds, form.milliseconds))
+    seconds, milliseconds = (
+        facts.number(data[at : at + size])
+        for at, size in (form.seconds, form.milliseconds)
+    )
     return Entry(seconds, milliseconds, frames(facts, slots, data[form.frames_at :]))
 
 
 def frames(facts: Facts, slots: Iterable[LogBit], data: bytes) -> tuple[Frame, ...]:
     """Return the frames of the slots in ``data``."""
     size = need(facts.mask, "log_mask").slot_bytes
-    return tuple(Frame(s.bit, s.id, data[n * size : n * size + s.length]) for n, s in enumerate(slots))
+    return tuple(
+        Frame(s.bit, s.id, data[n * size : n * size + s.length])
+        for n, s in enumerate(slots)
+    )
 
 
-def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable[bytes]]]) -> bytes:
+def encode(
+    facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable[bytes]]]
+) -> bytes:
     """Return the bytes of a log file.
 
     ``entries``: seconds, milliseconds and the data of each frame. Raises `LengthError`
@@ -80,7 +92,10 @@ def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable
     out = _head(facts, form.header_bytes, form.mask_at, mask)
     for seconds, milliseconds, data in entries:
         head = bytearray(form.frames_at)
-        for (at, size), number in ((form.seconds, seconds), (form.milliseconds, milliseconds)):
+        for (at, size), number in (
+            (form.seconds, seconds),
+            (form.milliseconds, milliseconds),
+        ):
             head[at : at + size] = facts.bytes_of(number, size)
         out += head + _slots(facts, mask, data)
     return bytes(out)
@@ -91,7 +106,9 @@ def decode_message(facts: Facts, message: bytes) -> tuple[bytes, tuple[Frame, ..
 
     Raises `LengthError`.
     """
-    form, layout = need(facts.log_message, "unsolicited_log"), need(facts.mask, "log_mask")
+    form, layout = need(facts.log_message, "unsolicited_log"), need(
+        facts.mask, "log_mask"
+    )
     if len(message) < form.frames_at:
         raise LengthError(form.frames_at, len(message))
     mask = message[form.mask_at : form.mask_at + layout.size]

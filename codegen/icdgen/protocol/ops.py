@@ -11,10 +11,31 @@ from collections.abc import Callable
 from typing import Any
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, errors, files, i2c, logs, scripts, stream, stream_client, times, uart
+from icdgen.protocol import (
+    can,
+    crc,
+    errors,
+    files,
+    i2c,
+    logs,
+    scripts,
+    stream,
+    stream_client,
+    times,
+    uart,
+)
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN, Stream
 from icdgen.protocol.facts import Facts, Unsupported, need, of
-from icdgen.protocol.request_keys import Refusal, Request, flag, mappings, number, octets, rows, text
+from icdgen.protocol.request_keys import (
+    Refusal,
+    Request,
+    flag,
+    mappings,
+    number,
+    octets,
+    rows,
+    text,
+)
 from icdgen.protocol.request_keys import hex_bytes as _hex
 from icdgen.protocol.sections import CAN_KINDS
 
@@ -31,10 +52,14 @@ def answer(icd: Icd, request: Request) -> dict[str, Any]:
     except errors.Refused as refusal:
         return refusal.answer
     except errors.RangeError as error:
-        names_field = error.field in (GIVEN if request["op"] == stream_encode.__name__ else times.PARTS)
+        names_field = error.field in (
+            GIVEN if request["op"] == stream_encode.__name__ else times.PARTS
+        )
         # Only these two operations define which field a range error names; elsewhere it
         # would be an implementation detail.
-        return {"ok": False, "error": "range"} | ({"field": error.field} if names_field else {})
+        return {"ok": False, "error": "range"} | (
+            {"field": error.field} if names_field else {}
+        )
     except OverflowError:
         return {"ok": False, "error": "range"}
 
@@ -74,7 +99,11 @@ def uart_encode(facts: Facts, request: Request) -> dict[str, Any]:
 def uart_decode(facts: Facts, request: Request) -> dict[str, Any]:
     stream = octets(request)
     events = uart.Decoder(need(facts.framing, "uart"), facts.longest).feed(stream)
-    return {"frames": [event.message.hex() for event in events if event.event == uart.MESSAGE]}
+    return {
+        "frames": [
+            event.message.hex() for event in events if event.event == uart.MESSAGE
+        ]
+    }
 
 
 def uart_events(facts: Facts, request: Request) -> dict[str, Any]:
@@ -86,21 +115,31 @@ def uart_events(facts: Facts, request: Request) -> dict[str, Any]:
         for event in decoder.feed(chunk):
             row: dict[str, Any] = {"event": event.event}
             if event.event == uart.MESSAGE:
-                row.update(kind=uart.kind(facts, event.message), bytes=event.message.hex())
+                row.update(
+                    kind=uart.kind(facts, event.message), bytes=event.message.hex()
+                )
             events.append(row)
-    return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
+    return {
+        "events": events,
+        "discarded": decoder.discarded,
+        "pending": decoder.pending,
+    }
 
 
 def can_split(facts: Facts, request: Request) -> dict[str, Any]:
     packets = can.split(facts, _message(request))
-    return {"packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]}
+    return {
+        "packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]
+    }
 
 
 def _message(request: Request) -> can.Message:
     kind, data = text(request, "kind"), octets(request)
     if kind not in CAN_KINDS:
         raise Refusal("request", detail="there is no such kind")
-    id, source, destination = (number(request, key, 0, 255) for key in ("id", "source", "destination"))
+    id, source, destination = (
+        number(request, key, 0, 255) for key in ("id", "source", "destination")
+    )
     return can.Message(kind, id, source, destination, data)
 
 
@@ -122,25 +161,43 @@ def can_join(facts: Facts, request: Request) -> dict[str, Any]:
 def _can_event(event: can.Event) -> dict[str, Any]:
     row: dict[str, Any] = {"event": event.event, "id": event.id, "source": event.source}
     if event.message:
-        row.update(kind=event.message.kind, destination=event.message.destination, bytes=event.message.data.hex())
+        row.update(
+            kind=event.message.kind,
+            destination=event.message.destination,
+            bytes=event.message.data.hex(),
+        )
     if event.event == can.INCOMPLETE:
         row["missing"] = event.missing
     return row
 
 
 def i2c_request(facts: Facts, request: Request) -> dict[str, Any]:
-    kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
+    kind, id, checked = (
+        text(request, "kind"),
+        number(request, "id", 0, 255),
+        flag(request, "crc"),
+    )
     if kind == "telemetry":
         if id not in facts.telemetry:
             raise errors.UnknownIdError
-        return {"write": bytes([id]).hex(), "read": i2c.read_length(facts, facts.telemetry[id], checked)}
+        return {
+            "write": bytes([id]).hex(),
+            "read": i2c.read_length(facts, facts.telemetry[id], checked),
+        }
     if kind != "telecommand":
         raise Refusal("request", detail="there is no such kind")
-    return {"write": i2c.telecommand(facts, id, octets(request), checked).hex(), "read": 0}
+    return {
+        "write": i2c.telecommand(facts, id, octets(request), checked).hex(),
+        "read": 0,
+    }
 
 
 def i2c_reply(facts: Facts, request: Request) -> dict[str, Any]:
-    id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
+    id, data, checked = (
+        number(request, "id", 0, 255),
+        octets(request),
+        flag(request, "crc"),
+    )
     if id not in facts.telemetry:
         raise errors.UnknownIdError
     return {"bytes": i2c.reply(facts, id, data, checked).hex()}
@@ -148,8 +205,14 @@ def i2c_reply(facts: Facts, request: Request) -> dict[str, Any]:
 
 def log_decode(facts: Facts, request: Request) -> dict[str, Any]:
     log = logs.decode(facts, octets(request))
-    entries = [{**e._asdict(), "frames": [_frame(f) for f in e.frames]} for e in log.entries]
-    return {"mask": None if log.mask is None else log.mask.hex(), "entries": entries, "truncated": log.truncated}
+    entries = [
+        {**e._asdict(), "frames": [_frame(f) for f in e.frames]} for e in log.entries
+    ]
+    return {
+        "mask": None if log.mask is None else log.mask.hex(),
+        "entries": entries,
+        "truncated": log.truncated,
+    }
 
 
 def _frame(frame: logs.Frame) -> dict[str, Any]:
@@ -158,7 +221,11 @@ def _frame(frame: logs.Frame) -> dict[str, Any]:
 
 def log_encode(facts: Facts, request: Request) -> dict[str, Any]:
     entries = [
-        (number(e, "seconds"), number(e, "milliseconds", 0, 65535), [_hex(f) for f in rows(e, "frames")])
+        (
+            number(e, "seconds"),
+            number(e, "milliseconds", 0, 65535),
+            [_hex(f) for f in rows(e, "frames")],
+        )
         for e in mappings(request, "entries")
     ]
     return {"bytes": logs.encode(facts, octets(request, "mask"), entries).hex()}
@@ -177,8 +244,15 @@ def log_message_encode(facts: Facts, request: Request) -> dict[str, Any]:
 def dos_time(facts: Facts, request: Request) -> dict[str, Any]:
     if "value" in request:
         parts = times.unpack(facts, number(request, "value"))
-        return {**{name: parts[name] for name in times.PARTS}, "valid": times.invalid_part(parts) is None}
-    return {"value": times.pack(facts, {name: number(request, name, 0, 9999) for name in times.PARTS})}
+        return {
+            **{name: parts[name] for name in times.PARTS},
+            "valid": times.invalid_part(parts) is None,
+        }
+    return {
+        "value": times.pack(
+            facts, {name: number(request, name, 0, 9999) for name in times.PARTS}
+        )
+    }
 
 
 def hole_map(facts: Facts, request: Request) -> dict[str, Any]:
@@ -199,7 +273,10 @@ def hole_map(facts: Facts, request: Request) -> dict[str, Any]:
 
 def index_decode(facts: Facts, request: Request) -> dict[str, Any]:
     entries, truncated = files.read_index(facts, octets(request))
-    return {"entries": [{**e._asdict(), "meta": e.meta.hex()} for e in entries], "truncated": truncated}
+    return {
+        "entries": [{**e._asdict(), "meta": e.meta.hex()} for e in entries],
+        "truncated": truncated,
+    }
 
 
 def index_encode(facts: Facts, request: Request) -> dict[str, Any]:
@@ -221,7 +298,10 @@ def identify(facts: Facts, request: Request) -> dict[str, Any]:
         raise errors.LengthError(error.expected, error.actual) from None
     identified = {role: raw[name] for role, name in step.fields.items()}
     # A node type or version that the ICD does not state matches any value.
-    expected = {"node_type": facts.node.node_type, "interface_version": facts.node.interface_version}
+    expected = {
+        "node_type": facts.node.node_type,
+        "interface_version": facts.node.interface_version,
+    }
     matches = all(expected[role] in (None, identified[role]) for role in expected)
     return {**identified, "matches": matches}
 
@@ -241,18 +321,34 @@ def stream_encode(facts: Facts, request: Request) -> dict[str, Any]:
     form, direction = _envelope(facts, request)
     id, data, values = number(request, "id"), octets(request), request.get("values", {})
     if not isinstance(values, dict) or not set(values) <= set(GIVEN):
-        raise Refusal("request", detail="`values` has the fields that the sender chooses, by role")
+        raise Refusal(
+            "request", detail="`values` has the fields that the sender chooses, by role"
+        )
     chosen = {role: number(values, role) for role in values}
     return {"bytes": stream.encode(form, direction, id, data, chosen).hex()}
 
 
 def stream_events(facts: Facts, request: Request) -> dict[str, Any]:
     form, direction = _envelope(facts, request)
-    limit = number(request, "limit", form.header_bytes + form.trailer_bytes, form.longest, form.longest)
+    limit = number(
+        request,
+        "limit",
+        form.header_bytes + form.trailer_bytes,
+        form.longest,
+        form.longest,
+    )
     chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
     decoder = stream.Decoder(form, direction, limit)
-    events = [stream_client.event_row(event) for chunk in chunks for event in decoder.feed(chunk)]
-    return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
+    events = [
+        stream_client.event_row(event)
+        for chunk in chunks
+        for event in decoder.feed(chunk)
+    ]
+    return {
+        "events": events,
+        "discarded": decoder.discarded,
+        "pending": decoder.pending,
+    }
 
 
 def _envelope(facts: Facts, request: Request) -> tuple[Stream, str]:

@@ -32,7 +32,9 @@ class ProgramOperation(Procedure):
         form = self.form
         yield from self.telecommand(form.request, program=self.program)
         role, wanted = ("ready", 1) if "ready" in form.progress.fields else ("busy", 0)
-        poll = self.poll(form.progress, role, wanted, form.poll_interval, form.timeout, self.program)
+        poll = self.poll(
+            form.progress, role, wanted, form.poll_interval, form.timeout, self.program
+        )
         self.values, _ = yield from poll
         if self.values.get("error"):
             raise Ended("error")

@@ -61,8 +61,12 @@ class Reader:
         self.protocol = icd.protocol_of(node)
         messages = icd.messages_of(node)
         self.messages = {m.name: m for m in messages}
-        self.telecommands = {m.telecommand_id: m for m in messages if m.telecommand_id is not None}
-        self.telemetry = {m.telemetry_id: m for m in messages if m.telemetry_id is not None}
+        self.telecommands = {
+            m.telecommand_id: m for m in messages if m.telecommand_id is not None
+        }
+        self.telemetry = {
+            m.telemetry_id: m for m in messages if m.telemetry_id is not None
+        }
 
     def section(self, *path: str) -> dict[str, Any]:
         """Return a section, empty if it does not exist."""
@@ -80,8 +84,15 @@ class Reader:
 
         def step(fact: Fact) -> Step | None:
             resolved = self.step(section.get(fact.key, {}))
-            ids = resolved and (resolved.message.telecommand_id, resolved.message.telemetry_id)
-            return resolved if ids and ids[fact.direction == "telemetry"] is not None else None
+            ids = resolved and (
+                resolved.message.telecommand_id,
+                resolved.message.telemetry_id,
+            )
+            return (
+                resolved
+                if ids and ids[fact.direction == "telemetry"] is not None
+                else None
+            )
 
         result: T | None = read(part, section, step, **computed) if section else None
         return result
@@ -90,9 +101,11 @@ class Reader:
         ids = self.section("message_id", "telemetry")
         if self.section("stream"):
             return Direction(1, 0)
-        # Without telemetry the range is empty (first above last), and no received message is a reply.
+        # Without telemetry the range is empty (first above last), and no received
+        # message is a reply.
         return Direction(
-            ids.get("first", min(self.telemetry, default=1)), ids.get("last", max(self.telemetry, default=0))
+            ids.get("first", min(self.telemetry, default=1)),
+            ids.get("last", max(self.telemetry, default=0)),
         )
 
     def acknowledge(self) -> Acknowledge | None:
@@ -119,18 +132,24 @@ class Reader:
 
     def i2c_repeated_start(self) -> bool:
         """Return whether a read can follow its write without a stop condition."""
-        return "repeated start" in self.section("i2c").get("telemetry_request", ("repeated start",))
+        return "repeated start" in self.section("i2c").get(
+            "telemetry_request", ("repeated start",)
+        )
 
     def can(self) -> Can | None:
         given = self.section("can")
-        if not {"identifier", "message_types", "telecommand", "telemetry"} <= set(given):
+        if not {"identifier", "message_types", "telecommand", "telemetry"} <= set(
+            given
+        ):
             return None
         # The identifier is listed from its most significant part on.
         parts, shift = {}, sum(part["bits"] for part in given["identifier"])
         for part in given["identifier"]:
             shift -= part["bits"]
             parts[part.get("role", part["name"])] = CanPart(part["bits"], shift)
-        numbers = {row["name"]: row["value"] for row in given["message_types"]["values"]}
+        numbers = {
+            row["name"]: row["value"] for row in given["message_types"]["values"]
+        }
         telecommand, telemetry = given["telecommand"], given["telemetry"]
         named = {
             "telecommand": telecommand.get("request"),
@@ -148,8 +167,14 @@ class Reader:
             "can",
             Can,
             parts=parts,
-            types={kind: numbers[name] for kind, name in named.items() if name is not None},
-            extended_types={kind: numbers[name] for kind, name in extended_named.items() if name is not None},
+            types={
+                kind: numbers[name] for kind, name in named.items() if name is not None
+            },
+            extended_types={
+                kind: numbers[name]
+                for kind, name in extended_named.items()
+                if name is not None
+            },
             extended=self.part("can.extended", Extended),
         )
 
@@ -158,7 +183,9 @@ class Reader:
         crc = self.part("crc8", Crc)
         if crc is None:
             return None
-        telecommand, telemetry = given.get("telecommand", {}), given.get("telemetry", {})
+        telecommand, telemetry = given.get("telecommand", {}), given.get(
+            "telemetry", {}
+        )
         return self.part(
             "crc8",
             Checksum,
@@ -167,14 +194,18 @@ class Reader:
             telemetry_buses=_buses(telemetry, False),
             telecommand_always=_buses(telecommand, True),
             telemetry_always=_buses(telemetry, True),
-            bytes=telecommand.get("extra_bytes", telemetry.get("extra_bytes", ceil(crc.width / 8))),
+            bytes=telecommand.get(
+                "extra_bytes", telemetry.get("extra_bytes", ceil(crc.width / 8))
+            ),
         )
 
     def stream(self) -> Stream | None:
         section = self.section("stream")
         if not section:
             return None
-        return stream_of(self.node, section, self.section("checksums"), ids_of(self.icd, self.node))
+        return stream_of(
+            self.node, section, self.section("checksums"), ids_of(self.icd, self.node)
+        )
 
     def mask(self) -> LogMask | None:
         slot, bits = self.section("log_mask").get("frame_bytes", 0), {}
@@ -184,7 +215,9 @@ class Reader:
                 frame = self.telemetry.get(row.id)
                 # A frame longer than its slot is cut to the slot.
                 length = min(frame.length, slot) if frame else slot
-                bits[row.bit] = LogBit(row.bit, row.id, length, frame.name if frame else row.name or None)
+                bits[row.bit] = LogBit(
+                    row.bit, row.id, length, frame.name if frame else row.name or None
+                )
         return self.part("log_mask", LogMask, bits=bits)
 
     def log_file(self) -> LogFile | None:
@@ -194,9 +227,16 @@ class Reader:
         header, entry = by_role(given["header"]), by_role(given["entry"])
         if "mask" not in header or not {"seconds", "milliseconds"} <= set(entry):
             return None
-        spans = {role: (entry[role]["byte"], entry[role]["bytes"]) for role in ("seconds", "milliseconds")}
+        spans = {
+            role: (entry[role]["byte"], entry[role]["bytes"])
+            for role in ("seconds", "milliseconds")
+        }
         return self.part(
-            "telemetry_log", LogFile, mask_at=header["mask"]["byte"], header_bytes=end(given["header"]), **spans
+            "telemetry_log",
+            LogFile,
+            mask_at=header["mask"]["byte"],
+            header_bytes=end(given["header"]),
+            **spans,
         )
 
     def log_message(self) -> LogMessage | None:
@@ -207,13 +247,17 @@ class Reader:
 
     def time(self) -> dict[str, TimePart]:
         return {
-            part["name"]: TimePart(part["at"], part["bits"], part.get("factor", 1), part.get("offset", 0))
+            part["name"]: TimePart(
+                part["at"], part["bits"], part.get("factor", 1), part.get("offset", 0)
+            )
             for part in self.section("msdos_time").get("parts", ())
         }
 
     def index(self) -> Index | None:
         rows = by_role(self.section("index_file").get("entry", ()))
-        fields = {role: IndexField(row["byte"], row["bytes"]) for role, row in rows.items()}
+        fields = {
+            role: IndexField(row["byte"], row["bytes"]) for role, row in rows.items()
+        }
         return self.part("index_file", Index, fields=fields)
 
     def hole_map(self) -> HoleMap | None:
@@ -222,15 +266,23 @@ class Reader:
         if not names or "field" not in given:
             return None
         messages = tuple(self.messages[name] for name in names)
-        return self.part("file_transfer.hole_map", HoleMap, messages=messages, field=given["field"])
+        return self.part(
+            "file_transfer.hole_map", HoleMap, messages=messages, field=given["field"]
+        )
 
     def files(self) -> Files | None:
         packet_ids, procedures = {}, {}
         for name, part in PROCEDURES.items():
             nodes = self.section("file_transfer", name).get("nodes", [self.node.name])
-            procedures[name] = self.part(f"file_transfer.{name}", part) if self.node.name in nodes else None
+            procedures[name] = (
+                self.part(f"file_transfer.{name}", part)
+                if self.node.name in nodes
+                else None
+            )
         for bus in BUSES:
-            message = self.messages.get(self.section("file_transfer", "download", bus).get("id_of", ""))
+            message = self.messages.get(
+                self.section("file_transfer", "download", bus).get("id_of", "")
+            )
             if message:
                 packet_ids[bus] = message.ids[0]
         return self.part("file_transfer", Files, packet_ids=packet_ids, **procedures)
@@ -243,7 +295,9 @@ class Reader:
         yield from assumptions_of(self.protocol, ())
         for message in self.messages.values():
             for key, why in message.assumptions:
-                yield Assumption(f"message {message.name}", key, declared_value(message, key), why)
+                yield Assumption(
+                    f"message {message.name}", key, declared_value(message, key), why
+                )
 
 
 def _buses(use: Mapping[str, Any], is_mandatory: bool) -> tuple[str, ...]:
@@ -262,7 +316,9 @@ def declared_value(message: Message, key: str) -> object:
     return getattr(message, key, None)
 
 
-def assumptions_of(section: dict[str, Any], path: tuple[str, ...]) -> Iterator[Assumption]:
+def assumptions_of(
+    section: dict[str, Any], path: tuple[str, ...]
+) -> Iterator[Assumption]:
     """Return the assumptions of a section and of its subsections."""
     for key, why in section.get("assumptions", {}).items():
         yield Assumption(".".join(path), key, section.get(key), why)

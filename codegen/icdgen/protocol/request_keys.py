@@ -18,7 +18,13 @@ class Refusal(Refused):
         super().__init__(**more)
 
 
-def number(request: Request, key: str, least: int = 0, most: int = (1 << 32) - 1, default: int | None = None) -> int:
+def number(
+    request: Request,
+    key: str,
+    least: int = 0,
+    most: int = (1 << 32) - 1,
+    default: int | None = None,
+) -> int:
     """Return an integer.
 
     Raises `Refusal` if it is out of range, or missing without a default.
@@ -26,7 +32,10 @@ def number(request: Request, key: str, least: int = 0, most: int = (1 << 32) - 1
     value = request.get(key, default)
     # bool is a subclass of int, but JSON distinguishes true from 1.
     if type(value) is not int or not least <= value <= most:
-        raise Refusal("request", detail=f"`{key}` is missing or is no number from {least} to {most}")
+        raise Refusal(
+            "request",
+            detail=f"`{key}` is missing or is no number from {least} to {most}",
+        )
     return value
 
 

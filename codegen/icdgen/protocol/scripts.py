@@ -13,7 +13,15 @@ from icdgen.protocol import stream_client as enveloped
 from icdgen.protocol.client import Client, Event, Request
 from icdgen.protocol.errors import BusyError, LengthError, Refused, UnknownIdError
 from icdgen.protocol.facts import Facts, Unsupported
-from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
+from icdgen.protocol.request_keys import (
+    Refusal,
+    flag,
+    hex_bytes,
+    mappings,
+    number,
+    octets,
+    text,
+)
 from icdgen.protocol.sections import BUSES, CAN, I2C, UART, Settings
 
 MOST_REQUESTS = 3  # requests that run at the same time
@@ -25,18 +33,38 @@ AnyClient = TypeVar("AnyClient", Client, enveloped.Client)
 def client(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
     """Run the operation ``client``."""
     bus, settings = _bus(request), _settings(facts, request)
-    tested_client = Client(facts, bus, flag(request, "crc"), number(request, "address", 0, 255, 0), settings)
+    tested_client = Client(
+        facts,
+        bus,
+        flag(request, "crc"),
+        number(request, "address", 0, 255, 0),
+        settings,
+    )
     refused = (BusyError, UnknownIdError, LengthError)
     rows = mappings(request, "script")
-    return {"steps": [_step(tested_client, row, _client_events, _client_output, refused) for row in rows]}
+    return {
+        "steps": [
+            _step(tested_client, row, _client_events, _client_output, refused)
+            for row in rows
+        ]
+    }
 
 
 def stream_client(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
     """Run the operation ``stream_client``."""
-    tested_client = enveloped.Client(facts, number(request, "requests", 1, MOST_REQUESTS, 1), _settings(facts, request))
+    tested_client = enveloped.Client(
+        facts,
+        number(request, "requests", 1, MOST_REQUESTS, 1),
+        _settings(facts, request),
+    )
     refused = (BusyError, UnknownIdError, LengthError, Unsupported)
     rows = mappings(request, "script")
-    return {"steps": [_step(tested_client, row, _stream_events, _stream_output, refused) for row in rows]}
+    return {
+        "steps": [
+            _step(tested_client, row, _stream_events, _stream_output, refused)
+            for row in rows
+        ]
+    }
 
 
 def _bus(request: dict[str, Any]) -> str:
@@ -72,15 +100,27 @@ def _step(
         events = events_of(tested_client, number(row, "at"), row)
     except refused as error:
         refusal = error.details
-    return {**refusal, "out": output(tested_client, row), "events": events, "deadline": tested_client.deadline}
+    return {
+        **refusal,
+        "out": output(tested_client, row),
+        "events": events,
+        "deadline": tested_client.deadline,
+    }
 
 
 def _client_events(tested_client: Client, now: int, row: dict[str, Any]) -> list[Event]:
     if "telecommand" in row:
-        request = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
+        request = Request(
+            TELECOMMAND,
+            number(row, "telecommand", 0, 255),
+            octets(row),
+            flag(row, "repeat"),
+        )
         return tested_client.start(now, request)
     if "telemetry" in row:
-        return tested_client.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
+        return tested_client.start(
+            now, Request(TELEMETRY, number(row, "telemetry", 0, 255))
+        )
     if "receive" in row:
         return _receive(tested_client, now, row["receive"])
     if flag(row, "cancel"):
@@ -98,10 +138,14 @@ def _receive(tested_client: Client, now: int, given: Any) -> list[Event]:
     if tested_client.bus == UART:
         return tested_client.received(now, hex_bytes(given))
     if tested_client.bus == I2C:
-        return tested_client.transferred(now, None if given is None else hex_bytes(given))
+        return tested_client.transferred(
+            now, None if given is None else hex_bytes(given)
+        )
     if not isinstance(given, dict):
         raise Refusal("request", detail="`receive` is no packet")
-    return tested_client.packet(now, can.Packet(number(given, "id", 0, (1 << 29) - 1), octets(given)))
+    return tested_client.packet(
+        now, can.Packet(number(given, "id", 0, (1 << 29) - 1), octets(given))
+    )
 
 
 def _sent(bus: str, item: Any) -> object:
@@ -112,7 +156,9 @@ def _sent(bus: str, item: Any) -> object:
     return {"write": item[0].hex(), "read": item[1]}
 
 
-def _stream_events(tested_client: enveloped.Client, now: int, row: dict[str, Any]) -> list[Event]:
+def _stream_events(
+    tested_client: enveloped.Client, now: int, row: dict[str, Any]
+) -> list[Event]:
     kind = next((kind for kind in (TELECOMMAND, TELEMETRY) if kind in row), None)
     id = number(row, kind) if kind else None
     if flag(row, "cancel"):
@@ -121,13 +167,23 @@ def _stream_events(tested_client: enveloped.Client, now: int, row: dict[str, Any
     if kind and id is not None:
         data = octets(row) if kind == TELECOMMAND else b""
         reply = number(row, "reply") if "reply" in row else None
-        return tested_client.start(now, Request(kind, id, data, flag(row, "repeat"), reply))
-    return tested_client.received(now, hex_bytes(row["receive"])) if "receive" in row else tested_client.tick(now)
+        return tested_client.start(
+            now, Request(kind, id, data, flag(row, "repeat"), reply)
+        )
+    return (
+        tested_client.received(now, hex_bytes(row["receive"]))
+        if "receive" in row
+        else tested_client.tick(now)
+    )
 
 
-def _stream_output(tested_client: enveloped.Client, row: dict[str, Any]) -> list[object]:
+def _stream_output(
+    tested_client: enveloped.Client, row: dict[str, Any]
+) -> list[object]:
     # `untaken` simulates a caller that does not read the output yet.
-    return [] if flag(row, "untaken") else [line.hex() for line in tested_client.output()]
+    return (
+        [] if flag(row, "untaken") else [line.hex() for line in tested_client.output()]
+    )
 
 
 def file(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
@@ -139,10 +195,18 @@ def file(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
         if event is not None:
             procedure.event(now, _event(event))
         request_now = procedure.next(now)
-        steps.append({"request": _request_row(request_now), "deadline": procedure.deadline, "result": procedure.result})
+        steps.append(
+            {
+                "request": _request_row(request_now),
+                "deadline": procedure.deadline,
+                "result": procedure.result,
+            }
+        )
     answer: dict[str, Any] = {"steps": steps}
     if isinstance(procedure, transfer.Download):
-        answer["blocks"] = [{"offset": offset, "bytes": data.hex()} for offset, data in procedure.blocks]
+        answer["blocks"] = [
+            {"offset": offset, "bytes": data.hex()} for offset, data in procedure.blocks
+        ]
     elif isinstance(procedure, transfer.FileList):
         answer["entries"] = procedure.entries
     elif isinstance(procedure, transfer.Upload):
@@ -154,7 +218,10 @@ def file(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
 
 def _event(event: object) -> dict[str, Any]:
     """Check and return an event of a script: only the keys that procedures use."""
-    if not isinstance(event, dict) or text(event, "event") not in (*transfer.OUTCOMES, "packet"):
+    if not isinstance(event, dict) or text(event, "event") not in (
+        *transfer.OUTCOMES,
+        "packet",
+    ):
         raise Refusal("request", detail="there is no such event")
     if event["event"] == "packet":
         number(event, "number", 0, 65535)
@@ -168,7 +235,11 @@ def _request_row(request: Request | None) -> dict[str, Any] | None:
         return None
     if request.kind == TELEMETRY:
         return {"telemetry": request.id}
-    return {"telecommand": request.id, "bytes": request.data.hex(), "repeat": request.repeat}
+    return {
+        "telecommand": request.id,
+        "bytes": request.data.hex(),
+        "repeat": request.repeat,
+    }
 
 
 def _file(request: dict[str, Any]) -> tuple[int, int]:
@@ -188,7 +259,12 @@ def procedure_of(facts: Facts, request: dict[str, Any]) -> transfer.Procedure:
         return transfer.Download(facts, bus, *_file(request), size, block)
     if name == "upload":
         times = number(request, "times", 1, LONGEST, 1)
-        return transfer.Upload(facts, number(request, "destination", 0, 255), octets(request) * times, block)
+        return transfer.Upload(
+            facts,
+            number(request, "destination", 0, 255),
+            octets(request) * times,
+            block,
+        )
     if name == "erase":
         return transfer.Erase(facts, *_file(request), flag(request, "all"))
     if name == "format":

@@ -1,6 +1,8 @@
-"""Parts of a node's protocol, with the facts of each declared once (`icdgen.protocol.declared`).
+"""Parts of a node's protocol, with the facts of each declared once
+(`icdgen.protocol.declared`).
 
-A part stands for a section of the ICD (`icdgen.protocol.places`). Times are milliseconds, sizes bytes.
+A part stands for a section of the ICD (`icdgen.protocol.places`). Times are
+milliseconds, sizes bytes.
 """
 
 from __future__ import annotations
@@ -36,7 +38,14 @@ UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 _BITS = ("lsb0", "msb0")
 _MSB0 = "whether bit 0 is the most significant one of a byte"
 CAN_WITH_DATA = ("telecommand", "reply")  # other kinds have no data
-CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
+CAN_KINDS = (
+    "telecommand",
+    "acknowledge",
+    "refusal",
+    "request",
+    "reply",
+    "request_refusal",
+)
 _POLL = "time between two polls of "
 
 
@@ -56,9 +65,15 @@ class Framing:
     """
 
     escape: int = octet("escape", "the escape byte")
-    start: int = octet("start_of_message", "follows the escape byte at the beginning of a message")
-    end: int = octet("end_of_message", "follows the escape byte at the end of a message")
-    escaped: int = octet("escaped_data", "follows the escape byte if the escape byte itself is data")
+    start: int = octet(
+        "start_of_message", "follows the escape byte at the beginning of a message"
+    )
+    end: int = octet(
+        "end_of_message", "follows the escape byte at the end of a message"
+    )
+    escaped: int = octet(
+        "escaped_data", "follows the escape byte if the escape byte itself is data"
+    )
     escapes_id: bool = flag(
         "escaped_in", "whether the id is escaped like the data", True, ("data", "id"), "id",
         "the parts of a message in which the escape byte is doubled",
@@ -96,12 +111,23 @@ class Crc:
     """Parameters of a CRC in the notation of common catalogues."""
 
     width: int = number("width", "bits of the checksum", 1, 32, holds=U32)
-    polynomial: int = code("polynomial", "generator polynomial, most significant bit first, without the leading term")
+    polynomial: int = code(
+        "polynomial",
+        "generator polynomial, most significant bit first, without the leading term",
+    )
     init: int = code("init", "initial value of the register")
-    reflect_in: bool = flag("reflect_in", "whether each byte enters least significant bit first")
-    reflect_out: bool = flag("reflect_out", "whether the bits of the register are reversed at the end")
-    xor_out: int = code("xor_out", "final XOR value: combined with the register at the end")
-    empty: int | None = code("empty", "checksum of no bytes, if it is not the result of the algorithm", None)
+    reflect_in: bool = flag(
+        "reflect_in", "whether each byte enters least significant bit first"
+    )
+    reflect_out: bool = flag(
+        "reflect_out", "whether the bits of the register are reversed at the end"
+    )
+    xor_out: int = code(
+        "xor_out", "final XOR value: combined with the register at the end"
+    )
+    empty: int | None = code(
+        "empty", "checksum of no bytes, if it is not the result of the algorithm", None
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,7 +137,9 @@ class CheckValue:
     Rule ICD091 compares it with the computed CRC. Generated links do not use it.
     """
 
-    check: int | None = code("check", 'checksum of the nine ASCII bytes "123456789"', None)
+    check: int | None = code(
+        "check", 'checksum of the nine ASCII bytes "123456789"', None
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -119,11 +147,19 @@ class Checksum:
     """Checksum of telecommands and telemetry frames."""
 
     crc: Crc
-    covers_id: bool = flag("covers_id", "whether the id byte is part of what the checksum covers", False)
-    telecommand_buses: tuple[str, ...] = buses("telecommand", "where telecommands have it")
+    covers_id: bool = flag(
+        "covers_id", "whether the id byte is part of what the checksum covers", False
+    )
+    telecommand_buses: tuple[str, ...] = buses(
+        "telecommand", "where telecommands have it"
+    )
     telemetry_buses: tuple[str, ...] = buses("telemetry", "where telemetry has it")
-    telecommand_always: tuple[str, ...] = buses("telecommand", "where telecommands are not taken without it")
-    telemetry_always: tuple[str, ...] = buses("telemetry", "where telemetry never is without it")
+    telecommand_always: tuple[str, ...] = buses(
+        "telecommand", "where telecommands are not taken without it"
+    )
+    telemetry_always: tuple[str, ...] = buses(
+        "telemetry", "where telemetry never is without it"
+    )
     bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
 
 
@@ -140,16 +176,33 @@ class Extended:
     """Extended CAN messages, which consist of several packets."""
 
     data_bytes: int = octets("data_bytes", "data bytes of a packet", 1, 8)
-    left_at: int = octets("packets_left_byte", "index of the byte that counts the packets that follow", 0, 7)
-    left_in_last: int = number(
-        "packets_left_in_last", "value of that byte in the last packet", 0, default=0, holds=BYTE
+    left_at: int = octets(
+        "packets_left_byte",
+        "index of the byte that counts the packets that follow",
+        0,
+        7,
     )
-    packets: int = number("max_packets", "most packets of a message", 1, default=CAN_PACKETS)
+    left_in_last: int = number(
+        "packets_left_in_last",
+        "value of that byte in the last packet",
+        0,
+        default=0,
+        holds=BYTE,
+    )
+    packets: int = number(
+        "max_packets", "most packets of a message", 1, default=CAN_PACKETS
+    )
     bytes: int = octets(
-        "max_bytes", "most bytes of a message", 1, U32, lambda preceding: preceding["data_bytes"] * preceding["packets"]
+        "max_bytes",
+        "most bytes of a message",
+        1,
+        U32,
+        lambda preceding: preceding["data_bytes"] * preceding["packets"],
     )
     fill: int = octet("fill", "value of unused bytes of the last packet", 0)
-    packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
+    packet_timeout: int = time(
+        "packet_timeout_ms", "longest time between two packets of a message", 1000
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -193,7 +246,9 @@ class LogMask:
     """
 
     size: int = octets("bytes", "length of the mask", 1, BYTE)
-    msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 is bit 0")
+    msb0: bool = flag(
+        "bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 is bit 0"
+    )
     slot_bytes: int = octets("frame_bytes", "length of each frame in a log")
     fill: int = octet("fill", "value of the bytes after a short frame", 0)
     bits: dict[int, LogBit]  # assigned bits only
@@ -204,7 +259,9 @@ class LogMask:
         for bit in range(self.size * 8):
             weight = 7 - bit % 8 if self.msb0 else bit % 8
             if mask[bit // 8] >> weight & 1:
-                slots.append(self.bits.get(bit) or LogBit(bit, None, self.slot_bytes, None))
+                slots.append(
+                    self.bits.get(bit) or LogBit(bit, None, self.slot_bytes, None)
+                )
         return slots
 
 
@@ -216,8 +273,12 @@ class LogFile:
     header_bytes: int = octets("", "bytes of the header")
     seconds: tuple[int, int] = span("where the Unix time stands in an entry")
     milliseconds: tuple[int, int] = span("where the milliseconds stand in an entry")
-    frames_at: int = octets("frames_byte", "where in an entry the selected frames begin", 0)
-    file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
+    frames_at: int = octets(
+        "frames_byte", "where in an entry the selected frames begin", 0
+    )
+    file_type: int | None = number(
+        "file_type.value", "type of such a file", 0, BYTE, None
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -226,7 +287,9 @@ class LogMessage:
 
     id: int = number("id", "id of such messages", most=BYTE)
     mask_at: int = octets("", "where the mask stands")
-    frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
+    frames_at: int = octets(
+        "frames_byte", "where the selected frames begin, counted from the id", 0
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -250,7 +313,9 @@ class Index:
     """
 
     entry_bytes: int = octets("entry_bytes", "length of an entry")
-    file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
+    file_type: int | None = number(
+        "file_type.value", "type of such a file", 0, BYTE, None
+    )
     fields: dict[str, IndexField]
 
 
@@ -264,8 +329,16 @@ class HoleMap:
         "bytes of the map in each message",
         default=lambda preceding: preceding["bytes"] // len(preceding["messages"]),
     )
-    msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="bit of byte 0 that represents packet 0")
-    received: bool = flag("received", "value of the bit of a received packet", True, (0, 1))
+    msb0: bool = flag(
+        "bit_order",
+        _MSB0,
+        False,
+        _BITS,
+        key_about="bit of byte 0 that represents packet 0",
+    )
+    received: bool = flag(
+        "received", "value of the bit of a received packet", True, (0, 1)
+    )
     beyond_end: bool = flag(
         "beyond_end",
         "value of the bits of packets beyond the end of the block",
@@ -283,13 +356,17 @@ class Step:
     message: Message
     fields: dict[str, str] = field(default_factory=dict)
 
-    def frame(self, node: Node, values: Mapping[str, int | bytes] | None = None) -> bytes:
+    def frame(
+        self, node: Node, values: Mapping[str, int | bytes] | None = None
+    ) -> bytes:
         """Return the bytes of the message.
 
         ``values``: values by role; other fields have their initial values.
         """
         given = {self.fields[role]: value for role, value in (values or {}).items()}
-        return codec.encode(node, self.message, codec.initial_values(node, self.message) | given)
+        return codec.encode(
+            node, self.message, codec.initial_values(node, self.message) | given
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -313,12 +390,18 @@ class Download:
     load: Step = telecommand("load", "loads a block")
     ready: Step = telemetry("ready", "tells whether the block is loaded")
     burst: Step = telecommand("burst", "starts the transfer of the block")
-    message_length: int = number("message_length", "value of the length in the burst telecommand", 0, U32)
+    message_length: int = number(
+        "message_length", "value of the length in the burst telecommand", 0, U32
+    )
     checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
-    index_counter: int = number("index_counter", "counter that goes with the type of the index file", 0, BYTE, 0)
+    index_counter: int = number(
+        "index_counter", "counter that goes with the type of the index file", 0, BYTE, 0
+    )
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the ready flag")
     ready_timeout: int = time("ready_timeout_ms", "longest time to load a block")
-    silence: int = time("silence_ms", "time without a packet after which a burst is over")
+    silence: int = time(
+        "silence_ms", "time without a packet after which a burst is over"
+    )
     rounds: int = number("rounds", "most bursts for one block", 1, U32)
 
 
@@ -333,17 +416,29 @@ class Upload:
     checksum: Step = telemetry("checksum", "tells the checksum of the block received")
     finalize: Step = telecommand("finalize", "commits a block")
     finalized: Step = telemetry("finalized", "tells whether the block is committed")
-    block_size: int = number("block_size", "value of the block size in `initiate`", 0, U32)
+    block_size: int = number(
+        "block_size", "value of the block size in `initiate`", 0, U32
+    )
     checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
     poll_interval: int = time("poll_interval_ms", f"{_POLL}a busy flag")
-    erase_timeout: int = time("erase_timeout_s", "longest time to erase the destination")
-    finalize_timeout: int = time("finalize_timeout_ms", "longest time to commit a block")
+    erase_timeout: int = time(
+        "erase_timeout_s", "longest time to erase the destination"
+    )
+    finalize_timeout: int = time(
+        "finalize_timeout_ms", "longest time to commit a block"
+    )
     rounds: int = number("rounds", "most rounds of packets for one block", 1, U32)
     destination_bytes: int | None = octets(
-        "destination_bytes", "size of a destination in bytes: no file may be larger", 1, U32, None
+        "destination_bytes",
+        "size of a destination in bytes: no file may be larger",
+        1,
+        U32,
+        None,
     )
     destinations: tuple[int, ...] = allowed(
-        "destinations", "supported destinations; none: all", "the destinations that are supported"
+        "destinations",
+        "supported destinations; none: all",
+        "the destinations that are supported",
     )
 
 
@@ -364,12 +459,21 @@ PROCEDURES: dict[str, type[Any]] = {
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Files:
-    """File transfer. None stands for a procedure that the ICD describes incompletely."""
+    """File transfer.
+
+    None stands for a procedure that the ICD describes incompletely.
+    """
 
     packet_bytes: int = octets("packet_bytes", "bytes of the file in a packet")
-    counter_bytes: int = octets("packet_counter_bytes", "bytes of the packet counter before them", 0, 4)
-    first_packet: int = number("first_packet", "number of the first packet of a block", 0, U16, 0)
-    fill: int = octet("fill", "value of the bytes of the last packet beyond the end of the file", 0)
+    counter_bytes: int = octets(
+        "packet_counter_bytes", "bytes of the packet counter before them", 0, 4
+    )
+    first_packet: int = number(
+        "first_packet", "number of the first packet of a block", 0, U16, 0
+    )
+    fill: int = octet(
+        "fill", "value of the bytes of the last packet beyond the end of the file", 0
+    )
     block_packets: int = octets("block_packets", "most packets of a block", 1, U16 + 1)
     block_bytes: int = octets("block_bytes", "most bytes of a block", 1, U32)
     packet_ids: dict[str, int]  # bus -> id that heads a download packet there
@@ -422,5 +526,9 @@ class Settings:
 
     reply_timeout: int = time("reply_timeout_ms", "time-out of a reply", 1000)
     retries: int = number("retries", "number of retries of a request", 0, BYTE, 3)
-    poll_interval: int = time("poll_interval_ms", "time between two polls for an acknowledge", 20)
-    poll_timeout: int = time("poll_timeout_ms", "longest processing time of a telecommand", 5000)
+    poll_interval: int = time(
+        "poll_interval_ms", "time between two polls for an acknowledge", 20
+    )
+    poll_timeout: int = time(
+        "poll_timeout_ms", "longest processing time of a telecommand", 5000
+    )

@@ -45,7 +45,13 @@ class Verdict(NamedTuple):
     row: int = 0
 
 
-def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[str, int] | None = None) -> bytes:
+def encode(
+    form: Stream,
+    direction: str,
+    id: int,
+    data: bytes,
+    values: Mapping[str, int] | None = None,
+) -> bytes:
     """Return the transmitted bytes of a message.
 
     ``values``: values of the fields that the sender chooses; the ICD defines their
@@ -70,7 +76,11 @@ def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[s
     # The checksum is written last: it can cover all other fields.
     place = form.of("checksum")
     if place and form.check:
-        _put(place, tail if place.in_trailer else head, _checksum(form, row, bytes(head) + data + bytes(tail)))
+        _put(
+            place,
+            tail if place.in_trailer else head,
+            _checksum(form, row, bytes(head) + data + bytes(tail)),
+        )
     return stuffing.stuffed(form.delimited_by, bytes(head) + data + bytes(tail))
 
 
@@ -84,7 +94,9 @@ def _put(field: EnvelopeField, into: bytearray, value: int) -> None:
 
 def _get(form: Stream, field: EnvelopeField, frame: bytes) -> int:
     at = field.at + (len(frame) - form.trailer_bytes if field.in_trailer else 0)
-    number = int.from_bytes(frame[at : at + field.size], "little" if field.little else "big")
+    number = int.from_bytes(
+        frame[at : at + field.size], "little" if field.little else "big"
+    )
     return number >> field.shift & field.mask
 
 
@@ -119,13 +131,19 @@ class Decoder:
     def feed(self, data: bytes) -> list[Event]:
         """Process the next bytes of the stream, or a packet."""
         if self.form.delimited_by == PACKET:
-            return list(self._frame(data, len(data), [OVERRUN] if len(data) > self.limit else []))
+            return list(
+                self._frame(
+                    data, len(data), [OVERRUN] if len(data) > self.limit else []
+                )
+            )
         return [event for byte in data for event in self._byte(byte)]
 
     def _byte(self, byte: int) -> Iterator[Event]:
         if self.line:
             for delimited in self.line.feed(byte):
-                yield from self._frame(delimited.frame, delimited.size, delimited.faults)
+                yield from self._frame(
+                    delimited.frame, delimited.size, delimited.faults
+                )
             return
         self.buffer.append(byte)
         while (count := (yield from self._front())) is not None:
@@ -183,11 +201,17 @@ class Decoder:
         event = verdict.event
         place = self.form.of("sequence")
         if event.event == MESSAGE and place:
-            number, key = dict(event.values)["sequence"], verdict.row if self.form.per_id else 0
+            number, key = dict(event.values)["sequence"], (
+                verdict.row if self.form.per_id else 0
+            )
             last = self.last.get(key)
             self.last[key] = number
             if last is not None and number != (last + 1 & place.mask):
-                yield Event(GAP, event.id, missing=0 if number == last else number - last - 1 & place.mask)
+                yield Event(
+                    GAP,
+                    event.id,
+                    missing=0 if number == last else number - last - 1 & place.mask,
+                )
         yield event
         return event.event == MESSAGE
 
@@ -209,7 +233,10 @@ class Decoder:
         place = form.of("id")
         # A format without id field has a single message.
         id = _get(form, place, frame) if place else self.rows[0].id if self.rows else 0
-        number, row = next(((number, row) for number, row in enumerate(self.rows) if row.id == id), (0, None))
+        number, row = next(
+            ((number, row) for number, row in enumerate(self.rows) if row.id == id),
+            (0, None),
+        )
         # The checksum decides whether the id and the length can be trusted.
         place = form.of("checksum")
         if place and form.check:
@@ -225,5 +252,7 @@ class Decoder:
             return Verdict(Event(BAD_LENGTH, id), True)
         data = frame[form.header_bytes : form.header_bytes + size]
         fields = {field.role: field for field in form.fields}
-        values = tuple((role, _get(form, fields[role], frame)) for role in GIVEN if role in fields)
+        values = tuple(
+            (role, _get(form, fields[role], frame)) for role in GIVEN if role in fields
+        )
         return Verdict(Event(MESSAGE, id, data, values), True, number)

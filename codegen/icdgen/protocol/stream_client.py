@@ -1,9 +1,10 @@
-"""Client over a packet format of the ICD. Requests with different telemetry responses
-run at the same time.
+"""Client over a packet format of the ICD.
+
+Requests with different telemetry responses run at the same time.
 
 Reference implementation. Like `client.Client`, it is a state machine without clock and
-I/O, and each call receives the time in milliseconds. Events are mappings: the events of the
-decoder, ``done`` and ``timeout``. A ``message`` event is a message that no request
+I/O, and each call receives the time in milliseconds. Events are mappings: the events of
+the decoder, ``done`` and ``timeout``. A ``message`` event is a message that no request
 waits for.
 """
 
@@ -42,7 +43,9 @@ class Slot:
 class Client:
     """Client with up to ``requests`` simultaneous requests."""
 
-    def __init__(self, facts: Facts, requests: int, settings: Settings | None = None) -> None:
+    def __init__(
+        self, facts: Facts, requests: int, settings: Settings | None = None
+    ) -> None:
         self.form: Stream = need(facts.stream, "stream")
         self.settings = settings or facts.client
         self._decoder = stream.Decoder(self.form, TELEMETRY)
@@ -54,7 +57,9 @@ class Client:
     @property
     def deadline(self) -> int | None:
         """Latest time of the next call of `tick`; None if no call is needed."""
-        return min((slot.until for slot in self._slots if slot.state != IDLE), default=None)
+        return min(
+            (slot.until for slot in self._slots if slot.state != IDLE), default=None
+        )
 
     def start(self, now: int, request: Request) -> list[Event]:
         """Start a request.
@@ -69,13 +74,22 @@ class Client:
                 raise UnknownIdError(f"no telemetry has the id {reply}")
         slot = self._free(reply)
         if not row.least <= len(request.data) <= row.most:
-            raise LengthError(row.most if len(request.data) > row.most else row.least, len(request.data))
-        slot.request = replace(request, repeat=request.repeat or request.kind == TELEMETRY)
+            raise LengthError(
+                row.most if len(request.data) > row.most else row.least,
+                len(request.data),
+            )
+        slot.request = replace(
+            request, repeat=request.repeat or request.kind == TELEMETRY
+        )
         slot.sent, slot.reply = row.id, reply
         slot.attempts, slot.was_taken = 0, False
         # A late response to a previous request could be taken for the response to this
         # one.
-        late = [slot.late_until for slot in self._slots if slot.late is not None and slot.late == reply]
+        late = [
+            slot.late_until
+            for slot in self._slots
+            if slot.late is not None and slot.late == reply
+        ]
         if now < max(late, default=now):
             slot.state, slot.until = HOLD, max(late)
             return []
@@ -98,7 +112,10 @@ class Client:
             if kind in (None, slot.request.kind) and id in (None, slot.request.id):
                 self._drop(slot)
                 if slot.state != IDLE and slot.was_taken:
-                    slot.late, slot.late_until = slot.reply, slot.until + self.settings.reply_timeout
+                    slot.late, slot.late_until = (
+                        slot.reply,
+                        slot.until + self.settings.reply_timeout,
+                    )
                 slot.state = IDLE
 
     def tick(self, now: int) -> list[Event]:
@@ -107,7 +124,9 @@ class Client:
         for slot in self._slots:
             if slot.state == IDLE or now < slot.until:
                 continue
-            if slot.state == HOLD or (slot.request.repeat and slot.attempts <= self.settings.retries):
+            if slot.state == HOLD or (
+                slot.request.repeat and slot.attempts <= self.settings.retries
+            ):
                 events += self._transmit(now, slot)
             else:
                 events.append(self._end(now, slot, "timeout"))
@@ -115,13 +134,18 @@ class Client:
 
     def received(self, now: int, data: bytes) -> list[Event]:
         """Process the next bytes of the stream, or a packet."""
-        return self.tick(now) + [self._event_of(now, event) for event in self._decoder.feed(data)]
+        return self.tick(now) + [
+            self._event_of(now, event) for event in self._decoder.feed(data)
+        ]
 
     def _event_of(self, now: int, event: stream.Event) -> Event:
         if event.event == stream.MESSAGE:
             for slot in self._slots:
                 if slot.state == WAIT and slot.was_taken and slot.reply == event.id:
-                    return self._end(now, slot, "done") | {"reply": event.id, "bytes": event.data.hex()}
+                    return self._end(now, slot, "done") | {
+                        "reply": event.id,
+                        "bytes": event.data.hex(),
+                    }
         return event_row(event)
 
     def _row(self, request: Request) -> StreamRow:
@@ -141,9 +165,12 @@ class Client:
     def _free(self, reply: int | None) -> Slot:
         """Return a free slot.
 
-        Raises `BusyError` if all are in use or another request waits for the same reply.
+        Raises `BusyError` if all are in use or another request waits for the same
+        reply.
         """
-        if reply is not None and any(slot.state != IDLE and slot.reply == reply for slot in self._slots):
+        if reply is not None and any(
+            slot.state != IDLE and slot.reply == reply for slot in self._slots
+        ):
             raise BusyError
         for slot in self._slots:
             if slot.state == IDLE and slot not in self._untaken:
@@ -178,7 +205,9 @@ class Client:
             key = slot.sent if self.form.per_id else None
             values["sequence"] = number = self._next.get(key, place.values[0])
             self._next[key] = number + 1 & place.mask
-        return stream.encode(self.form, TELECOMMAND, slot.sent, slot.request.data, values)
+        return stream.encode(
+            self.form, TELECOMMAND, slot.sent, slot.request.data, values
+        )
 
 
 def event_row(event: stream.Event) -> Event:

@@ -36,7 +36,10 @@ def stuffed(delimited_by: str, frame: bytes) -> bytes:
         out = frame.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
         return b"\xc0" + out + b"\xc0"
     if delimited_by == HDLC:
-        out = b"".join(bytes([0x7D, b ^ _HDLC_FLIP]) if b in (0x7D, 0x7E) else bytes([b]) for b in frame)
+        out = b"".join(
+            bytes([0x7D, b ^ _HDLC_FLIP]) if b in (0x7D, 0x7E) else bytes([b])
+            for b in frame
+        )
         return b"\x7e" + out + b"\x7e"
     return _cobs(frame) if delimited_by == COBS else frame
 
@@ -105,7 +108,9 @@ class Escaped(Unstuffer):
 
     def __init__(self, limit: int, is_slip: bool) -> None:
         self.is_slip = is_slip
-        self.end, self.escape = (_SLIP_END, _SLIP_ESCAPE) if is_slip else (_HDLC_FLAG, _HDLC_ESCAPE)
+        self.end, self.escape = (
+            (_SLIP_END, _SLIP_ESCAPE) if is_slip else (_HDLC_FLAG, _HDLC_ESCAPE)
+        )
         super().__init__(limit)
 
     def clear(self) -> None:
@@ -160,4 +165,6 @@ def unstuffer(delimited_by: str, limit: int) -> Unstuffer | None:
     """Return the decoder of the byte stuffing; None if the format has no delimiters."""
     if delimited_by == COBS:
         return Cobs(limit)
-    return Escaped(limit, delimited_by == SLIP) if delimited_by in (SLIP, HDLC) else None
+    return (
+        Escaped(limit, delimited_by == SLIP) if delimited_by in (SLIP, HDLC) else None
+    )

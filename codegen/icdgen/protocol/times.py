@@ -14,7 +14,10 @@ PARTS = ("year", "month", "day", "hour", "minute", "second")
 def unpack(facts: Facts, value: int) -> dict[str, int]:
     """Return the parts of a packed time, without a check of their ranges."""
     form = need(facts.time, "msdos_time")
-    return {name: (value >> p.at & (1 << p.bits) - 1) * p.factor + p.offset for name, p in form.items()}
+    return {
+        name: (value >> p.at & (1 << p.bits) - 1) * p.factor + p.offset
+        for name, p in form.items()
+    }
 
 
 def pack(facts: Facts, parts: Mapping[str, int]) -> int:

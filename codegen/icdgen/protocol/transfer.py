@@ -116,7 +116,9 @@ class Procedure:
     def wait(self, milliseconds: int) -> Steps:
         yield Wait(self.now + milliseconds)
 
-    def telecommand(self, step: Step, repeat: bool = True, **values: int | bytes) -> Asking[dict[str, Any]]:
+    def telecommand(
+        self, step: Step, repeat: bool = True, **values: int | bytes
+    ) -> Asking[dict[str, Any]]:
         """Send the telecommand of a step.
 
         ``values``: values by role; other fields have their initial values.
@@ -133,21 +135,36 @@ class Procedure:
         if outcome["event"] == "refused":
             raise Ended("refused")
 
-    def request(self, step: Step, repeat: bool = True, /, **values: int | bytes) -> Request:
+    def request(
+        self, step: Step, repeat: bool = True, /, **values: int | bytes
+    ) -> Request:
         """Return the request for the telecommand of a step."""
         assert step.message.telecommand_id is not None
-        return Request(TELECOMMAND, step.message.telecommand_id, step.frame(self.facts.node, values), repeat)
+        return Request(
+            TELECOMMAND,
+            step.message.telecommand_id,
+            step.frame(self.facts.node, values),
+            repeat,
+        )
 
     def telemetry(self, step: Step) -> Asking[tuple[dict[str, Any], bytes]]:
         """Request the frame of a step; return its values by role, and its bytes."""
         assert step.message.telemetry_id is not None
-        outcome = yield from self.demand(Request(TELEMETRY, step.message.telemetry_id, repeat=True))
+        outcome = yield from self.demand(
+            Request(TELEMETRY, step.message.telemetry_id, repeat=True)
+        )
         frame = bytes.fromhex(outcome["bytes"])
         raw = codec.decode(self.facts.node, step.message, frame)
         return {role: raw[name] for role, name in step.fields.items()}, frame
 
     def poll(
-        self, step: Step, role: str, wanted: int, interval: int, timeout: int, program: int | None = None
+        self,
+        step: Step,
+        role: str,
+        wanted: int,
+        interval: int,
+        timeout: int,
+        program: int | None = None,
     ) -> Asking[tuple[dict[str, Any], bytes]]:
         """Request a frame until the flag ``role`` has the value ``wanted``.
 
@@ -157,7 +174,9 @@ class Procedure:
         end = self.now + timeout
         while True:
             values, frame = yield from self.telemetry(step)
-            is_for_program = program is None or values.get("program", program) == program
+            is_for_program = (
+                program is None or values.get("program", program) == program
+            )
             if (values[role] == wanted and is_for_program) or values.get("error"):
                 return values, frame
             if self.now >= end:
@@ -183,7 +202,9 @@ class Transfer(Procedure):
         """
         form = need(self.facts.hole_map, "file_transfer.hole_map")
         carrying = -(-count // (form.message_bytes * 8))
-        return [Step(message, {"map": form.field}) for message in form.messages[:carrying]]
+        return [
+            Step(message, {"map": form.field}) for message in form.messages[:carrying]
+        ]
 
 
 class FileList(Transfer):
@@ -200,18 +221,23 @@ class FileList(Transfer):
         form, last, repetitions = self.form, None, 0
         yield from self.telecommand(form.reset)
         while True:
-            values, frame = yield from self.poll(form.information, "busy", 0, form.poll_interval, form.timeout)
+            values, frame = yield from self.poll(
+                form.information, "busy", 0, form.poll_interval, form.timeout
+            )
             # A frame of zeros marks the end of the list.
             if not any(frame):
                 return
             # An unchanged frame means that `advance` was not executed yet, or was lost.
             if frame != last:
-                self.entries.append({role: value for role, value in values.items() if role != "busy"})
+                self.entries.append(
+                    {role: value for role, value in values.items() if role != "busy"}
+                )
                 repetitions = 0
             elif repetitions > self.facts.client.retries:
                 raise Ended("timeout")
             last, repetitions = frame, repetitions + 1
-            # Sent once: if only its acknowledge was lost, the next frame tells that it arrived.
+            # Sent once: if only its acknowledge was lost, the next frame tells that it
+            # arrived.
             yield from self.once(form.advance)
 
 
@@ -222,7 +248,13 @@ class Download(Transfer):
     """
 
     def __init__(
-        self, facts: Facts, bus: str, type: int, counter: int, size: int | None, block: int | None = None
+        self,
+        facts: Facts,
+        bus: str,
+        type: int,
+        counter: int,
+        size: int | None,
+        block: int | None = None,
     ) -> None:
         super().__init__(facts, block)
         self.form = need(self.files.download, "file_transfer.download")
@@ -246,7 +278,11 @@ class Download(Transfer):
 
     def _run(self) -> Steps:
         while self.size is None or self.offset < self.size:
-            want = self.block if self.size is None else min(self.block, self.size - self.offset)
+            want = (
+                self.block
+                if self.size is None
+                else min(self.block, self.size - self.offset)
+            )
             data = yield from self._block(want)
             if data:
                 self.blocks.append((self.offset, data))
@@ -261,7 +297,9 @@ class Download(Transfer):
             self.packets, self.count = {}, 0
             place = {"type": self.type, "counter": self.counter, "offset": self.offset}
             yield from self.telecommand(form.load, True, **place, length=want)
-            ready, _ = yield from self.poll(form.ready, "ready", 1, form.poll_interval, form.ready_timeout)
+            ready, _ = yield from self.poll(
+                form.ready, "ready", 1, form.poll_interval, form.ready_timeout
+            )
             if ready["error"]:
                 raise Ended("parameter")
             size = ready["length"]
@@ -273,9 +311,16 @@ class Download(Transfer):
                     raise Ended("rounds")
                 rounds += 1
                 yield from self._round()
-            block_packets = b"".join(self.packets[position] for position in range(self.count))
-            covered = block_packets if form.checksum_covers_fill else block_packets[:size]
-            if crc.compute(need(self.facts.crc16, "crc16"), covered) == ready["checksum"]:
+            block_packets = b"".join(
+                self.packets[position] for position in range(self.count)
+            )
+            covered = (
+                block_packets if form.checksum_covers_fill else block_packets[:size]
+            )
+            if (
+                crc.compute(need(self.facts.crc16, "crc16"), covered)
+                == ready["checksum"]
+            ):
                 return block_packets[:size]
             # After a checksum error the block is loaded again; rounds count over all
             # attempts.
@@ -287,14 +332,23 @@ class Download(Transfer):
     def _round(self) -> Steps:
         if self.packets:
             yield from self._send_hole_map()
-        missing = [position for position in range(self.count) if position not in self.packets]
+        missing = [
+            position for position in range(self.count) if position not in self.packets
+        ]
         everything = not self.packets
         self.last = self.now
         # Sent once: received packets are a better evidence than its acknowledge.
-        yield from self.once(self.form.burst, length=self.form.message_length, ignore_hole_map=int(everything))
+        yield from self.once(
+            self.form.burst,
+            length=self.form.message_length,
+            ignore_hole_map=int(everything),
+        )
         if self.bus != UART:
             counter = self.files.counter_bytes
-            id = need(self.files.packet_ids.get(self.bus), f"file_transfer.download.{self.bus}")
+            id = need(
+                self.files.packet_ids.get(self.bus),
+                f"file_transfer.download.{self.bus}",
+            )
             # On request-response buses each packet is requested; on the UART the node
             # sends them unsolicited.
             for _ in missing:
@@ -304,13 +358,21 @@ class Download(Transfer):
                     self.packet(self.facts.number(data[:counter]), data[counter:])
             return
         self.last = max(self.last, self.now)
-        while len(self.packets) < self.count and self.now < self.last + self.form.silence:
+        while (
+            len(self.packets) < self.count and self.now < self.last + self.form.silence
+        ):
             yield Wait(self.last + self.form.silence)
 
     def _send_hole_map(self) -> Steps:
         first = self.files.first_packet
-        map_ = files.hole_map(self.facts, self.count, [first + position for position in self.packets])
-        for step, piece in zip(self.hole_maps(self.count), files.in_messages(self.facts, map_), strict=False):
+        map_ = files.hole_map(
+            self.facts, self.count, [first + position for position in self.packets]
+        )
+        for step, piece in zip(
+            self.hole_maps(self.count),
+            files.in_messages(self.facts, map_),
+            strict=False,
+        ):
             yield from self.telecommand(step, map=piece)
 
 
@@ -321,7 +383,9 @@ class Upload(Transfer):
     `RangeError` and `TooLongError`.
     """
 
-    def __init__(self, facts: Facts, destination: int, data: bytes, block: int | None = None) -> None:
+    def __init__(
+        self, facts: Facts, destination: int, data: bytes, block: int | None = None
+    ) -> None:
         super().__init__(facts, block)
         form = self.form = need(self.files.upload, "file_transfer.upload")
         if form.destinations and destination not in form.destinations:
@@ -334,8 +398,12 @@ class Upload(Transfer):
 
     def _run(self) -> Steps:
         form = self.form
-        yield from self.telecommand(form.initiate, destination=self.destination, block_size=form.block_size)
-        yield from self.poll(form.initiated, "busy", 0, form.poll_interval, form.erase_timeout)
+        yield from self.telecommand(
+            form.initiate, destination=self.destination, block_size=form.block_size
+        )
+        yield from self.poll(
+            form.initiated, "busy", 0, form.poll_interval, form.erase_timeout
+        )
         while self.sent < len(self.data):
             data = self.data[self.sent : self.sent + self.block]
             yield from self._block(data)
@@ -356,13 +424,23 @@ class Upload(Transfer):
                 for position in missing:
                     packet = filled[position * size : (position + 1) * size]
                     number = self.files.first_packet + position
-                    yield from self.telecommand(form.packet, False, number=number, bytes=packet)
+                    yield from self.telecommand(
+                        form.packet, False, number=number, bytes=packet
+                    )
                 missing = yield from self._missing(count)
             checksum, _ = yield from self.telemetry(form.checksum)
-            if checksum["checksum"] == crc.compute(need(self.facts.crc16, "crc16"), covered):
-                committed_block = {"destination": self.destination, "offset": self.sent, "length": len(data)}
+            if checksum["checksum"] == crc.compute(
+                need(self.facts.crc16, "crc16"), covered
+            ):
+                committed_block = {
+                    "destination": self.destination,
+                    "offset": self.sent,
+                    "length": len(data),
+                }
                 yield from self.telecommand(form.finalize, True, **committed_block)
-                poll = self.poll(form.finalized, "busy", 0, form.poll_interval, form.finalize_timeout)
+                poll = self.poll(
+                    form.finalized, "busy", 0, form.poll_interval, form.finalize_timeout
+                )
                 finalized, _ = yield from poll
                 if not finalized["error"]:
                     return
@@ -394,7 +472,13 @@ class Erase(Transfer):
     def _run(self) -> Steps:
         yield from self.telecommand(self.form.request, True, **self.values)
         if self.values["all"]:
-            yield from self.poll(self.form.progress, "busy", 0, self.form.poll_interval, self.form.timeout)
+            yield from self.poll(
+                self.form.progress,
+                "busy",
+                0,
+                self.form.poll_interval,
+                self.form.timeout,
+            )
 
 
 class Format(Transfer):

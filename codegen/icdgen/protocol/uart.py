@@ -20,7 +20,13 @@ PROTOCOL_ERROR = "protocol_error"  # escape byte before an undefined byte
 OVERRUN = "overrun"  # a message longer than the buffer
 EMPTY = "empty"  # a message without an id
 
-REPLY, ACKNOWLEDGE, PACKET, LOG, OTHER = "reply", "acknowledge", "packet", "log", "other"
+REPLY, ACKNOWLEDGE, PACKET, LOG, OTHER = (
+    "reply",
+    "acknowledge",
+    "packet",
+    "log",
+    "other",
+)
 
 
 class Event(NamedTuple):
@@ -121,14 +127,24 @@ def kind(facts: Facts, message: bytes) -> str:
     id = message[0]
     log, mask = facts.log_message, facts.mask
     if log and mask and id == log.id:
-        selected = mask.selected(message[log.mask_at : log.mask_at + mask.size].ljust(mask.size, b"\0"))
-        return LOG if len(message) == log.frames_at + len(selected) * mask.slot_bytes else OTHER
+        selected = mask.selected(
+            message[log.mask_at : log.mask_at + mask.size].ljust(mask.size, b"\0")
+        )
+        return (
+            LOG
+            if len(message) == log.frames_at + len(selected) * mask.slot_bytes
+            else OTHER
+        )
     if facts.telemetry_ids.first <= id <= facts.telemetry_ids.last:
         return REPLY
     if facts.acknowledge and len(message) == facts.acknowledge.length:
         return ACKNOWLEDGE
     files = facts.files
-    if files and id == files.packet_ids.get("uart") and len(message) == 1 + files.counter_bytes + files.packet_bytes:
+    if (
+        files
+        and id == files.packet_ids.get("uart")
+        and len(message) == 1 + files.counter_bytes + files.packet_bytes
+    ):
         return PACKET
     return OTHER
 

@@ -13,7 +13,15 @@ from icdgen.icd import wire_ids
 from icdgen.protocol.sections import CAN_WITH_DATA
 from icdgen.recognize import match
 from icdgen.recognize.packets import Printed
-from icdgen.recognize.reading import ACKNOWLEDGE, REFUSAL, REQUEST, TELECOMMAND, TELEMETRY, Endpoint, Reading
+from icdgen.recognize.reading import (
+    ACKNOWLEDGE,
+    REFUSAL,
+    REQUEST,
+    TELECOMMAND,
+    TELEMETRY,
+    Endpoint,
+    Reading,
+)
 from icdgen.recognize.selection import Selection
 from icdgen.values.errors import BadLength, NotFound
 
@@ -23,7 +31,9 @@ _WHAT = {
 }  # fmt: skip
 
 
-def readings(endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection) -> list[Reading]:
+def readings(
+    endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection
+) -> list[Reading]:
     """Return the messages in the packets, in their order.
 
     Raise `NotFound`, `BadLength` or `Ambiguous`.
@@ -39,56 +49,96 @@ def readings(endpoints: Sequence[Endpoint], packets: Sequence[Printed], selectio
     if most == 0:
         raise _no_message_error(can_endpoints[0], sent)
     complete = [result for result in per_endpoint if len(result) == most]
-    chosen = [_chosen([result[number] for result in complete], selection) for number in range(most)]
+    chosen = [
+        _chosen([result[number] for result in complete], selection)
+        for number in range(most)
+    ]
     left = _left_out(complete[0][0].endpoint, sent) - most
-    note = [f"{left} of the CAN messages are no message of the ICD, or not complete"] if left else []
+    note = (
+        [f"{left} of the CAN messages are no message of the ICD, or not complete"]
+        if left
+        else []
+    )
     return [chosen[0].with_left_out(*note), *chosen[1:]]
 
 
-def by_identifier(endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection) -> list[Reading]:
+def by_identifier(
+    endpoints: Sequence[Endpoint], packets: Sequence[Printed], selection: Selection
+) -> list[Reading]:
     """Return the message of each packet whose CAN identifier is the id.
 
     Raise `NotFound`, `BadLength` or `Ambiguous` if no packet is a message.
     """
-    matches, errors = match.read_each(packets, lambda packet: _by_identifier(endpoints, packet, selection))
-    reports = [f"{error} ({count} CAN packet{'s' * (count > 1)})" for error, count in Counter(map(str, errors)).items()]
+    matches, errors = match.read_each(
+        packets, lambda packet: _by_identifier(endpoints, packet, selection)
+    )
+    reports = [
+        f"{error} ({count} CAN packet{'s' * (count > 1)})"
+        for error, count in Counter(map(str, errors)).items()
+    ]
     return [matches[0].with_left_out(*reports), *matches[1:]]
 
 
-def _by_identifier(endpoints: Sequence[Endpoint], packet: Printed, selection: Selection) -> Reading:
+def _by_identifier(
+    endpoints: Sequence[Endpoint], packet: Printed, selection: Selection
+) -> Reading:
     ids = [
         (endpoint, id)
         for endpoint in endpoints
-        if (id := wire_ids.of_can(packet.id, packet.extended, endpoint.node.id_bits)) is not None
+        if (id := wire_ids.of_can(packet.id, packet.extended, endpoint.node.id_bits))
+        is not None
     ]
     candidates = match.of_ids(ids, packet.data)
     if not candidates:
         text = f"no message of {match.nodes_of(endpoints)} has the CAN identifier {packet.identifier}"
         help = "`icdgen show NODE` lists what there is; name the message to have the bytes read all the same"
-        raise match.data_error([(endpoint, (id, packet.data)) for endpoint, id in ids], NotFound(text, help))
-    reading = match.most_likely(candidates, f"a packet with the CAN identifier {packet.identifier}", selection)
-    return replace(reading, time=packet.time).with_remarks(f"CAN identifier {packet.identifier} removed")
+        raise match.data_error(
+            [(endpoint, (id, packet.data)) for endpoint, id in ids],
+            NotFound(text, help),
+        )
+    reading = match.most_likely(
+        candidates, f"a packet with the CAN identifier {packet.identifier}", selection
+    )
+    return replace(reading, time=packet.time).with_remarks(
+        f"CAN identifier {packet.identifier} removed"
+    )
 
 
-def _of_endpoint(endpoint: Endpoint, packets: list[CanPacket], times: list[str]) -> list[Reading]:
-    # A pasted text has no reception times: messages never time out, and any number of senders may be mixed.
+def _of_endpoint(
+    endpoint: Endpoint, packets: list[CanPacket], times: list[str]
+) -> list[Reading]:
+    # A pasted text has no reception times: messages never time out, and any number of
+    # senders may be mixed.
     joiner = CanJoiner(endpoint.link, senders=len(packets))
     result = []
     for packet, time in zip(packets, times, strict=True):
         for event in joiner.feed(0, packet):
             reading = _reading(endpoint, event.message) if event.message else None
             if reading is not None:
-                result.append(replace(reading, time=time))  # time of the packet that completes the message
+                result.append(
+                    replace(reading, time=time)
+                )  # time of the packet that completes the message
     return result
 
 
 def _reading(endpoint: Endpoint, can_message: CanMessage) -> Reading | None:
     sends = can_message.kind in ("telecommand", "acknowledge", "refusal")
-    message = (endpoint.facts.telecommands if sends else endpoint.facts.telemetry).get(can_message.id)
-    if message is None or (can_message.kind in CAN_WITH_DATA and len(can_message.data) != message.length):
+    message = (endpoint.facts.telecommands if sends else endpoint.facts.telemetry).get(
+        can_message.id
+    )
+    if message is None or (
+        can_message.kind in CAN_WITH_DATA and len(can_message.data) != message.length
+    ):
         return None
     way = f"CAN, from address {can_message.source} to {can_message.destination}"
-    return Reading(endpoint, _WHAT[can_message.kind], message, can_message.id, can_message.data, remarks=(way,))
+    return Reading(
+        endpoint,
+        _WHAT[can_message.kind],
+        message,
+        can_message.id,
+        can_message.data,
+        remarks=(way,),
+    )
 
 
 def _left_out(endpoint: Endpoint, packets: list[CanPacket]) -> int:
@@ -97,10 +147,14 @@ def _left_out(endpoint: Endpoint, packets: list[CanPacket]) -> int:
     return len([event for event in events if event.event != "duplicate"]) + len(waiting)
 
 
-def _can_events(endpoint: Endpoint, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
+def _can_events(
+    endpoint: Endpoint, packets: list[CanPacket]
+) -> tuple[list[CanEvent], list[CanEvent]]:
     """Return the events of the packets, and the events of messages that lack packets."""
     joiner = CanJoiner(endpoint.link, senders=len(packets))
-    return [event for packet in packets for event in joiner.feed(0, packet)], joiner.expire(math.inf)
+    return [
+        event for packet in packets for event in joiner.feed(0, packet)
+    ], joiner.expire(math.inf)
 
 
 def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
@@ -117,21 +171,33 @@ def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
 
 def _chosen(candidates: list[Reading], selection: Selection) -> Reading:
     different = {
-        reading.key: reading for reading in (*candidates, *(reading for reading in candidates if reading.is_own))
+        reading.key: reading
+        for reading in (
+            *candidates,
+            *(reading for reading in candidates if reading.is_own),
+        )
     }
-    return match.most_likely(list(different.values()), f"a CAN message with id {candidates[0].id}", selection)
+    return match.most_likely(
+        list(different.values()), f"a CAN message with id {candidates[0].id}", selection
+    )
 
 
-def _no_message_error(endpoint: Endpoint, packets: list[CanPacket]) -> BadLength | NotFound:
+def _no_message_error(
+    endpoint: Endpoint, packets: list[CanPacket]
+) -> BadLength | NotFound:
     """Return the error for packets without a message of the node."""
     events, waiting = _can_events(endpoint, packets)
     event = events[0] if events else None
     if waiting and not any(candidate.message for candidate in events):
         received, missing = _received_count(endpoint, packets), waiting[0].missing
         text = f"{missing} of {received + missing} packets of the message with id {waiting[0].id} are missing"
-        return BadLength(text, received + missing, received, "give all packets of the message")
+        return BadLength(
+            text, received + missing, received, "give all packets of the message"
+        )
     if event and event.message:
-        return match.no_match_error([endpoint], bytes([event.message.id]) + event.message.data)
+        return match.no_match_error(
+            [endpoint], bytes([event.message.id]) + event.message.data
+        )
     text = event.event.replace("_", " ") if event else "no message"
     what = f"the packet with identifier 0x{packets[0].id:08X} is none of {endpoint.node.name}"
     return NotFound(f"{what}: {text}", "see the `can` section of its ICD")

@@ -20,21 +20,30 @@ class _Row(NamedTuple):
 
 
 def dump(text: str) -> bytes | None:
-    """Return the bytes of a dump. Return None if it is no dump, or its addresses have gaps.
+    """Return the bytes of a dump.
+
+    Return None if it is no dump, or its addresses have gaps.
 
     hexdump and od print 16-bit words of a little-endian machine after a 7-digit
     address.
     """
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     rows = [row for line in lines if (row := _row(line)) is not None]
-    if not rows or len(rows) != len(lines) or not (all(row.is_sure for row in rows) or len(rows) > 1):
+    if (
+        not rows
+        or len(rows) != len(lines)
+        or not (all(row.is_sure for row in rows) or len(rows) > 1)
+    ):
         return None
     for base in (16, 8):  # od prints octal addresses by default
         try:
             places = [int(row.at, base) for row in rows]
         except ValueError:
             continue
-        if all(later - at == len(row.data) for (at, later), row in zip(pairwise(places), rows, strict=False)):
+        if all(
+            later - at == len(row.data)
+            for (at, later), row in zip(pairwise(places), rows, strict=False)
+        ):
             return b"".join(row.data for row in rows)
     return None
 
@@ -45,7 +54,11 @@ def _row(line: str) -> _Row | None:
     if match is None or (match["data"] and not match["space"]):
         return None
     at, words = match["at"], match["data"].split()
-    swapped = len(at) == _WORDS and not match["mark"] and all(len(word) == 4 for word in words)
+    swapped = (
+        len(at) == _WORDS
+        and not match["mark"]
+        and all(len(word) == 4 for word in words)
+    )
     data = b"".join(bytes.fromhex(word)[:: -1 if swapped else 1] for word in words)
     is_sure = bool(match["mark"]) or len(at) == _WORDS or len(match["space"]) > 1
     return _Row(at, data, is_sure or (match["text"] or "").strip().startswith("|"))

@@ -41,7 +41,9 @@ class _RecordingDecoder(StreamDecoder):
         self.packets: dict[int, tuple[Span, bytes]] = {}  # by the index of the event
         self._at = self._end = 0
 
-    def _frame(self, frame: bytes, size: int, fault: str | None, events: list[StreamEvent]) -> None:
+    def _frame(
+        self, frame: bytes, size: int, fault: str | None, events: list[StreamEvent]
+    ) -> None:
         self._at, self._end = self._end, self._end + size
         super()._frame(frame, size, fault, events)
         if fault:
@@ -50,12 +52,16 @@ class _RecordingDecoder(StreamDecoder):
     def _front(self, at: int, events: list[StreamEvent]) -> int | None:
         self._at, before = at, len(events)
         count = super()._front(at, events)
-        if len(events) > before and len(events) - 1 not in self.packets:  # the length field is invalid
+        if (
+            len(events) > before and len(events) - 1 not in self.packets
+        ):  # the length field is invalid
             header = self._buffer[at : at + self._form.header_bytes]
             self.packets[len(events) - 1] = Span(at, at + 1), bytes(header)
         return count
 
-    def _judge(self, frame: bytes, events: list[StreamEvent]) -> Literal["message", "proven", "doubtful"]:
+    def _judge(
+        self, frame: bytes, events: list[StreamEvent]
+    ) -> Literal["message", "proven", "doubtful"]:
         verdict = super()._judge(frame, events)
         end = self._end if self._line else self._at + len(frame)
         self.packets[len(events) - 1] = Span(self._at, end), frame
@@ -74,7 +80,9 @@ class DirectionResult:
     faults: list[tuple[Span, Fault]] = field(default_factory=list)
 
 
-def readings(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> list[Reading]:
+def readings(
+    endpoints: Sequence[Endpoint], data: bytes, selection: Selection
+) -> list[Reading]:
     """Return the messages in the data, including messages of the other direction.
 
     The direction with the fewest unused bytes is chosen, among those with a message
@@ -89,17 +97,29 @@ def readings(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -
         if endpoint.facts.stream
         for direction in DIRECTIONS
     ]
-    usable = [result for result in results if result.readings and (result.lost == 0 or _is_marked(result.endpoint))]
+    usable = [
+        result
+        for result in results
+        if result.readings and (result.lost == 0 or _is_marked(result.endpoint))
+    ]
     if not usable:
         if fault := _likeliest(results):
             raise fault.error
         return []
-    usable = [result for result in usable if any(map(selection.fits, result.readings))] or usable
+    usable = [
+        result for result in usable if any(map(selection.fits, result.readings))
+    ] or usable
     least, fewer = min((result.lost, -len(result.readings)) for result in usable)
-    best = [result for result in usable if (result.lost, -len(result.readings)) == (least, fewer)]
+    best = [
+        result
+        for result in usable
+        if (result.lost, -len(result.readings)) == (least, fewer)
+    ]
     chosen = {
         best[0].spans[at]: match.most_likely(
-            [result.readings[at] for result in best], "a frame in an envelope", selection
+            [result.readings[at] for result in best],
+            "a frame in an envelope",
+            selection,
         )
         for at in range(-fewer)
     }
@@ -109,7 +129,8 @@ def readings(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -
     opposite = [
         result
         for result in usable
-        if result not in best and any(result.endpoint is candidate.endpoint for candidate in best)
+        if result not in best
+        and any(result.endpoint is candidate.endpoint for candidate in best)
     ]
     for candidate in opposite:
         for span, reading in zip(candidate.spans, candidate.readings, strict=True):
@@ -117,9 +138,14 @@ def readings(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -
                 chosen[span] = reading
                 span.mark(taken)
                 least -= span.end - span.at
-    reports = _left_out([result for result in results if result.endpoint is best[0].endpoint], taken)
+    reports = _left_out(
+        [result for result in results if result.endpoint is best[0].endpoint], taken
+    )
     first, *remaining = [chosen[span] for span in sorted(chosen)]
-    return [first.with_left_out(*reports).with_remarks(*match.stream_remarks(least, ())), *remaining]
+    return [
+        first.with_left_out(*reports).with_remarks(*match.stream_remarks(least, ())),
+        *remaining,
+    ]
 
 
 def begun(endpoints: Sequence[Endpoint], data: bytes) -> Fault | None:
@@ -141,7 +167,9 @@ def _left_out(results: Sequence[DirectionResult], taken: bytearray) -> list[str]
     """
     likeliest: dict[int, tuple[Span, Fault]] = {}
     for span, fault in (entry for result in results for entry in result.faults):
-        if span.is_free(taken) and (span.at not in likeliest or fault.rank > likeliest[span.at][1].rank):
+        if span.is_free(taken) and (
+            span.at not in likeliest or fault.rank > likeliest[span.at][1].rank
+        ):
             likeliest[span.at] = span, fault
     texts, end = [], 0
     for at, (span, fault) in sorted(likeliest.items()):
@@ -155,15 +183,28 @@ def sync_of(endpoint: Endpoint) -> str:
     """Return the first bytes of the packets of a node, for a report."""
     form = endpoint.link.stream
     return (
-        " or ".join(filter(None, dict.fromkeys(faults.sync_text(form, direction) for direction in DIRECTIONS)))
+        " or ".join(
+            filter(
+                None,
+                dict.fromkeys(
+                    faults.sync_text(form, direction) for direction in DIRECTIONS
+                ),
+            )
+        )
         if form
         else ""
     )
 
 
 def _likeliest(results: Sequence[DirectionResult]) -> Fault | None:
-    """Return the fault of the first packet, for the direction whose header matches best."""
-    firsts = [result.faults[0] for result in results if result.faults and _is_marked(result.endpoint)]
+    """Return the fault of the first packet, for the direction whose header matches
+    best.
+    """
+    firsts = [
+        result.faults[0]
+        for result in results
+        if result.faults and _is_marked(result.endpoint)
+    ]
     at = min((span.at for span, _ in firsts), default=0)
     fitting = [fault for span, fault in firsts if span.at == at]
     return max(fitting, key=lambda fault: fault.rank, default=None)
@@ -172,10 +213,14 @@ def _likeliest(results: Sequence[DirectionResult]) -> Fault | None:
 def _is_marked(endpoint: Endpoint) -> bool:
     """Return whether messages have a constant or a checksum."""
     form = endpoint.facts.stream
-    return form is not None and (form.check is not None or form.of("constant") is not None)
+    return form is not None and (
+        form.check is not None or form.of("constant") is not None
+    )
 
 
-def _decode_direction(endpoint: Endpoint, direction: Direction, data: bytes) -> DirectionResult:
+def _decode_direction(
+    endpoint: Endpoint, direction: Direction, data: bytes
+) -> DirectionResult:
     """Decode the data as messages of one direction."""
     decoder = _RecordingDecoder(endpoint, direction)
     events = decoder.feed(data)
@@ -184,7 +229,9 @@ def _decode_direction(endpoint: Endpoint, direction: Direction, data: bytes) -> 
         if event.event == "gap":
             continue
         span, packet = decoder.packets.get(number, (None, b""))
-        reading = _reading(endpoint, direction, event) if event.event == "message" else None
+        reading = (
+            _reading(endpoint, direction, event) if event.event == "message" else None
+        )
         if span is None:
             continue
         if reading is not None:
@@ -200,21 +247,46 @@ def _decode_direction(endpoint: Endpoint, direction: Direction, data: bytes) -> 
     return result
 
 
-def _fault(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
+def _fault(
+    endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool
+) -> Fault | None:
     """Return the fault of a packet, or None if the bytes may as well be noise."""
     fault = faults.fault_of(endpoint, direction, packet, is_whole)
     form = endpoint.link.stream
-    return fault if fault and form and (fault.is_of_message or faults.has_sync(form)) else None
+    return (
+        fault
+        if fault and form and (fault.is_of_message or faults.has_sync(form))
+        else None
+    )
 
 
-def _reading(endpoint: Endpoint, direction: Direction, event: StreamEvent) -> Reading | None:
+def _reading(
+    endpoint: Endpoint, direction: Direction, event: StreamEvent
+) -> Reading | None:
     assert event.id is not None
     variants = getattr(endpoint.ids, direction)
-    message = match.message_of(endpoint.icd, [variant.message for variant in variants.get(event.id, ())], event.data)
-    if message is None or match.counter_error(endpoint, message, event.data) is not None:
+    message = match.message_of(
+        endpoint.icd,
+        [variant.message for variant in variants.get(event.id, ())],
+        event.data,
+    )
+    if (
+        message is None
+        or match.counter_error(endpoint, message, event.data) is not None
+    ):
         return None
     form = endpoint.facts.stream
     chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
-    note = f"envelope with id {id_text(form, event.id)} removed" + (f"; it has {chosen}" if chosen else "")
+    note = f"envelope with id {id_text(form, event.id)} removed" + (
+        f"; it has {chosen}" if chosen else ""
+    )
     checked = form is not None and form.check is not None
-    return Reading(endpoint, direction, message, event.id, event.data, checked=checked, remarks=(note,))
+    return Reading(
+        endpoint,
+        direction,
+        message,
+        event.id,
+        event.data,
+        checked=checked,
+        remarks=(note,),
+    )

@@ -1,4 +1,6 @@
-"""Errors of packets that cannot be decoded: cut off, damaged, or not a message of the ICD."""
+"""Errors of packets that cannot be decoded: cut off, damaged, or not a message of the
+ICD.
+"""
 
 from __future__ import annotations
 
@@ -47,22 +49,38 @@ class Fault(NamedTuple):
 
 def has_sync(form: Stream) -> bool:
     """Return whether packets begin with a delimiter or with at least 8 constant bits."""
-    constants = [field for field in form.fields if field.role == "constant" and not field.in_trailer]
-    return form.delimited_by in (SLIP, HDLC) or sum(field.bits for field in constants) >= _BITS_OF_SYNC
+    constants = [
+        field
+        for field in form.fields
+        if field.role == "constant" and not field.in_trailer
+    ]
+    return (
+        form.delimited_by in (SLIP, HDLC)
+        or sum(field.bits for field in constants) >= _BITS_OF_SYNC
+    )
 
 
 def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
     """Return whether bytes begin with the delimiter or the constants of a direction."""
     if form.delimited_by in (SLIP, HDLC):
         return data[:1].hex().upper() == _ENDS[form.delimited_by]
-    return bool(data) and has_sync(form) and _bits_of_constants(form, direction, data) > 0
+    return (
+        bool(data) and has_sync(form) and _bits_of_constants(form, direction, data) > 0
+    )
 
 
 def sync_text(form: Stream, direction: Direction) -> str:
-    """Return the constant first bytes of packets, such as ``A5 5A``. It may be empty."""
+    """Return the constant first bytes of packets, such as ``A5 5A``.
+
+    It may be empty.
+    """
     if form.delimited_by in (SLIP, HDLC):
         return _ENDS[form.delimited_by]
-    constants = {field.at: field for field in form.fields if field.role == "constant" and not field.in_trailer}
+    constants = {
+        field.at: field
+        for field in form.fields
+        if field.role == "constant" and not field.in_trailer
+    }
     constant_bytes, at = b"", 0
     while (field := constants.get(at)) is not None and field.bits == 8 * field.size:
         constant_bytes += field.values[direction == "telemetry"].to_bytes(
@@ -84,7 +102,9 @@ def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int
         # Compare only the bytes that were received.
         received = packet[field.at : field.at + field.size]
         order: Literal["little", "big"] = "little" if field.little else "big"
-        mask = ((1 << field.bits) - 1 << field.shift).to_bytes(field.size, order)[: len(received)]
+        mask = ((1 << field.bits) - 1 << field.shift).to_bytes(field.size, order)[
+            : len(received)
+        ]
         value = field.values[direction == "telemetry"] << field.shift
         expected = value.to_bytes(field.size, order)[: len(received)]
         if any((a ^ b) & m for a, b, m in zip(received, expected, mask, strict=True)):
@@ -93,7 +113,9 @@ def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int
     return bits
 
 
-def fault_of(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool) -> Fault | None:
+def fault_of(
+    endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: bool
+) -> Fault | None:
     """Return the reason why a packet without stuffing is not a message of a direction.
 
     Return None if it does not begin like a packet. ``is_whole``: its end was received,
@@ -112,19 +134,29 @@ def fault_of(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: 
         id = rows[0].id if rows else None
     else:
         id = _value(form, field, packet, is_whole)
-    messages = [variant.message for variant in getattr(endpoint.ids, direction).get(id, ())] if id is not None else []
+    messages = (
+        [variant.message for variant in getattr(endpoint.ids, direction).get(id, ())]
+        if id is not None
+        else []
+    )
     row = next((row for row in rows if row.id == id), None)
     rank, title = bits, f"packet of {node}"
     if id is not None and field is not None:
         title += f" with the id {id_text(declared, id)}"
-    # Ranks: constant bits of the header, plus 100 for a known id, 200 if only the checksum is wrong, 300 if only the
-    # message is.
+    # Ranks: constant bits of the header, plus 100 for a known id, 200 if only the
+    # checksum is wrong, 300 if only the message is.
     if messages:
         rank += 100
-        names = " or ".join(f"`{message.name}` ({direction} {id_text(declared, id or 0)})" for message in messages)
+        names = " or ".join(
+            f"`{message.name}` ({direction} {id_text(declared, id or 0)})"
+            for message in messages
+        )
         title = f"packet of {node}, {names}"
     needed = _size(form, packet)
-    if needed is not None and not form.header_bytes + form.trailer_bytes <= needed <= longest:
+    if (
+        needed is not None
+        and not form.header_bytes + form.trailer_bytes <= needed <= longest
+    ):
         text = f"a {title} says that it has {byte_count(needed)}; packets have up to {longest}"
         return Fault(
             rank,
@@ -134,15 +166,32 @@ def fault_of(endpoint: Endpoint, direction: Direction, packet: bytes, is_whole: 
             count,
             is_of_message=bool(messages),
         )
-    is_of_row = bool(row and needed and row.least <= needed - form.header_bytes - form.trailer_bytes <= row.most)
-    is_certain = bool(messages) and (is_of_row or (needed is None and form.delimited_by in (SLIP, HDLC)))
+    is_of_row = bool(
+        row
+        and needed
+        and row.least <= needed - form.header_bytes - form.trailer_bytes <= row.most
+    )
+    is_certain = bool(messages) and (
+        is_of_row or (needed is None and form.delimited_by in (SLIP, HDLC))
+    )
     if not is_whole or (needed is not None and count < needed):
-        expected = f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
+        expected = (
+            f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
+        )
         if needed is None and count >= form.header_bytes and form.delimited_by in _ENDS:
             expected = f"the byte {_ENDS[form.delimited_by]} that ends it is missing"
         text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
         help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
-        return Fault(rank, text, help, needed or form.header_bytes, count, False, bool(messages), is_certain)
+        return Fault(
+            rank,
+            text,
+            help,
+            needed or form.header_bytes,
+            count,
+            False,
+            bool(messages),
+            is_certain,
+        )
     fault = _fault_of_whole(endpoint, direction, packet, title, row, rank, is_certain)
     return fault._replace(is_of_message=bool(messages))
 
@@ -167,39 +216,81 @@ def _fault_of_whole(
     needed = _size(form, packet)
     if needed is not None and needed != count:
         text = f"a {title} has {byte_count(count)}, its length says {needed}"
-        return Fault(rank, text, "bytes are missing, or too many, or damaged", needed, count)
+        return Fault(
+            rank, text, "bytes are missing, or too many, or damaged", needed, count
+        )
     for field in form.fields:
         if field.role == "constant" and field.in_trailer:
-            value, expected = _get(form, field, packet, len(packet)), field.values[direction == "telemetry"]
+            value, expected = (
+                _get(form, field, packet, len(packet)),
+                field.values[direction == "telemetry"],
+            )
             if value != expected:
                 text = f"a {title} ends with {_bytes_text(field, value)}, expected {_bytes_text(field, expected)}"
-                return Fault(rank, text, "bytes are missing, or too many, or damaged", count, count)
+                return Fault(
+                    rank,
+                    text,
+                    "bytes are missing, or too many, or damaged",
+                    count,
+                    count,
+                )
     place = form.of("checksum")
     if place and form.check and (row is not None or not form.check.is_seeded):
-        received, expected = _get(form, place, packet, len(packet)), _checksum(form, row, packet)
+        received, expected = _get(form, place, packet, len(packet)), _checksum(
+            form, row, packet
+        )
         if received != expected:
             text = f"a {title} has a wrong checksum: it is {_bytes_text(place, received)}, expected {_bytes_text(place, expected)}"
-            help = "a byte of it is damaged or missing, or the packet is of another node"
+            help = (
+                "a byte of it is damaged or missing, or the packet is of another node"
+            )
             return Fault(rank + 200, text, help, count, count, is_certain=is_certain)
     if row is None:
         other: Direction = "telemetry" if direction == "telecommand" else "telecommand"
         place = form.of("id")
         id = _get(form, place, packet, count) if place else 0
-        names = [f"`{variant.message.name}`" for variant in getattr(endpoint.ids, other).get(id, ())]
+        names = [
+            f"`{variant.message.name}`"
+            for variant in getattr(endpoint.ids, other).get(id, ())
+        ]
         absence = (
-            f"no {direction} with this id, but {other} {' or '.join(names)}" if names else "no message with this id"
+            f"no {direction} with this id, but {other} {' or '.join(names)}"
+            if names
+            else "no message with this id"
         )
         text = f"a {title} and {byte_count(size)} of data is no message: {node} has {absence}"
-        return Fault(rank + 300, text, f"`icdgen show {node}` lists its messages", 0, count, is_unknown=True)
+        return Fault(
+            rank + 300,
+            text,
+            f"`icdgen show {node}` lists its messages",
+            0,
+            count,
+            is_unknown=True,
+        )
     if not row.least <= size <= row.most:
-        lengths = f"{row.least}" if row.least == row.most else f"{row.least} to {row.most}"
+        lengths = (
+            f"{row.least}" if row.least == row.most else f"{row.least} to {row.most}"
+        )
         text = f"a {title} has {byte_count(size)} of data, the ICD says {lengths}"
-        return Fault(rank + 300, text, "bytes are missing, or too many", row.most, size, is_certain=True)
-    text = f"a {title} has data that do not match the length and constants of the message"
-    return Fault(rank + 300, text, "a byte was damaged, or there are too many", size, size)
+        return Fault(
+            rank + 300,
+            text,
+            "bytes are missing, or too many",
+            row.most,
+            size,
+            is_certain=True,
+        )
+    text = (
+        f"a {title} has data that do not match the length and constants of the message"
+    )
+    return Fault(
+        rank + 300, text, "a byte was damaged, or there are too many", size, size
+    )
 
 
-def packet_begun(endpoint: Endpoint, direction: Direction, data: bytes) -> tuple[bytes, bool]:
+def packet_begun(
+    endpoint: Endpoint, direction: Direction, data: bytes
+) -> tuple[bytes, bool]:
     """Return the first packet without stuffing, and whether its end was received."""
     form = endpoint.link.stream
     assert form
@@ -222,20 +313,33 @@ def _size(form: Stream, packet: bytes) -> int | None:
     field = form.of("length")
     if field is None or len(packet) < form.header_bytes:
         return None
-    return form.header_bytes + _get(form, field, packet, len(packet)) - form.length_plus + form.trailer_bytes
+    return (
+        form.header_bytes
+        + _get(form, field, packet, len(packet))
+        - form.length_plus
+        + form.trailer_bytes
+    )
 
 
-def _value(form: Stream, field: EnvelopeField, packet: bytes, is_whole: bool) -> int | None:
+def _value(
+    form: Stream, field: EnvelopeField, packet: bytes, is_whole: bool
+) -> int | None:
     """Return the value of a field, or None if the packet is too short."""
     if field.in_trailer and not is_whole:
         return None
-    if field.at + field.size > len(packet) or (field.in_trailer and len(packet) < form.trailer_bytes):
+    if field.at + field.size > len(packet) or (
+        field.in_trailer and len(packet) < form.trailer_bytes
+    ):
         return None
     return _get(form, field, packet, len(packet))
 
 
 def _bytes_text(field: EnvelopeField, value: int) -> str:
-    """Return a value as transmitted bytes, or as a number if other fields share its bytes."""
+    """Return a value as transmitted bytes, or as a number if other fields share its
+    bytes.
+    """
     if field.shift or field.bits != 8 * field.size:
         return f"0x{value:X}"
-    return value.to_bytes(field.size, "little" if field.little else "big").hex(" ").upper()
+    return (
+        value.to_bytes(field.size, "little" if field.little else "big").hex(" ").upper()
+    )

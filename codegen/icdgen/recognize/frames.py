@@ -22,7 +22,11 @@ from icdgen.values.frame import frame
 
 
 def recognize(
-    icd: Icd, text: str | bytes, node: str | None = None, key: str | None = None, kind: str | None = None
+    icd: Icd,
+    text: str | bytes,
+    node: str | None = None,
+    key: str | None = None,
+    kind: str | None = None,
 ) -> list[Reading]:
     """Return the frames in a text, or in bytes as received.
 
@@ -38,7 +42,11 @@ def recognize(
     lines = [line for line in text.splitlines() if line.strip()]
     by_line = _line_by_line(icd, endpoints, lines, selection)
     # Without ids, several lines are more likely pieces of one frame. Try that first.
-    if by_line and not selection.messages and all(reading.id is not None for reading in by_line):
+    if (
+        by_line
+        and not selection.messages
+        and all(reading.id is not None for reading in by_line)
+    ):
         return by_line
     try:
         return _readings(icd, endpoints, read(text), selection)
@@ -48,22 +56,32 @@ def recognize(
         raise
 
 
-def _line_by_line(icd: Icd, endpoints: Sequence[Endpoint], lines: Sequence[str], selection: Selection) -> list[Reading]:
+def _line_by_line(
+    icd: Icd, endpoints: Sequence[Endpoint], lines: Sequence[str], selection: Selection
+) -> list[Reading]:
     """Return the frames if there are several lines and each is a complete frame."""
     if len(lines) < 2:
         return []
     with suppress(Ambiguous, BadHex, BadLength, NotFound):
         pasted = [read(line) for line in lines]
         if not any(pasted_line.packets or pasted_line.form for pasted_line in pasted):
-            return [reading for pasted_line in pasted for reading in _readings(icd, endpoints, pasted_line, selection)]
+            return [
+                reading
+                for pasted_line in pasted
+                for reading in _readings(icd, endpoints, pasted_line, selection)
+            ]
     return []
 
 
-def _readings(icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection) -> list[Reading]:
+def _readings(
+    icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection
+) -> list[Reading]:
     if pasted.packets and any(endpoint.facts.can for endpoint in endpoints):
         results = bus.readings(endpoints, pasted.packets, selection)
     else:
-        results = _framed(endpoints, pasted.whole, selection) or _unframed(icd, endpoints, pasted, selection)
+        results = _framed(endpoints, pasted.whole, selection) or _unframed(
+            icd, endpoints, pasted, selection
+        )
     left_out = [text for reading in results for text in reading.left_out]
     results = selection.of(results)
     if selection.messages and not any(map(selection.is_of, results)):
@@ -78,7 +96,9 @@ def _readings(icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection
     return [_decoded(icd, reading.with_remarks(*note)) for reading in results]
 
 
-def _framed(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> list[Reading]:
+def _framed(
+    endpoints: Sequence[Endpoint], data: bytes, selection: Selection
+) -> list[Reading]:
     """Return the messages in a stream with framing.
 
     Return no messages if there is no framing, or if a named message has exactly these
@@ -92,23 +112,33 @@ def _framed(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) ->
         return []
     if enveloped := envelopes.readings(endpoints, data, selection):
         return enveloped
-    for framing in dict.fromkeys(endpoint.link.framing for endpoint in endpoints if endpoint.link.framing):
+    for framing in dict.fromkeys(
+        endpoint.link.framing for endpoint in endpoints if endpoint.link.framing
+    ):
         if bytes((framing.escape, framing.start)) not in data:
             continue
-        with_framing = [endpoint for endpoint in endpoints if endpoint.link.framing == framing]
+        with_framing = [
+            endpoint for endpoint in endpoints if endpoint.link.framing == framing
+        ]
         decoder = UartDecoder(with_framing[0].link, max(len(data), 1))
         events = decoder.feed(data)
         bodies = [event.message for event in events if event.event == "message"]
         if not bodies:
             if data[:2] == bytes((framing.escape, framing.start)):
                 raise BadLength(
-                    _framing_error(events), 0, len(data), "the frame is cut off, or a byte of it is damaged"
+                    _framing_error(events),
+                    0,
+                    len(data),
+                    "the frame is cut off, or a byte of it is damaged",
                 )
             continue
-        matches, failures = match.read_each(bodies, partial(_of_body, with_framing, selection=selection))
+        matches, failures = match.read_each(
+            bodies, partial(_of_body, with_framing, selection=selection)
+        )
         errors = [event.event for event in events if event.event != "message"]
         reports = [str(error) for error in failures] + [
-            f"the stream has an error: {error_name.replace('_', ' ')}" for error_name in errors
+            f"the stream has an error: {error_name.replace('_', ' ')}"
+            for error_name in errors
         ]
         if decoder.pending > 1:
             reports.append(_framing_error([]))
@@ -119,16 +149,23 @@ def _framed(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) ->
 
 def _check_not_cut(endpoints: Sequence[Endpoint], data: bytes) -> None:
     """Raise `BadLength` for a frame that is cut off: its first byte, or its end only."""
-    for framing in dict.fromkeys(endpoint.link.framing for endpoint in endpoints if endpoint.link.framing):
+    for framing in dict.fromkeys(
+        endpoint.link.framing for endpoint in endpoints if endpoint.link.framing
+    ):
         if data == bytes((framing.escape,)):
             raise BadLength(_framing_error([]), 0, len(data), "the frame is cut off")
         if len(data) > 2 and data.endswith(bytes((framing.escape, framing.end))):
             raise BadLength(
-                "the framing ends, but the start of the message is missing", 0, len(data), "the frame is cut off"
+                "the framing ends, but the start of the message is missing",
+                0,
+                len(data),
+                "the frame is cut off",
             )
 
 
-def _enveloped_with_checksum(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> list[Reading]:
+def _enveloped_with_checksum(
+    endpoints: Sequence[Endpoint], data: bytes, selection: Selection
+) -> list[Reading]:
     """Return messages with header and trailer whose checksum is right.
 
     A message of variable length can be as long as another one with header and trailer.
@@ -147,18 +184,28 @@ def _framing_error(events: list[UartEvent]) -> str:
     """Return the error of a stream with framing but without a message."""
     if any(event.event == "protocol_error" for event in events):
         return "the framing is broken: the escape byte is followed by neither itself nor an end of message"
-    return "the framing is empty" if events else "the framing begins, but the end of the message is missing"
+    return (
+        "the framing is empty"
+        if events
+        else "the framing begins, but the end of the message is missing"
+    )
 
 
-def _of_body(endpoints: Sequence[Endpoint], body: bytes, selection: Selection) -> Reading:
+def _of_body(
+    endpoints: Sequence[Endpoint], body: bytes, selection: Selection
+) -> Reading:
     candidates = match.by_id(endpoints, body)
     if not candidates:
         raise match.no_match_error(endpoints, body)
     reading = match.most_likely(candidates, f"a frame with id {body[0]}", selection)
-    return replace(reading, remarks=(f"framing with id {body[0]} removed", *reading.remarks))
+    return replace(
+        reading, remarks=(f"framing with id {body[0]} removed", *reading.remarks)
+    )
 
 
-def _unframed(icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection) -> list[Reading]:
+def _unframed(
+    icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection: Selection
+) -> list[Reading]:
     """Return the messages of CAN packets by their identifiers, or the message of bytes.
 
     If no identifier matches, the bytes belong to the message that the user has named.
@@ -170,17 +217,30 @@ def _unframed(icd: Icd, endpoints: Sequence[Endpoint], pasted: Pasted, selection
     except NotFound as error:
         if not selection.messages:
             raise
-        return [_message_of_bytes(icd, endpoints, pasted.whole, selection).with_remarks(str(error))]
+        return [
+            _message_of_bytes(icd, endpoints, pasted.whole, selection).with_remarks(
+                str(error)
+            )
+        ]
 
 
-def _message_of_bytes(icd: Icd, endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> Reading:
-    """Return the message of bytes without framing. Raise `BadLength`, `NotFound` or `Ambiguous`."""
+def _message_of_bytes(
+    icd: Icd, endpoints: Sequence[Endpoint], data: bytes, selection: Selection
+) -> Reading:
+    """Return the message of bytes without framing.
+
+    Raise `BadLength`, `NotFound` or `Ambiguous`.
+    """
     if not data and not selection.messages:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
     fault = envelopes.begun(endpoints, data)
     if selection.messages:
         reading = selected_message(icd, endpoints[0], selection.messages, data)
-        return reading.with_remarks(f"the data begin like a packet: {fault.text}") if fault else reading
+        return (
+            reading.with_remarks(f"the data begin like a packet: {fault.text}")
+            if fault
+            else reading
+        )
     if fault:
         raise fault.error
     _check_not_cut(endpoints, data)
@@ -188,25 +248,44 @@ def _message_of_bytes(icd: Icd, endpoints: Sequence[Endpoint], data: bytes, sele
     plainly = [
         endpoint
         for endpoint in endpoints
-        if endpoint.link.stream is None or (selection.kind and faults.has_sync(endpoint.link.stream))
+        if endpoint.link.stream is None
+        or (selection.kind and faults.has_sync(endpoint.link.stream))
     ]
     if not plainly:
         raise _no_packet_error(endpoints, data, selection)
     return _by_id_or_length(plainly, data, selection)
 
 
-def _no_packet_error(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> Ambiguous | NotFound:
-    """Return the error for bytes without the framing that all messages of the node have."""
-    nodes, syncs = match.nodes_of(endpoints), dict.fromkeys(map(envelopes.sync_of, endpoints))
-    begin = f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""
+def _no_packet_error(
+    endpoints: Sequence[Endpoint], data: bytes, selection: Selection
+) -> Ambiguous | NotFound:
+    """Return the error for bytes without the framing that all messages of the node
+    have.
+    """
+    nodes, syncs = match.nodes_of(endpoints), dict.fromkeys(
+        map(envelopes.sync_of, endpoints)
+    )
+    begin = (
+        f", which begin with {' or '.join(filter(None, syncs))}" if any(syncs) else ""
+    )
     text = f"{byte_count(len(data))} are no packet of {nodes}{begin}"
-    candidates = selection.of([*match.by_id(endpoints, data), *match.by_length(endpoints, data)])
+    candidates = selection.of(
+        [*match.by_id(endpoints, data), *match.by_length(endpoints, data)]
+    )
     if candidates:
-        return Ambiguous(f"{text}; as data alone they can be {match.titles_text(candidates)}", match.HELP)
-    return NotFound(text, f"check that the capture is complete; {match.HELP} reads the data of a message alone")
+        return Ambiguous(
+            f"{text}; as data alone they can be {match.titles_text(candidates)}",
+            match.HELP,
+        )
+    return NotFound(
+        text,
+        f"check that the capture is complete; {match.HELP} reads the data of a message alone",
+    )
 
 
-def _by_id_or_length(endpoints: Sequence[Endpoint], data: bytes, selection: Selection) -> Reading:
+def _by_id_or_length(
+    endpoints: Sequence[Endpoint], data: bytes, selection: Selection
+) -> Reading:
     """Return a message without framing, by its id or its length.
 
     Raise `Ambiguous`, `BadLength` or `NotFound`.
@@ -216,9 +295,17 @@ def _by_id_or_length(endpoints: Sequence[Endpoint], data: bytes, selection: Sele
     if any(map(selection.fits, plain)) and not any(map(selection.fits, with_id)):
         with_id = []
     if with_id:
-        reading = match.most_likely(with_id, f"{given} beginning with the id {with_id[0].id}", selection)
-        alternatives = [alternative for alternative in plain if alternative.key != reading.key]
-        note = [f"without an id in front it could be {match.titles_text(alternatives)}"] if alternatives else []
+        reading = match.most_likely(
+            with_id, f"{given} beginning with the id {with_id[0].id}", selection
+        )
+        alternatives = [
+            alternative for alternative in plain if alternative.key != reading.key
+        ]
+        note = (
+            [f"without an id in front it could be {match.titles_text(alternatives)}"]
+            if alternatives
+            else []
+        )
         return reading.with_remarks(f"id {reading.id} removed", *note)
     if plain:
         reading = match.most_likely(plain, f"{given} without an id", selection)
@@ -231,4 +318,6 @@ def _decoded(icd: Icd, reading: Reading) -> Reading:
     if reading.what not in KINDS:
         return reading
     decoded = frame(icd, reading.endpoint.node, reading.message, reading.data)
-    return replace(reading, frame=replace(decoded, remarks=(*reading.remarks, *decoded.remarks)))
+    return replace(
+        reading, frame=replace(decoded, remarks=(*reading.remarks, *decoded.remarks))
+    )

@@ -14,7 +14,14 @@ from icdgen.errors import UserError
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.variants import Variant
-from icdgen.recognize.reading import ACKNOWLEDGE, REQUEST, TELECOMMAND, TELEMETRY, Endpoint, Reading
+from icdgen.recognize.reading import (
+    ACKNOWLEDGE,
+    REQUEST,
+    TELECOMMAND,
+    TELEMETRY,
+    Endpoint,
+    Reading,
+)
 from icdgen.recognize.selection import Selection
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from icdgen.values.find import KINDS, describe
@@ -25,7 +32,9 @@ MOST_LISTED = 8
 HELP = "name the node and the message: `icdgen decode NODE MESSAGE FRAME`"
 
 
-def read_each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Reading], list[UserError]]:
+def read_each(
+    items: Iterable[T], read: Callable[[T], Reading]
+) -> tuple[list[Reading], list[UserError]]:
     """Return the readings of all items, and the errors of the others.
 
     Raise the first error if there are no readings.
@@ -45,27 +54,40 @@ def read_each(items: Iterable[T], read: Callable[[T], Reading]) -> tuple[list[Re
 def stream_remarks(lost: int, errors: Iterable[str]) -> list[str]:
     """Return remarks about unused bytes of a stream, and about errors of its decoder."""
     remarks = [f"{byte_count(lost)} around the frame belong to none"] if lost else []
-    return remarks + [f"the stream has an error: {error.replace('_', ' ')}" for error in errors]
+    return remarks + [
+        f"the stream has an error: {error.replace('_', ' ')}" for error in errors
+    ]
 
 
 def by_id(endpoints: Sequence[Endpoint], body: bytes) -> list[Reading]:
     """Return all candidates for an id and the bytes after it."""
-    return _unique(reading for endpoint in endpoints for reading in _of_endpoint(endpoint, body))
+    return _unique(
+        reading for endpoint in endpoints for reading in _of_endpoint(endpoint, body)
+    )
 
 
 def of_ids(ids: Sequence[tuple[Endpoint, int]], data: bytes) -> list[Reading]:
-    """Return all candidates for data whose ids are not in front of it. Each endpoint has its id."""
-    return _unique(reading for endpoint, id in ids for reading in _with_id(endpoint, id, data))
+    """Return all candidates for data whose ids are not in front of it.
+
+    Each endpoint has its id.
+    """
+    return _unique(
+        reading for endpoint, id in ids for reading in _with_id(endpoint, id, data)
+    )
 
 
 def by_length(endpoints: Sequence[Endpoint], data: bytes) -> list[Reading]:
-    """Return all candidates for bytes without an id, by length and by a matching checksum."""
+    """Return all candidates for bytes without an id, by length and by a matching
+    checksum.
+    """
     return _unique(
         reading
         for endpoint in endpoints
         for what, variants in _directions(endpoint)
         for id in variants
-        for reading in _with_checksum(endpoint, what, id, _message(endpoint, variants, id, data), data)
+        for reading in _with_checksum(
+            endpoint, what, id, _message(endpoint, variants, id, data), data
+        )
     )
 
 
@@ -79,7 +101,13 @@ def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[Reading]:
     if form and len(body) == form.length and parts[0] not in facts.telemetry:
         acknowledged, error = body[form.id_at], body[form.error_at]
         if acknowledged in facts.telecommands:
-            yield Reading(endpoint, ACKNOWLEDGE, facts.telecommands[acknowledged], acknowledged, error=error)
+            yield Reading(
+                endpoint,
+                ACKNOWLEDGE,
+                facts.telecommands[acknowledged],
+                acknowledged,
+                error=error,
+            )
 
 
 def _with_id(endpoint: Endpoint, id: int, data: bytes) -> Iterator[Reading]:
@@ -104,27 +132,50 @@ def message_of(icd: Icd, messages: Sequence[Message], data: bytes) -> Message | 
         return None
 
 
-def _directions(endpoint: Endpoint) -> tuple[tuple[str, dict[int, tuple[Variant, ...]]], ...]:
+def _directions(
+    endpoint: Endpoint,
+) -> tuple[tuple[str, dict[int, tuple[Variant, ...]]], ...]:
     return (TELECOMMAND, endpoint.ids.telecommand), (TELEMETRY, endpoint.ids.telemetry)
 
 
-def _message(endpoint: Endpoint, variants: Mapping[int, Sequence[Variant]], id: int, data: bytes) -> Message | None:
-    return message_of(endpoint.icd, [variant.message for variant in variants.get(id, ())], data)
+def _message(
+    endpoint: Endpoint, variants: Mapping[int, Sequence[Variant]], id: int, data: bytes
+) -> Message | None:
+    return message_of(
+        endpoint.icd, [variant.message for variant in variants.get(id, ())], data
+    )
 
 
-def _with_checksum(endpoint: Endpoint, what: str, id: int, message: Message | None, data: bytes) -> Iterator[Reading]:
-    """Return the message if the data has its length, or is followed by the right checksum."""
+def _with_checksum(
+    endpoint: Endpoint, what: str, id: int, message: Message | None, data: bytes
+) -> Iterator[Reading]:
+    """Return the message if the data has its length, or is followed by the right
+    checksum.
+    """
     if message is None:
         return
-    if len(data) in message.layout.lengths and counter_error(endpoint, message, data) is None:
+    if (
+        len(data) in message.layout.lengths
+        and counter_error(endpoint, message, data) is None
+    ):
         yield Reading(endpoint, what, message, id, data)
         return
     expected = checksum(endpoint, id, message, data)
     if expected is not None and data[message.length :] == expected:
-        yield Reading(endpoint, what, message, id, data[: message.length], checked=True, remarks=("CRC is right",))
+        yield Reading(
+            endpoint,
+            what,
+            message,
+            id,
+            data[: message.length],
+            checked=True,
+            remarks=("CRC is right",),
+        )
 
 
-def checksum(endpoint: Endpoint, id: int, message: Message, data: bytes) -> bytes | None:
+def checksum(
+    endpoint: Endpoint, id: int, message: Message, data: bytes
+) -> bytes | None:
     """Return the checksum of the data, or None if there is no room for one after it."""
     form = endpoint.facts.checksum
     if form is None or message.layout.parts or len(data) != message.length + form.bytes:
@@ -132,7 +183,9 @@ def checksum(endpoint: Endpoint, id: int, message: Message, data: bytes) -> byte
     return i2c_write(endpoint.link, id, data[: message.length], crc=True)[-form.bytes :]
 
 
-def most_likely(candidates: Sequence[Reading], of: str, selection: Selection) -> Reading:
+def most_likely(
+    candidates: Sequence[Reading], of: str, selection: Selection
+) -> Reading:
     """Return the most likely reading, with a remark about others. Raise `Ambiguous`.
 
     The message that the user has named has precedence, then a right checksum. An
@@ -140,26 +193,44 @@ def most_likely(candidates: Sequence[Reading], of: str, selection: Selection) ->
     frames in both directions, the direction remains open.
     """
     candidates = selection.of(candidates)
-    # An acknowledge is short and has few fixed bits, so other data often looks like one.
+    # An acknowledge is short and has few fixed bits, so other data often looks like
+    # one.
     likely = (
         [reading for reading in candidates if reading.checked]
         or [reading for reading in candidates if reading.what != ACKNOWLEDGE]
         or list(candidates)
     )
-    if len(likely) > 1 and all(selection.is_of(reading) and reading.what in KINDS for reading in likely):
+    if len(likely) > 1 and all(
+        selection.is_of(reading) and reading.what in KINDS for reading in likely
+    ):
         first, *alternatives = likely
-        if all(alternative.message is first.message and alternative.data == first.data for alternative in alternatives):
+        if all(
+            alternative.message is first.message and alternative.data == first.data
+            for alternative in alternatives
+        ):
             return replace(first, what=first.message.kind)
     if len(likely) > 1:
-        contrast = f", not {selection.names}" if selection.messages and not any(map(selection.is_of, likely)) else ""
+        contrast = (
+            f", not {selection.names}"
+            if selection.messages and not any(map(selection.is_of, likely))
+            else ""
+        )
         raise Ambiguous(f"{of} can be {titles_text(likely)}{contrast}", HELP)
     alternatives = [reading for reading in candidates if reading.key != likely[0].key]
-    return likely[0].with_remarks(f"it can also be {titles_text(alternatives)}") if alternatives else likely[0]
+    return (
+        likely[0].with_remarks(f"it can also be {titles_text(alternatives)}")
+        if alternatives
+        else likely[0]
+    )
 
 
 def no_match_error(endpoints: Sequence[Endpoint], body: bytes) -> BadLength | NotFound:
     """Return the error for bytes whose id or length matches no message."""
-    parts: list[SplitId] = [(endpoint, part) for endpoint in endpoints if (part := endpoint.split_id(body)) is not None]
+    parts: list[SplitId] = [
+        (endpoint, part)
+        for endpoint in endpoints
+        if (part := endpoint.split_id(body)) is not None
+    ]
     if not parts:
         size = min(wire_ids.size(endpoint.node.id_bits) for endpoint in endpoints)
         text = f"an id of {nodes_of(endpoints)} has {size} bytes, {len(body)} given"
@@ -175,7 +246,9 @@ def nodes_of(endpoints: Sequence[Endpoint]) -> str:
 
 
 def data_error(parts: Sequence[SplitId], unknown: NotFound) -> BadLength | NotFound:
-    """Return the error for the data of these ids, or ``unknown`` if no message has them."""
+    """Return the error for the data of these ids, or ``unknown`` if no message has
+    them.
+    """
     candidates = {
         (what, message.node, message.name): (endpoint, message, id, data)
         for endpoint, (id, data) in parts
@@ -188,16 +261,25 @@ def data_error(parts: Sequence[SplitId], unknown: NotFound) -> BadLength | NotFo
         expected = checksum(endpoint, id, message, data)
         if expected is not None:
             return checksum_error(message, expected, data)
-        error = counter_error(endpoint, message, data) if len(data) in message.layout.lengths else None
+        error = (
+            counter_error(endpoint, message, data)
+            if len(data) in message.layout.lengths
+            else None
+        )
         if error is not None:
             return error
     listed = " or ".join(
-        f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}" for s, m, _, _ in candidates.values()
+        f"`{m.name}` ({describe(m, s.facts.stream)}) has {length_text(m)}"
+        for s, m, _, _ in candidates.values()
     )
     _, first, id, data = next(iter(candidates.values()))
-    if len(candidates) > 1 and any(len(data) in message.layout.lengths for _, message, _, data in candidates.values()):
+    if len(candidates) > 1 and any(
+        len(data) in message.layout.lengths
+        for _, message, _, data in candidates.values()
+    ):
         return no_shared_message_error(
-            [message for _, message, _, _ in candidates.values()], f"the {len(data)} bytes after the id {id}"
+            [message for _, message, _, _ in candidates.values()],
+            f"the {len(data)} bytes after the id {id}",
         )
     text = f"{listed}, {len(data)} given after the id {id}"
     return BadLength(text, first.length, len(data), "bytes are missing, or too many")
@@ -205,12 +287,17 @@ def data_error(parts: Sequence[SplitId], unknown: NotFound) -> BadLength | NotFo
 
 def no_shared_message_error(messages: Sequence[Message], data: str) -> NotFound:
     """Return the error for data that matches none of several messages that share an id."""
-    listed = ", ".join(f"`{message.name}` ({describe(message)}, {length_text(message)})" for message in messages)
+    listed = ", ".join(
+        f"`{message.name}` ({describe(message)}, {length_text(message)})"
+        for message in messages
+    )
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"
     return NotFound(f"{data} are like none of {listed}, by length and constants", help)
 
 
-def counter_error(endpoint: Endpoint, message: Message, data: bytes) -> BadLength | None:
+def counter_error(
+    endpoint: Endpoint, message: Message, data: bytes
+) -> BadLength | None:
     """Return the error for data whose counters do not match its length, or None."""
     try:
         codec.decode(endpoint.icd.node(message.node), message, data)
@@ -218,7 +305,12 @@ def counter_error(endpoint: Endpoint, message: Message, data: bytes) -> BadLengt
         parts = list(message.layout.counted_parts)
         source = f"`{parts[0].counter}` says" if len(parts) == 1 else "they say"
         text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {source}"
-        return BadLength(text, error.expected, error.actual, "bytes are missing, or too many, or damaged")
+        return BadLength(
+            text,
+            error.expected,
+            error.actual,
+            "bytes are missing, or too many, or damaged",
+        )
     return None
 
 
@@ -226,7 +318,12 @@ def checksum_error(message: Message, expected: bytes, data: bytes) -> BadLength:
     """Return the error for data with a wrong checksum."""
     text = f"`{message.name}` has {message.length} bytes; as CRC after them {expected.hex().upper()} would be right, "
     help = "a byte was damaged, or there are too many"
-    return BadLength(f"{text}not {data[message.length :].hex().upper()}", message.length, len(data), help)
+    return BadLength(
+        f"{text}not {data[message.length :].hex().upper()}",
+        message.length,
+        len(data),
+        help,
+    )
 
 
 def _unique(readings: Iterable[Reading]) -> list[Reading]:
@@ -237,11 +334,19 @@ def _unique(readings: Iterable[Reading]) -> list[Reading]:
     by_key: dict[tuple[str, str, str], list[Reading]] = {}
     for reading in readings:
         by_key.setdefault(reading.key, []).append(reading)
-    return [max(group, key=lambda reading: (reading.checked, reading.is_own)) for group in by_key.values()]
+    return [
+        max(group, key=lambda reading: (reading.checked, reading.is_own))
+        for group in by_key.values()
+    ]
 
 
 def titles_text(readings: Sequence[Reading]) -> str:
-    """Return the titles of the first readings, for a report. Each title is given once."""
+    """Return the titles of the first readings, for a report.
+
+    Each title is given once.
+    """
     all_titles = list(dict.fromkeys(reading.title for reading in readings))
     titles, remaining = all_titles[:MOST_LISTED], len(all_titles) - MOST_LISTED
-    return ", or ".join(titles) + (f", or one of {remaining} others" if remaining > 0 else "")
+    return ", or ".join(titles) + (
+        f", or one of {remaining} others" if remaining > 0 else ""
+    )

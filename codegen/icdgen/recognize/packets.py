@@ -6,18 +6,27 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-_BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"  # time, interface, direction
+# Time, interface, direction.
+_BEFORE = r"(?:\((?P<time>[\d.:\s-]+)\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"
 _ID = r"(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})"
 _FORMS = (
     re.compile(
-        _BEFORE + _ID + r"\s*\[(?P<size>\d{1,2})\]\s*(?P<data>(?:[0-9A-Fa-f]{2}(?:\s+|$))*|remote request)(?:'.*)?"
+        _BEFORE
+        + _ID
+        + r"\s*\[(?P<size>\d{1,2})\]\s*(?P<data>(?:[0-9A-Fa-f]{2}(?:\s+|$))*|remote request)(?:'.*)?"
     ),
-    re.compile(_BEFORE + _ID + r"#(?:#[0-9A-Fa-f])?(?P<data>(?:[0-9A-Fa-f]{2}\.?)*|R[0-8]?)(?:\s+[TR])?"),
+    re.compile(
+        _BEFORE
+        + _ID
+        + r"#(?:#[0-9A-Fa-f])?(?P<data>(?:[0-9A-Fa-f]{2}\.?)*|R[0-8]?)(?:\s+[TR])?"
+    ),
     re.compile(r"T(?P<id>[0-9A-Fa-f]{8})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
     re.compile(r"t(?P<id>[0-9A-Fa-f]{3})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
     re.compile(r"R(?P<id>[0-9A-Fa-f]{8})[0-8](?P<data>)"),
 )
-_STAMP = 2  # bytes of the time that an slcan adapter may append: milliseconds of the minute (Lawicel manual, command Z)
+# Bytes of the time that an slcan adapter may append: milliseconds of the minute
+# (Lawicel manual, command Z).
+_STAMP = 2
 
 
 class Printed(NamedTuple):
@@ -55,7 +64,10 @@ def _packet(line: str) -> Iterator[Printed]:
     text = match["data"]
     data = b"" if text[:1] in ("R", "r") else bytes.fromhex(text.replace(".", ""))
     size = int(match.groupdict().get("size") or len(data))
-    if text != "remote request" and len(data) not in (size, size + _STAMP if line[0] in "tT" else size):
+    if text != "remote request" and len(data) not in (
+        size,
+        size + _STAMP if line[0] in "tT" else size,
+    ):
         return
     time = (match.groupdict().get("time") or "").strip()
     if len(data) > size:

@@ -18,13 +18,31 @@ _LIST = re.compile(r"[\[{(]([^\[\]{}()]*)[\]})][)\]}\s;]*\Z")
 _NUMBERS = re.compile(
     r"\s*(?:0[xX][0-9A-Fa-f]+|\d+)(?:[uU](?:8)?)?(?:\s*,\s*(?:0[xX][0-9A-Fa-f]+|\d+)(?:[uU](?:8)?)?)*\s*,?\s*"
 )
-_LITERAL = re.compile(r"""(?:bytearray\()?b(["'])((?:\\.|(?!\1)[^\\])*\\(?:\\.|(?!\1)[^\\]|.)*)\1\)?""", re.DOTALL)
+_LITERAL = re.compile(
+    r"""(?:bytearray\()?b(["'])((?:\\.|(?!\1)[^\\])*\\(?:\\.|(?!\1)[^\\]|.)*)\1\)?""",
+    re.DOTALL,
+)
 _STRING = re.compile(r"""(["'])([0-9A-Fa-f\s]+)\1""")
 _ESCAPE = re.compile(r"\\(x[0-9A-Fa-f]{2}|.)|([^\\])", re.DOTALL)
-_ESCAPED = {"n": 10, "r": 13, "t": 9, "0": 0, "a": 7, "b": 8, "f": 12, "v": 11, "\\": 92, "'": 39, '"': 34}
-_BASE64 = re.compile(r"(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?")
+_ESCAPED = {
+    "n": 10,
+    "r": 13,
+    "t": 9,
+    "0": 0,
+    "a": 7,
+    "b": 8,
+    "f": 12,
+    "v": 11,
+    "\\": 92,
+    "'": 39,
+    '"': 34,
+}
+_BASE64 = re.compile(
+    r"(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?"
+)
 _MARKED = re.compile(
-    r"""(["'])(0[xX][0-9A-Fa-f]{1,2}|[0-9A-Fa-f]{2})\1|<([0-9A-Fa-f]{2})>|\b([0-9A-Fa-f]{2})[hH]\b""", re.ASCII
+    r"""(["'])(0[xX][0-9A-Fa-f]{1,2}|[0-9A-Fa-f]{2})\1|<([0-9A-Fa-f]{2})>|\b([0-9A-Fa-f]{2})[hH]\b""",
+    re.ASCII,
 )
 _DECIMALS = re.compile(r"[0-9]{1,3}(?:[\s,;]+[0-9]{1,3})+")
 _LABEL = re.compile(
@@ -52,7 +70,10 @@ class Pasted:
 
 
 def read(text: str) -> Pasted:
-    """Return the bytes or packets of a text. Raise `BadHex`, with the position of the error."""
+    """Return the bytes or packets of a text.
+
+    Raise `BadHex`, with the position of the error.
+    """
     if can_packets := packets(text):
         return Pasted(packets=tuple(can_packets))
     if (data := dump(text)) is not None:
@@ -64,7 +85,11 @@ def read(text: str) -> Pasted:
         return Pasted(parse_hex(text))
     except BadHex:
         pasted = (
-            _of_code(_COMMENT.sub(" ", text)) or _labelled(text) or _marked(text) or _decimal(text) or _base64(text)
+            _of_code(_COMMENT.sub(" ", text))
+            or _labelled(text)
+            or _marked(text)
+            or _decimal(text)
+            or _base64(text)
         )
         if pasted is None:
             raise
@@ -95,10 +120,21 @@ def _of_code(text: str) -> Pasted | None:
     listed = _LIST.search(text)
     if not listed or not _NUMBERS.fullmatch(listed[1]):
         return None
-    words = [re.sub(r"(?<=[0-9A-Fa-f])[uU]8?$", "", word.strip()) for word in listed[1].split(",") if word.strip()]
+    words = [
+        re.sub(r"(?<=[0-9A-Fa-f])[uU]8?$", "", word.strip())
+        for word in listed[1].split(",")
+        if word.strip()
+    ]
     values = [int(word, 16 if word[:2] in ("0x", "0X") else 10) for word in words]
-    decimal = any(value > 9 and word[:2] not in ("0x", "0X") for word, value in zip(words, values, strict=True))
-    return Pasted(bytes(values), form="decimal numbers" if decimal else "") if max(values) < 256 else None
+    decimal = any(
+        value > 9 and word[:2] not in ("0x", "0X")
+        for word, value in zip(words, values, strict=True)
+    )
+    return (
+        Pasted(bytes(values), form="decimal numbers" if decimal else "")
+        if max(values) < 256
+        else None
+    )
 
 
 def _labelled(text: str) -> Pasted | None:
@@ -129,7 +165,12 @@ def _base64(text: str) -> Pasted | None:
     if not _BASE64.fullmatch(joined) or (is_word and not joined.endswith("=")):
         return None
     with suppress(binascii.Error):
-        return Pasted(base64.b64decode(joined, altchars=b"-_" if set("-_") & set(joined) else b"+/"), form="base64")
+        return Pasted(
+            base64.b64decode(
+                joined, altchars=b"-_" if set("-_") & set(joined) else b"+/"
+            ),
+            form="base64",
+        )
     return None
 
 

@@ -17,7 +17,13 @@ from icdgen.runtime_objects.links import link_of
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
 
-TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = "telecommand", "telemetry", "request", "acknowledge", "refusal"
+TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = (
+    "telecommand",
+    "telemetry",
+    "request",
+    "acknowledge",
+    "refusal",
+)
 
 
 @dataclass(frozen=True)
@@ -39,9 +45,14 @@ class Endpoint:
         return ids_of(self.icd, self.node)
 
     def split_id(self, body: bytes) -> tuple[int, bytes] | None:
-        """Split bytes into the id and the bytes after it. Return None if there are too few."""
+        """Split bytes into the id and the bytes after it.
+
+        Return None if there are too few.
+        """
         size = wire_ids.size(self.node.id_bits)
-        return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
+        return (
+            (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
+        )
 
 
 @cached_by_node
@@ -77,7 +88,9 @@ class Reading:
     error: int | None = None
     checked: bool = False
     remarks: tuple[str, ...] = ()
-    left_out: tuple[str, ...] = ()  # first reading only: packets of the input that cannot be decoded, with reason
+    left_out: tuple[
+        str, ...
+    ] = ()  # first reading only: packets of the input that cannot be decoded, with reason
     time: str = ""  # time of reception, as printed by the recording tool
 
     @property
@@ -93,15 +106,19 @@ class Reading:
     @property
     def title(self) -> str:
         """Description for a report, such as ``request for Attitude (telemetry 146)``."""
-        described = (
-            f"`{self.message.name}` ({describe(self.message, self.endpoint.facts.stream)}) of {self.endpoint.node.name}"
-        )
+        described = f"`{self.message.name}` ({describe(self.message, self.endpoint.facts.stream)}) of {self.endpoint.node.name}"
         if self.what in KINDS:
             return described
         if self.error is None:
             return f"{self.what} {'for' if self.what == REQUEST else 'of'} {described}"
-        labels = [key.replace("_", " ") for key, code in self.endpoint.facts.errors.items() if code == self.error]
-        return f"{self.what} of {described}: error {self.error}" + (f" ({labels[0]})" if labels else "")
+        labels = [
+            key.replace("_", " ")
+            for key, code in self.endpoint.facts.errors.items()
+            if code == self.error
+        ]
+        return f"{self.what} of {described}: error {self.error}" + (
+            f" ({labels[0]})" if labels else ""
+        )
 
     @property
     def has_wrong_constant(self) -> bool:
@@ -110,7 +127,11 @@ class Reading:
 
     def with_remarks(self, *remarks: str) -> Reading:
         """Return a copy with further remarks."""
-        frame = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
+        frame = (
+            None
+            if self.frame is None
+            else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
+        )
         return replace(self, frame=frame, remarks=(*self.remarks, *remarks))
 
     def with_left_out(self, *left_out: str) -> Reading:
@@ -131,5 +152,9 @@ class Reading:
             "message": self.message.name,
             "direction": self.what,
         }
-        values |= {"id": self.id} | ({} if self.error is None else {"error": self.error}) | time
+        values |= (
+            {"id": self.id}
+            | ({} if self.error is None else {"error": self.error})
+            | time
+        )
         return values | ({"remarks": list(self.remarks)} if self.remarks else {})

@@ -8,11 +8,19 @@ from collections.abc import Sequence
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd, Message
 from icdgen.recognize import match
-from icdgen.recognize.reading import TELECOMMAND, TELEMETRY, Endpoint, Reading, all_endpoints
+from icdgen.recognize.reading import (
+    TELECOMMAND,
+    TELEMETRY,
+    Endpoint,
+    Reading,
+    all_endpoints,
+)
 from icdgen.values.errors import BadLength
 
 
-def selected_message(icd: Icd, endpoint: Endpoint, messages: Sequence[Message], data: bytes) -> Reading:
+def selected_message(
+    icd: Icd, endpoint: Endpoint, messages: Sequence[Message], data: bytes
+) -> Reading:
     """Return the message of the data, which may begin with the id.
 
     If several messages share the id, length and constants of the data distinguish them.
@@ -31,7 +39,11 @@ def selected_message(icd: Icd, endpoint: Endpoint, messages: Sequence[Message], 
 
 def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> Reading:
     """Return the message, without its id and checksum if present. Raise `BadLength`."""
-    plain = message.telecommand_id if message.telecommand_id is not None else message.telemetry_id
+    plain = (
+        message.telecommand_id
+        if message.telecommand_id is not None
+        else message.telemetry_id
+    )
     assert plain is not None
     if len(data) in message.layout.lengths:
         error = match.counter_error(endpoint, message, data)
@@ -40,12 +52,24 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
         return _reading(endpoint, message, None, data)
     parts = endpoint.split_id(data)
     # First as data without an id, then with the id in front.
-    for id, remaining in [(None, data), *([parts] if parts and parts[0] in message.ids else [])]:
+    for id, remaining in [
+        (None, data),
+        *([parts] if parts and parts[0] in message.ids else []),
+    ]:
         notes = () if id is None else (f"id {id} removed",)
         for sender in _nodes_with_message(icd, endpoint, message):
-            expected = match.checksum(sender, plain if id is None else id, message, remaining)
+            expected = match.checksum(
+                sender, plain if id is None else id, message, remaining
+            )
             if expected is not None and remaining[message.length :] == expected:
-                return _reading(endpoint, message, id, remaining[: message.length], *notes, "CRC is right")
+                return _reading(
+                    endpoint,
+                    message,
+                    id,
+                    remaining[: message.length],
+                    *notes,
+                    "CRC is right",
+                )
         if (
             id is not None
             and len(remaining) in message.layout.lengths
@@ -60,12 +84,31 @@ def of_message(icd: Icd, endpoint: Endpoint, message: Message, data: bytes) -> R
     raise BadLength(text, message.length, len(data), help)
 
 
-def _reading(endpoint: Endpoint, message: Message, id: int | None, data: bytes, *remarks: str) -> Reading:
-    what = message.kind if id is None else TELECOMMAND if id == message.telecommand_id else TELEMETRY
+def _reading(
+    endpoint: Endpoint, message: Message, id: int | None, data: bytes, *remarks: str
+) -> Reading:
+    what = (
+        message.kind
+        if id is None
+        else TELECOMMAND if id == message.telecommand_id else TELEMETRY
+    )
     return Reading(endpoint, what, message, id, data, remarks=remarks)
 
 
-def _nodes_with_message(icd: Icd, endpoint: Endpoint, message: Message) -> list[Endpoint]:
+def _nodes_with_message(
+    icd: Icd, endpoint: Endpoint, message: Message
+) -> list[Endpoint]:
     """Return the node and all nodes that include the message, which may add a checksum."""
-    endpoints = (candidate for candidate in all_endpoints(icd) if candidate.node is not endpoint.node)
-    return [endpoint, *(including for including in endpoints if message in icd.messages_of(including.node))]
+    endpoints = (
+        candidate
+        for candidate in all_endpoints(icd)
+        if candidate.node is not endpoint.node
+    )
+    return [
+        endpoint,
+        *(
+            including
+            for including in endpoints
+            if message in icd.messages_of(including.node)
+        ),
+    ]

@@ -39,14 +39,22 @@ class Selection:
 
         A configuration message matches each kind that it is sent as.
         """
-        return (not self.messages or self.is_of(reading)) and self.kind in (None, reading.what, reading.message.kind)
+        return (not self.messages or self.is_of(reading)) and self.kind in (
+            None,
+            reading.what,
+            reading.message.kind,
+        )
 
     def of(self, candidates: Sequence[Reading]) -> list[Reading]:
         """Return the matching readings, or all readings if none matches."""
-        return [reading for reading in candidates if self.fits(reading)] or list(candidates)
+        return [reading for reading in candidates if self.fits(reading)] or list(
+            candidates
+        )
 
 
-def selection_of(icd: Icd, node: Node | None, key: str | None, kind: str | None) -> Selection:
+def selection_of(
+    icd: Icd, node: Node | None, key: str | None, kind: str | None
+) -> Selection:
     """Return the messages that ``key`` names, as for `icdgen.values.find_message`.
 
     Raise `NotFound`, or `Ambiguous` unless the messages share an id.

@@ -1,4 +1,7 @@
-"""Formats of findings, for people and for programs. Each format is a module with a function ``report``."""
+"""Formats of findings, for people and for programs.
+
+Each format is a module with a function ``report``.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,12 @@ from icdgen.diagnostics import Finding
 class Report(Protocol):
     """Function that returns findings in a format."""
 
-    def __call__(self, findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str: ...
+    def __call__(
+        self,
+        findings: Iterable[Finding],
+        texts: Mapping[str, str],
+        colour: bool = False,
+    ) -> str: ...
 
 
 FORMATS = ("text", "json", "github", "sarif")

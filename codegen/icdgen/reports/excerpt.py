@@ -1,4 +1,7 @@
-"""Excerpt of a source line for a finding, with marks below it. It is safe to print on a terminal."""
+"""Excerpt of a source line for a finding, with marks below it.
+
+It is safe to print on a terminal.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,9 @@ _UNPRINTABLE = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 
 
 def printable(text: str) -> str:
-    """Return a text with escapes such as ``\\x1b`` and ``\\u202e`` for characters that a terminal can interpret."""
+    """Return a text with escapes such as ``\\x1b`` and ``\\u202e`` for characters that
+    a terminal can interpret.
+    """
     return text if text.isascii() and text.isprintable() else "".join(map(_shown, text))
 
 
@@ -32,7 +37,11 @@ def _shown(char: str) -> str:
     if unicodedata.category(char) not in _UNPRINTABLE:
         return char
     code = ord(char)
-    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    return (
+        f"\\x{code:02x}"
+        if code < 0x100
+        else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    )
 
 
 def _columns(text: str) -> int:
@@ -50,13 +59,19 @@ def _width(char: str) -> int:
 
 
 def excerpt(lines: Lines, place: Place, mark: str = "^") -> tuple[str, str] | None:
-    """Return a line and the marks below it; None if the text has no such line. Long lines are cut around the marks."""
+    """Return a line and the marks below it; None if the text has no such line.
+
+    Long lines are cut around the marks.
+    """
     line = lines[place.line]
     return None if line is None else marked(line, place.column, place.length, mark)
 
 
 def corrected(lines: Lines, fix: Fix) -> tuple[str, str] | None:
-    """Return the corrected line, and marks below the new text; None if the text has no such line."""
+    """Return the corrected line, and marks below the new text.
+
+    Returns None if the text has no such line.
+    """
     line, start = lines[fix.place.line], fix.place.column - 1
     if line is None:
         return None
@@ -65,7 +80,9 @@ def corrected(lines: Lines, fix: Fix) -> tuple[str, str] | None:
 
 
 def marked(line: str, column: int, length: int, mark: str) -> tuple[str, str]:
-    """Return a line and marks below ``length`` characters from ``column`` on, both cut to `WIDTH` columns."""
+    """Return a line and marks below ``length`` characters from ``column`` on, both cut
+    to `WIDTH` columns.
+    """
     start = min(column - 1, len(line))
     # Look only at the part that can be visible: a line can have a million columns.
     head, tail = line[max(0, start - WIDTH) : start], line[start : start + WIDTH]
@@ -74,7 +91,11 @@ def marked(line: str, column: int, length: int, mark: str) -> tuple[str, str]:
     hidden_before, hidden_after = start > WIDTH, start + WIDTH < len(line)
     # Short lines are shown completely. Of a long line, the marked text and a little
     # before it are shown.
-    if not hidden_before and not hidden_after and _columns(before + under + after) <= WIDTH:
+    if (
+        not hidden_before
+        and not hidden_after
+        and _columns(before + under + after) <= WIDTH
+    ):
         return before + under + after, _marks(before, under, mark)
     if hidden_before or _columns(before) > LEAD:
         before = CUT + _last(before, LEAD)
@@ -91,7 +112,9 @@ def _spread(text: str) -> str:
 
 
 def _marks(before: str, under: str, mark: str) -> str:
-    """Return the line of marks: spaces below ``before``, and at least one mark below ``under``."""
+    """Return the line of marks: spaces below ``before``, and at least one mark below
+    ``under``.
+    """
     return " " * _columns(before) + mark * max(1, _columns(under))
 
 

@@ -10,7 +10,9 @@ from icdgen.reports.excerpt import printable
 COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
-def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
+def report(
+    findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False
+) -> str:
     """Return one command per line; an empty text without findings."""
     return "".join(_command(finding) + "\n" for finding in findings)
 
@@ -26,8 +28,12 @@ def _command(finding: Finding) -> str:
         "col": place.column,
         "endColumn": place.column + place.length,
     }
-    parameters = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
-    text = f"{finding.code}: {finding.message}" + (f"\nhelp: {finding.help}" if finding.help else "")
+    parameters = ",".join(
+        f"{key}={_property(str(value))}" for key, value in properties.items()
+    )
+    text = f"{finding.code}: {finding.message}" + (
+        f"\nhelp: {finding.help}" if finding.help else ""
+    )
     # Only the line breaks of the text itself remain; others could inject a command.
     text = "\n".join(map(printable, text.split("\n")))
     return f"::{COMMANDS[finding.severity]} {parameters}::{_data(text)}"

@@ -9,13 +9,19 @@ from collections.abc import Iterable, Mapping
 from icdgen.diagnostics import Finding
 
 
-def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """Return ``{"findings": [{"code", "severity", "message", ...}], "counts": {"error": 2, ...}}``."""
+def report(
+    findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False
+) -> str:
+    """Return ``{"findings": [{"code", "severity", "message", ...}], "counts": {"error":
+    2, ...}}``.
+    """
     findings = list(findings)
     counts = Counter(finding.severity for finding in findings)
     document = {
         "findings": list(map(_object, findings)),
-        "counts": {severity: counts[severity] for severity in ("error", "warning", "note")},
+        "counts": {
+            severity: counts[severity] for severity in ("error", "warning", "note")
+        },
     }
     return json.dumps(document, indent=2) + "\n"
 
@@ -36,5 +42,7 @@ def _object(finding: Finding) -> dict[str, object]:
     if finding.fix is not None:
         result["fix"] = finding.fix.place._asdict() | {"text": finding.fix.text}
     if finding.related is not None:
-        result["related"] = finding.related.place._asdict() | {"label": finding.related.label}
+        result["related"] = finding.related.place._asdict() | {
+            "label": finding.related.label
+        }
     return result

@@ -37,16 +37,27 @@ class Explained(Protocol):
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
-def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
+def report(
+    findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False
+) -> str:
     """Return a log with one run, which describes the violated rules."""
     return json.dumps(document(list(findings), _rule), indent=2) + "\n"
 
 
-def document(findings: list[Finding], about: Callable[[str], dict[str, Any]]) -> dict[str, Any]:
-    """Return the log as values for JSON. ``about`` returns the description of a rule by its code."""
+def document(
+    findings: list[Finding], about: Callable[[str], dict[str, Any]]
+) -> dict[str, Any]:
+    """Return the log as values for JSON.
+
+    ``about`` returns the description of a rule by its code.
+    """
     codes = sorted({finding.code for finding in findings})
     index = {code: number for number, code in enumerate(codes)}
-    driver = {"name": "icdgen", "semanticVersion": __version__, "rules": [about(code) for code in codes]}
+    driver = {
+        "name": "icdgen",
+        "semanticVersion": __version__,
+        "rules": [about(code) for code in codes],
+    }
     run = {
         "tool": {"driver": driver},
         # Columns of findings are indices of Python strings. The default of SARIF is
@@ -64,7 +75,10 @@ def _rule(code: str) -> dict[str, Any]:
 
 
 def described(code: str, rule: Explained, text: str) -> dict[str, Any]:
-    """Return the `reportingDescriptor` of a rule (SARIF, section 3.49); ``text`` is its explanation in Markdown."""
+    """Return the `reportingDescriptor` of a rule (SARIF, section 3.49).
+
+    ``text`` is its explanation in Markdown.
+    """
     return {
         "id": code,
         "shortDescription": {"text": rule.title},
@@ -86,18 +100,32 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
     }
     if finding.related is not None:
         label = {"text": finding.related.label}
-        result["relatedLocations"] = [{"physicalLocation": physical(finding.related.place), "message": label}]
+        result["relatedLocations"] = [
+            {"physicalLocation": physical(finding.related.place), "message": label}
+        ]
     if finding.fix is not None:
         region = physical(finding.fix.place)
-        replacement = {"deletedRegion": region["region"], "insertedContent": {"text": finding.fix.text}}
-        change = {"artifactLocation": region["artifactLocation"], "replacements": [replacement]}
-        result["fixes"] = [{"description": {"text": finding.help}, "artifactChanges": [change]}]
+        replacement = {
+            "deletedRegion": region["region"],
+            "insertedContent": {"text": finding.fix.text},
+        }
+        change = {
+            "artifactLocation": region["artifactLocation"],
+            "replacements": [replacement],
+        }
+        result["fixes"] = [
+            {"description": {"text": finding.help}, "artifactChanges": [change]}
+        ]
     return result
 
 
 def physical(place: Place) -> dict[str, Any]:
     """Return the `physicalLocation` of a place (SARIF, section 3.29)."""
-    region = {"startLine": place.line, "startColumn": place.column, "endColumn": place.column + place.length}
+    region = {
+        "startLine": place.line,
+        "startColumn": place.column,
+        "endColumn": place.column + place.length,
+    }
     return {"artifactLocation": {"uri": _uri(place.file)}, "region": region}
 
 

@@ -1,4 +1,6 @@
-"""Findings as text: the place and message, the line with marks below it, the help, and the corrected line."""
+"""Findings as text: the place and message, the line with marks below it, the help, and
+the corrected line.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +26,13 @@ RESET = "\x1b[0m"
 Paint = Callable[[str, str], str]
 
 
-def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """Return the findings in the given order, and a line with their number. ``texts`` lacks files that cannot be read."""
+def report(
+    findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False
+) -> str:
+    """Return the findings in the given order, and a line with their number.
+
+    ``texts`` lacks files that cannot be read.
+    """
     findings = list(findings)
     paint: Paint = _painted if colour else _plain
     lines = {file: Lines(text) for file, text in texts.items()}
@@ -34,19 +41,34 @@ def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool =
 
 
 def _summary(findings: list[Finding]) -> str:
-    """Return the numbers of findings and files in words: ``3 errors, 1 warning in 2 files``."""
+    """Return the numbers of findings and files in words: ``3 errors, 1 warning in 2
+    files``.
+    """
     counts = Counter(finding.severity for finding in findings)
     if not counts:
         return "no findings"
-    numbers = [count(counts[severity], severity) for severity in ("error", "warning", "note") if counts[severity]]
+    numbers = [
+        count(counts[severity], severity)
+        for severity in ("error", "warning", "note")
+        if counts[severity]
+    ]
     files = {finding.place.file for finding in findings}
     return f"{', '.join(numbers)} in {count(len(files), 'file')}"
 
 
 def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
-    """Return the text of a finding: message, line with marks, related line, help and corrected line."""
+    """Return the text of a finding: message, line with marks, related line, help and
+    corrected line.
+    """
     place, related, fix = finding.place, finding.related, finding.fix
-    rows = _Rows(max(len(str(each.place.line)) for each in (finding, related, fix) if each is not None), paint)
+    rows = _Rows(
+        max(
+            len(str(each.place.line))
+            for each in (finding, related, fix)
+            if each is not None
+        ),
+        paint,
+    )
     heading = paint("place", printable(str(place)))
     kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
     marks = [(place, "^", finding.severity, "")]
@@ -60,7 +82,13 @@ def _text(finding: Finding, texts: Mapping[str, Lines], paint: Paint) -> str:
         lines = texts.get(each.file)
         if each.file != place.file:
             text += f"{rows.indent} {paint('place', printable(str(each)))}\n"
-        text += rows.excerpt(each, excerpt(lines, each, mark) if lines else None, role, label, begin=number == 0)
+        text += rows.excerpt(
+            each,
+            excerpt(lines, each, mark) if lines else None,
+            role,
+            label,
+            begin=number == 0,
+        )
     if finding.help:
         text += f"{rows.indent} {paint('gutter', '=')} {paint('place', 'help:')} {shown(finding.help)}\n"
     if fix is not None:
@@ -77,16 +105,32 @@ class _Rows:
         self._paint = paint
 
     def excerpt(
-        self, place: Place, content: tuple[str, str] | None, role: str, label: str = "", begin: bool = False
+        self,
+        place: Place,
+        content: tuple[str, str] | None,
+        role: str,
+        label: str = "",
+        begin: bool = False,
     ) -> str:
-        """Return a line of the source and marks below it, with a label after the marks; empty without ``content``."""
+        """Return a line of the source and marks below it, with a label after the marks.
+
+        Returns empty without ``content``.
+        """
         if content is None:
             return ""
         line, marks = content
-        number, bar = self._paint("gutter", str(place.line).rjust(len(self.indent))), self._paint("gutter", "|")
-        below = marks.replace(marks.strip(), self._paint(role, f"{marks.strip()} {label}".rstrip()))
+        number, bar = self._paint(
+            "gutter", str(place.line).rjust(len(self.indent))
+        ), self._paint("gutter", "|")
+        below = marks.replace(
+            marks.strip(), self._paint(role, f"{marks.strip()} {label}".rstrip())
+        )
         text = f"{self.indent} {bar}\n" if begin else ""
-        return text + f"{number} {bar} {line}".rstrip() + f"\n{self.indent} {bar} {below}\n"
+        return (
+            text
+            + f"{number} {bar} {line}".rstrip()
+            + f"\n{self.indent} {bar} {below}\n"
+        )
 
 
 def _plain(role: str, text: str) -> str:

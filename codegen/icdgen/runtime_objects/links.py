@@ -20,7 +20,9 @@ def link_of(icd: Icd, facts: Facts) -> Link:
     node, description = facts.node.name, describe(icd)
     # Names that the calls refer to; in generated code, these are module variables.
     names = {
-        "TELECOMMANDS": ModelMessages(node, "telecommand", facts.telecommands, description),
+        "TELECOMMANDS": ModelMessages(
+            node, "telecommand", facts.telecommands, description
+        ),
         "TELEMETRY": ModelMessages(node, "telemetry", facts.telemetry, description),
     }
     link = _evaluate(link_call(LinkDescription(description, facts)), names)
@@ -39,7 +41,9 @@ def _evaluate(value: object, names: Mapping[str, object]) -> object:
         keywords = {key: _evaluate(item, names) for key, item in value.keywords.items()}
         return getattr(types, value.name.rpartition(".")[2])(*positional, **keywords)
     if isinstance(value, Mapping):
-        return {_evaluate(key, names): _evaluate(item, names) for key, item in value.items()}
+        return {
+            _evaluate(key, names): _evaluate(item, names) for key, item in value.items()
+        }
     if isinstance(value, tuple | list):
         return tuple(_evaluate(item, names) for item in value)
     return value

@@ -1,4 +1,6 @@
-"""Message classes for the client and the procedures of the runtime, made from the model."""
+"""Message classes for the client and the procedures of the runtime, made from the
+model.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,10 @@ from icdgen.icd.places import NodePlace
 
 
 class ModelMessage(Message):
-    """A message that the reference codec encodes and decodes. Its attributes are raw values only."""
+    """A message that the reference codec encodes and decodes.
+
+    Its attributes are raw values only.
+    """
 
     description: ClassVar[MessageDescription]
 
@@ -30,35 +35,56 @@ class ModelMessage(Message):
         """Return the message of a frame. Raises `LengthError`."""
         description, frame = cls.description, bytes(data)
         try:
-            raw, message = codec.decode(description.node, description.model, frame), cls()
+            raw, message = (
+                codec.decode(description.node, description.model, frame),
+                cls(),
+            )
         except codec.LengthError:
             raise LengthError(cls.NAME, cls.LENGTH, len(frame)) from None
         for field in description.fields:
             # An absent optional field has no raw value.
             is_present = field.model.name in raw
-            setattr(message, field.name, _value(field.model, raw[field.model.name]) if is_present else None)
+            setattr(
+                message,
+                field.name,
+                _value(field.model, raw[field.model.name]) if is_present else None,
+            )
         return message
 
     def to_bytes(self) -> bytes:
         """Return the frame; reserved bits are 0. Raises `RangeError`."""
         description = self.description
         values = ((field, getattr(self, field.name)) for field in description.fields)
-        raw = {field.model.name: _raw(field, value) for field, value in values if value is not None}
+        raw = {
+            field.model.name: _raw(field, value)
+            for field, value in values
+            if value is not None
+        }
         return codec.encode(description.node, description.model, raw)
 
 
 class ModelMessages(Messages):
     """Message classes of a node by id; each is made on the first access."""
 
-    def __init__(self, node: str, kind: str, messages: Mapping[int, model.Message], description: Description) -> None:
-        super().__init__({}, node, kind, {id: message.name for id, message in messages.items()})
+    def __init__(
+        self,
+        node: str,
+        kind: str,
+        messages: Mapping[int, model.Message],
+        description: Description,
+    ) -> None:
+        super().__init__(
+            {}, node, kind, {id: message.name for id, message in messages.items()}
+        )
         self._messages, self._description = messages, description
 
     def _load(self, id: int) -> type[Message]:
         """Return the class of an id. Raises `UnknownIdError`."""
         if id not in self:
             raise UnknownIdError(self._node, self._kind, id)
-        self._loaded[id] = message_class = _class(self._description.message(self._messages[id]))
+        self._loaded[id] = message_class = _class(
+            self._description.message(self._messages[id])
+        )
         return message_class
 
 
@@ -93,7 +119,9 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
 
 
 def _value(field: NodePlace, raw: int | bytes) -> object:
-    """Return the value of an attribute for a raw value: of a float the number, of a flag a truth value."""
+    """Return the value of an attribute for a raw value: of a float the number, of a
+    flag a truth value.
+    """
     if isinstance(raw, bytes):
         return raw
     if field.type == "float":

@@ -32,16 +32,28 @@ _COLUMNS = [
 
 
 def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
-    """Return a table of fields and reserved bits in the order of the frame; empty for a message without fields."""
-    rows = [(field.at, _row(field, message)) for field in lines(message.layout) if not field.is_count]
+    """Return a table of fields and reserved bits in the order of the frame.
+
+    Returns empty for a message without fields.
+    """
+    rows = [
+        (field.at, _row(field, message))
+        for field in lines(message.layout)
+        if not field.is_count
+    ]
     reserved = ("reserved", "", "", "", "", "", "")
-    rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
+    rows += [
+        (gap.at, (str(gap.at), str(gap.bits), *reserved))
+        for gap in layout.gaps(message, node)
+    ]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
 
 
 def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:
     """Return the cells of a field, in the order of `_COLUMNS`."""
-    low, high = ("" if bound is None else exact_text(bound) for bound in allowed_ends(field))
+    low, high = (
+        "" if bound is None else exact_text(bound) for bound in allowed_ends(field)
+    )
     resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit_symbol
     kind = field.enum.name if field.enum else field.type
@@ -51,21 +63,44 @@ def _row(field: Line, message: Message | Struct) -> tuple[str, ...]:
     if part is not None and part.name == field.name:
         bits = f"up to {part.most} x {8 * part.step}"
     place = ("", "", "derived") if field.derived else (str(field.at), bits, kind)
-    notes = [*remarks(field, message=message if isinstance(message, Message) else None), *(e.id for e in field.errata)]
-    return (*place, field.name, unit, resolution, low, high, "; ".join([*notes, *filter(None, [field.summary])]))
+    notes = [
+        *remarks(field, message=message if isinstance(message, Message) else None),
+        *(e.id for e in field.errata),
+    ]
+    return (
+        *place,
+        field.name,
+        unit,
+        resolution,
+        low,
+        high,
+        "; ".join([*notes, *filter(None, [field.summary])]),
+    )
 
 
 def remarks(
-    field: NodePlace, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
+    field: NodePlace,
+    number: Callable[[Fraction], str] = exact_text,
+    message: Message | None = None,
 ) -> Iterator[str]:
-    """Yield remarks about a field: conditions, counts, orders, constants, exclusive limits, special values.
+    """Yield remarks about a field: conditions, counts, orders, constants, exclusive
+    limits, special values.
 
-    ``number`` formats numbers. ``message`` is the message of the field, if it can have variable-length parts.
+    ``number`` formats numbers. ``message`` is the message of the field, if it can have
+    variable-length parts.
     """
     part = _variable_part(message, field)
     if part is not None and message is not None:
-        yield "up to the end of the frame" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
-        earlier = [other for other in message.layout.parts[:-1] if other.begin < field.at // 8 and other is not part]
+        yield (
+            "up to the end of the frame"
+            if part.is_rest
+            else f"as many as {count_text(part.counter, part.plus)} says"
+        )
+        earlier = [
+            other
+            for other in message.layout.parts[:-1]
+            if other.begin < field.at // 8 and other is not part
+        ]
         if earlier:
             yield f"behind {earlier[-1].name}"
     if field.conditions:
@@ -82,7 +117,11 @@ def remarks(
         if level.struct is not None and level.count:
             most = "up to " if part is not None else ""
             every = f", every {byte_count(level.struct.length)}"
-            yield f"{most}{level.count} times{every}" if level.count > 1 else f"{most}once"
+            yield (
+                f"{most}{level.count} times{every}"
+                if level.count > 1
+                else f"{most}once"
+            )
         size = level.node.size if isinstance(level.node, Array) else None
         # That of a part of the message is above.
         if isinstance(size, Counted) and (part is None or level.node is not part.node):
@@ -101,7 +140,16 @@ def remarks(
         yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
 
 
-def _variable_part(message: Message | Struct | None, field: NodePlace) -> VariablePart | None:
-    """Return the variable-length part that contains a field; None for a field of the fixed part."""
+def _variable_part(
+    message: Message | Struct | None, field: NodePlace
+) -> VariablePart | None:
+    """Return the variable-length part that contains a field.
+
+    Returns None for a field of the fixed part.
+    """
     node = field.steps[0].node
-    return next((part for part in message.layout.parts if part.node is node), None) if message else None
+    return (
+        next((part for part in message.layout.parts if part.node is node), None)
+        if message
+        else None
+    )

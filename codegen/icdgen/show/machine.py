@@ -1,4 +1,7 @@
-"""JSON form of ICDs. ``show.schema.json`` defines it; attributes that do not apply are omitted."""
+"""JSON form of ICDs.
+
+``show.schema.json`` defines it; attributes that do not apply are omitted.
+"""
 
 from __future__ import annotations
 
@@ -34,15 +37,26 @@ _EXCEPTIONS = {
 
 
 def to_json(icd: Icd) -> _Object:
-    """Return ICDs as values for JSON. A node has only its own messages and enumerations, and ``includes``."""
+    """Return ICDs as values for JSON.
+
+    A node has only its own messages and enumerations, and ``includes``.
+    """
     # A second list of all loggable frames spares programs the search in nodes.
-    loggable = [{"node": node.name} | _row(row) for node in icd.nodes for row in node.loggable]
-    return {"format": FORMAT, "nodes": [_node(node) for node in icd.nodes], "loggable": loggable}
+    loggable = [
+        {"node": node.name} | _row(row) for node in icd.nodes for row in node.loggable
+    ]
+    return {
+        "format": FORMAT,
+        "nodes": [_node(node) for node in icd.nodes],
+        "loggable": loggable,
+    }
 
 
 @cache
 def plain_attributes(kind: Any) -> tuple[str, ...]:
-    """Return the attributes of a class of the model that are shown unchanged, under their own names."""
+    """Return the attributes of a class of the model that are shown unchanged, under
+    their own names.
+    """
     names = (attribute.name for attribute in fields(kind) if attribute.type in _PLAIN)
     return tuple(name for name in names if name not in _EXCEPTIONS.get(kind, ()))
 
@@ -51,7 +65,11 @@ def _attributes(thing: Any) -> _Object:
     """Return the plain attributes of an object that differ from their default."""
     kind: Any = type(thing)
     values = {name: getattr(thing, name) for name in plain_attributes(kind)}
-    return {name: value for name, value in values.items() if value != _defaults(kind).get(name)}
+    return {
+        name: value
+        for name, value in values.items()
+        if value != _defaults(kind).get(name)
+    }
 
 
 @cache
@@ -74,7 +92,10 @@ def _node(node: Node) -> _Object:
         "includes": list(node.includes),
         **({"structs": list(map(_struct, node.structs))} if node.structs else {}),
         "messages": [_message(message) for message in node.messages],
-        "enums": [_row(enum) | {"members": list(map(_row, enum.members))} for enum in node.enums],
+        "enums": [
+            _row(enum) | {"members": list(map(_row, enum.members))}
+            for enum in node.enums
+        ],
         "loggable": [_row(row) for row in node.loggable],
     }
 
@@ -86,21 +107,31 @@ def _message(message: Message) -> _Object:
     parts = list(map(_variable_part, message.layout.parts))
     places = [place for place in places_in(message.layout) if not place.is_count]
     return _present(
-        **{"name": message.name, "kind": message.kind, "length": message.length} | _attributes(message),
-        acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
+        **{"name": message.name, "kind": message.kind, "length": message.length}
+        | _attributes(message),
+        acknowledge=(
+            None if message.acknowledge else "reset" if message.expects_reset else False
+        ),
         aliases=list(message.aliases),
-        contains=[{"message": part.message, "offset": part.at} for part in message.contains],
+        contains=[
+            {"message": part.message, "offset": part.at} for part in message.contains
+        ],
         tail=parts[-1] if parts else None,
         inner=parts[:-1],
         **_ids(message.errata),
     ) | {
         "fields": [_field(place) for place in places if place.derived is None],
-        **_present(derived=[_derived(place) for place in places if place.derived is not None]),
+        **_present(
+            derived=[_derived(place) for place in places if place.derived is not None]
+        ),
     }
 
 
 def _variable_part(part: VariablePart) -> _Object:
-    """Return a variable-length part; without a counter if the length of the frame gives the number of elements."""
+    """Return a variable-length part.
+
+    Without a counter if the length of the frame gives the number of elements.
+    """
     return _present(
         part=part.name,
         counter=None if part.is_rest else part.counter,
@@ -138,23 +169,42 @@ def _field(field: NodePlace) -> _Object:
         # Exact, like `scale`.
         limits={bound.key: str(bound.value) for bound in bounds(field.limits)},
         view=True if field.is_read_only else None,
-        when={condition.field: list(condition.values) for condition in field.conditions},
+        when={
+            condition.field: list(condition.values) for condition in field.conditions
+        },
         **_ids(field.errata),
     )
 
 
 def _struct(struct: Struct) -> _Object:
     """Return a struct with its fields."""
-    counts = {id(part.node): {"counter": part.counter, "plus": part.plus or None} for part in struct.layout.inner_parts}
-    fields = [_field(place) | _present(**counts.get(id(place.node), {})) for place in places_in(struct.layout)]
-    return {"name": struct.name, "length": struct.length} | _row(struct) | {"fields": fields}
+    counts = {
+        id(part.node): {"counter": part.counter, "plus": part.plus or None}
+        for part in struct.layout.inner_parts
+    }
+    fields = [
+        _field(place) | _present(**counts.get(id(place.node), {}))
+        for place in places_in(struct.layout)
+    ]
+    return (
+        {"name": struct.name, "length": struct.length}
+        | _row(struct)
+        | {"fields": fields}
+    )
 
 
 def _derived(field: NodePlace) -> _Object:
     """Return a derived value."""
-    attributes = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
+    attributes = {
+        key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")
+    }
     display = field.display.plain if field.display else None
-    return _present(**attributes, aliases=list(field.aliases), unit=field.unit_symbol or None, display=display)
+    return _present(
+        **attributes,
+        aliases=list(field.aliases),
+        unit=field.unit_symbol or None,
+        display=display,
+    )
 
 
 def _row(thing: Enum | Member | Loggable | Struct) -> _Object:
@@ -208,5 +258,11 @@ def _ids(errata: tuple[Erratum, ...]) -> dict[str, list[str]]:
 
 
 def _present(**items: object) -> _Object:
-    """Return the items that have a value: not None, and not an empty text, list or mapping."""
-    return {key: value for key, value in items.items() if value is not None and value not in ("", [], {})}
+    """Return the items that have a value: not None, and not an empty text, list or
+    mapping.
+    """
+    return {
+        key: value
+        for key, value in items.items()
+        if value is not None and value not in ("", [], {})
+    }

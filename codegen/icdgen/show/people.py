@@ -1,4 +1,6 @@
-"""Text form of ICDs: the nodes, the messages of a node, or a message, enumeration, struct or erratum."""
+"""Text form of ICDs: the nodes, the messages of a node, or a message, enumeration,
+struct or erratum.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,16 @@ from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.lines import lines as icd_lines
 from icdgen.icd.located import yaml_text
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node, Struct
+from icdgen.icd.model import (
+    CONFIGURATION,
+    TELECOMMAND,
+    TELEMETRY,
+    Enum,
+    Icd,
+    Message,
+    Node,
+    Struct,
+)
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.protocol import facts as protocol_facts
@@ -22,7 +33,16 @@ from icdgen.values.errors import NotFound
 from icdgen.values.find import by_name, describe, find_message, find_named, find_node
 from icdgen.wording import count
 
-_FIGURES = ("type", "version", "commands", "telemetry", "settings", "fields", "errata", "notes")
+_FIGURES = (
+    "type",
+    "version",
+    "commands",
+    "telemetry",
+    "settings",
+    "fields",
+    "errata",
+    "notes",
+)
 _NODES = [
     Column("node", fixed=True),
     Column("title"),
@@ -39,18 +59,29 @@ _MESSAGES = [
 ]
 
 
-def to_text(icd: Icd, selection: Sequence[str] = (), width: int | None = None, kind: str | None = None) -> str:
-    """Return the text of a selection: empty for all nodes, a node, or a node and an item of it.
+def to_text(
+    icd: Icd,
+    selection: Sequence[str] = (),
+    width: int | None = None,
+    kind: str | None = None,
+) -> str:
+    """Return the text of a selection: empty for all nodes, a node, or a node and an
+    item of it.
 
-    The item is a message (by name or id), an enumeration, a struct or the id of an erratum. The node can be omitted if there is
-    only one. ``width`` is the width of the terminal, None for a pipe. Raises `NotFound` or `Ambiguous`.
+    The item is a message (by name or id), an enumeration, a struct or the id of an
+    erratum. The node can be omitted if there is only one. ``width`` is the width of the
+    terminal, None for a pipe. Raises `NotFound` or `Ambiguous`.
     """
     if not selection:
         return _nodes(icd, width)
     if len(selection) > 1:
         return _item(icd, find_node(icd, selection[0]), selection[1], width, kind)
     node, items = find_named(icd, selection)
-    return _item(icd, node, items[0], width, kind) if items else _node(icd, node, width, kind)
+    return (
+        _item(icd, node, items[0], width, kind)
+        if items
+        else _node(icd, node, width, kind)
+    )
 
 
 def _nodes(icd: Icd, width: int | None) -> str:
@@ -79,15 +110,24 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
     """Return the head of a node and the table of its messages, own messages first."""
     facts = [
         f"node type {node.node_type}" if node.node_type is not None else "",
-        f"interface version {node.interface_version}" if node.interface_version is not None else "",
+        (
+            f"interface version {node.interface_version}"
+            if node.interface_version is not None
+            else ""
+        ),
         f"{node.byte_order}-endian, {node.bit_order}",
         f"ids of {node.id_bits} bits" if node.id_bits != DEFAULT_BITS else "",
         f"includes {', '.join(node.includes)}" if node.includes else "",
         _count(node),
     ]
-    text = _lines([f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary], width)
+    text = _lines(
+        [f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary],
+        width,
+    )
     form = protocol_facts.of(icd, node).stream
-    messages = [message for message in icd.messages_of(node) if kind in (None, message.kind)]
+    messages = [
+        message for message in icd.messages_of(node) if kind in (None, message.kind)
+    ]
     messages.sort(key=lambda message: message.node != node.name)
     rows = []
     for message in messages:
@@ -97,7 +137,11 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
                 "/".join(id_text(form, id) for id in message.ids),
                 message.kind,
                 message.name,
-                str(layout.longest) if len(layout.lengths) == 1 else f"{layout.shortest} to {layout.longest}",
+                (
+                    str(layout.longest)
+                    if len(layout.lengths) == 1
+                    else f"{layout.shortest} to {layout.longest}"
+                ),
                 str(message.field_count),
                 _number(message.table),
                 message.group,
@@ -106,26 +150,47 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
         )
     text += "\n" + render(_MESSAGES, rows, width) if rows else ""
     if node.enums:
-        text += "\n" + _lines([f"Enumerations: {', '.join(enum.name for enum in node.enums)}"], width)
-    missing = [f"Missing: {item.kind} {id_text(form, item.id)} {item.name}. {item.why}" for item in node.missing]
+        text += "\n" + _lines(
+            [f"Enumerations: {', '.join(enum.name for enum in node.enums)}"], width
+        )
+    missing = [
+        f"Missing: {item.kind} {id_text(form, item.id)} {item.name}. {item.why}"
+        for item in node.missing
+    ]
     return text + ("\n" + _lines(missing, width) if missing else "")
 
 
 def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -> str:
-    """Return a message, or else the enumerations, structs or errata of a name. Raises `NotFound` or `Ambiguous`."""
+    """Return a message, or else the enumerations, structs or errata of a name.
+
+    Raises `NotFound` or `Ambiguous`.
+    """
     # A message has precedence. If several messages match, `Ambiguous` is raised, and
     # nothing else is searched.
     try:
         return _message(icd, node, find_message(icd, node.name, name, kind), width)
     except NotFound:
         scope = (*icd.included(node), node)
-        enums = by_name([enum for owner in scope for enum in owner.enums], name, node.vocabulary)
-        structs = by_name([struct for owner in scope for struct in owner.structs], name, node.vocabulary)
-        errata = [erratum for owner in scope for erratum in owner.errata if erratum.id.casefold() == name.casefold()]
+        enums = by_name(
+            [enum for owner in scope for enum in owner.enums], name, node.vocabulary
+        )
+        structs = by_name(
+            [struct for owner in scope for struct in owner.structs],
+            name,
+            node.vocabulary,
+        )
+        errata = [
+            erratum
+            for owner in scope
+            for erratum in owner.errata
+            if erratum.id.casefold() == name.casefold()
+        ]
         if enums:
             texts = [_enum(enum, width) for enum in enums]
         elif structs:
-            texts = [_struct(struct, icd.node(struct.node), width) for struct in structs]
+            texts = [
+                _struct(struct, icd.node(struct.node), width) for struct in structs
+            ]
         elif errata:
             texts = [_erratum(erratum, width) for erratum in errata]
         else:
@@ -135,14 +200,25 @@ def _item(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) 
 
 def _struct(struct: Struct, node: Node, width: int | None) -> str:
     """Return a struct with the table of its fields."""
-    facts = ["struct", count(struct.length, "byte"), f"table {struct.table}" if struct.table else ""]
-    lines = [f"{node.name}: {struct.name}", "; ".join(filter(None, facts)), struct.summary]
+    facts = [
+        "struct",
+        count(struct.length, "byte"),
+        f"table {struct.table}" if struct.table else "",
+    ]
+    lines = [
+        f"{node.name}: {struct.name}",
+        "; ".join(filter(None, facts)),
+        struct.summary,
+    ]
     lines += [f"Also called {', '.join(struct.aliases)}."] if struct.aliases else []
     return _lines(lines, width) + "\n" + field_table(struct, node, width)
 
 
 def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> str:
-    """Return a message with the table of its fields, its enumerations and errata. ``selected`` or an include declares it."""
+    """Return a message with the table of its fields, its enumerations and errata.
+
+    ``selected`` or an include declares it.
+    """
     node, form = icd.node(message.node), protocol_facts.of(icd, selected).stream
     # An id that is written as its bytes, `01 35`, is hexadecimal already.
     in_hex = "/".join(f"{id:0{2 * size(node.id_bits)}X}" for id in message.ids)
@@ -156,26 +232,52 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
         (
             ""
             if message.acknowledge
-            else "restarts instead of acknowledging" if message.expects_reset else "not acknowledged"
+            else (
+                "restarts instead of acknowledging"
+                if message.expects_reset
+                else "not acknowledged"
+            )
         ),
     ]
-    lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
+    lines = [
+        f"{node.name}: {message.name}",
+        "; ".join(filter(None, facts)),
+        message.summary,
+    ]
     lines += [f"Also called {', '.join(message.aliases)}."] if message.aliases else []
     lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
     lines += filter(None, [sharing(ids_of(icd, node), message)])
-    lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
+    lines += [
+        f"From bit {part.at} it repeats {part.message}." for part in message.contains
+    ]
     table = field_table(message, node, width)
-    enums = [_enum(enum, width) for enum in dict.fromkeys(line.enum for line in icd_lines(message.layout) if line.enum)]
+    enums = [
+        _enum(enum, width)
+        for enum in dict.fromkeys(
+            line.enum for line in icd_lines(message.layout) if line.enum
+        )
+    ]
     errata = [_erratum(erratum, width) for erratum in errata_of_message(message)]
     return "\n".join([_lines(lines, width), *filter(None, [table]), *enums, *errata])
 
 
 def _enum(enum: Enum, width: int | None) -> str:
     """Return an enumeration with the table of its members, and its errata."""
-    head = f"{enum.name} (enumeration" + (f", table {enum.table})" if enum.table else ")")
-    members = [(member.values, ", ".join((member.name, *member.aliases)), member.summary) for member in enum.members]
-    table = render([Column("value", right=True, fixed=True), Column("name"), Column("meaning")], members, width)
-    errata = "".join("\n" + _erratum(erratum, width) for erratum in errata_of_enum(enum))
+    head = f"{enum.name} (enumeration" + (
+        f", table {enum.table})" if enum.table else ")"
+    )
+    members = [
+        (member.values, ", ".join((member.name, *member.aliases)), member.summary)
+        for member in enum.members
+    ]
+    table = render(
+        [Column("value", right=True, fixed=True), Column("name"), Column("meaning")],
+        members,
+        width,
+    )
+    errata = "".join(
+        "\n" + _erratum(erratum, width) for erratum in errata_of_enum(enum)
+    )
     aliases = f"Also called {', '.join(enum.aliases)}." if enum.aliases else ""
     return _lines([head, enum.summary, aliases], width) + table + errata
 
@@ -184,15 +286,26 @@ def _count(node: Node) -> str:
     """Return the numbers of errata and notes of a node in words."""
     notes = sum(erratum.is_note for erratum in node.errata)
     counts = ((len(node.errata) - notes, "erratum", "errata"), (notes, "note", "notes"))
-    return ", ".join(f"{number} {singular if number == 1 else plural}" for number, singular, plural in counts if number)
+    return ", ".join(
+        f"{number} {singular if number == 1 else plural}"
+        for number, singular, plural in counts
+        if number
+    )
 
 
 def _erratum(erratum: Erratum, width: int | None) -> str:
     """Return an erratum or note with its changes."""
-    lines = [f"{erratum.label} {erratum.id}{erratum.sureness}: {erratum.title}", erratum.why, erratum.evidence]
+    lines = [
+        f"{erratum.label} {erratum.id}{erratum.sureness}: {erratum.title}",
+        erratum.why,
+        erratum.evidence,
+    ]
     if erratum.changes:
         printed = dict(erratum.printed)
-        changes = [f"{key} {yaml_text(printed.get(key))} -> {yaml_text(value)}" for key, value in erratum.held]
+        changes = [
+            f"{key} {yaml_text(printed.get(key))} -> {yaml_text(value)}"
+            for key, value in erratum.held
+        ]
         lines.append(f"Printed and held: {', '.join(changes)}")
     if erratum.tables:
         lines.append(f"Tables: {', '.join(map(str, erratum.tables))}")
@@ -201,10 +314,17 @@ def _erratum(erratum: Erratum, width: int | None) -> str:
 
 
 def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
-    """Return paragraphs, wrapped to the width of a terminal; empty paragraphs are omitted."""
+    """Return paragraphs, wrapped to the width of a terminal.
+
+    Returns empty paragraphs are omitted.
+    """
     text = ""
     for line in map(clean, filter(None, lines)):
-        wrapped = [line] if width is None else textwrap.wrap(line, max(width - len(indent), 20)) or [line]
+        wrapped = (
+            [line]
+            if width is None
+            else textwrap.wrap(line, max(width - len(indent), 20)) or [line]
+        )
         text += "".join(f"{indent}{line}\n" for line in wrapped)
     return text
 

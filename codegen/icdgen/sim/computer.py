@@ -11,17 +11,26 @@ from icdgen.sim.storage import Storage
 class Computer:
     """The device. ``node`` is the first program. Times are in milliseconds."""
 
-    def __init__(self, icd: Icd, node: Node, settings: Settings, storage: Storage) -> None:
+    def __init__(
+        self, icd: Icd, node: Node, settings: Settings, storage: Storage
+    ) -> None:
         self.icd, self.settings, self.storage = icd, settings, storage
         self.boot_at: int | None = None
         self.start(0, node)
 
     def start(self, now: int, node: Node) -> None:
-        """Start a program. A boot program starts its application after the boot time."""
+        """Start a program.
+
+        A boot program starts its application after the boot time.
+        """
         self.program = Program(self.icd, node, self.storage, self.settings, now)
         self.boot_at = None
         if self._application(node):
-            wait = self.settings.boot_ms if self.settings.boot_ms is not None else self.program.facts.boot_ms
+            wait = (
+                self.settings.boot_ms
+                if self.settings.boot_ms is not None
+                else self.program.facts.boot_ms
+            )
             self.boot_at = None if wait is None else now + wait
 
     def tick(self, now: int) -> None:
@@ -34,7 +43,10 @@ class Computer:
     @property
     def deadline(self) -> int | None:
         """Time at which `tick` or `Program.log_due` must be called, or None."""
-        return min((at for at in (self.boot_at, self.program.log_at) if at is not None), default=None)
+        return min(
+            (at for at in (self.boot_at, self.program.log_at) if at is not None),
+            default=None,
+        )
 
     def take(self, now: int, message: bytes, bus: str) -> Outcome | None:
         """Process a telecommand, which begins with its id."""
@@ -45,7 +57,9 @@ class Computer:
 
     def frame(self, now: int, id: int) -> bytes | None:
         """Return the frame with this id, or None if the program has none."""
-        stop = self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
+        stop = (
+            self.icd.protocol_of(self.program.node).get("boot", {}).get("stop_request")
+        )
         message = self.program.facts.telemetry.get(id)
         if message and message.name == stop:
             self.boot_at = None

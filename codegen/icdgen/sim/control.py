@@ -45,14 +45,19 @@ class Step:
 class Control:
     """Execute the steps of a script, and commands of the user, on a line."""
 
-    def __init__(self, icd: Icd, node: Node, line: DeviceLine, steps: list[Step]) -> None:
+    def __init__(
+        self, icd: Icd, node: Node, line: DeviceLine, steps: list[Step]
+    ) -> None:
         self.icd, self.node, self.line = icd, node, line
         self.steps = sorted(steps, key=lambda step: step.at)
         self.moving: list[tuple[Message, FrameField, Wave]] = []
 
     @property
     def deadline(self) -> int | None:
-        """Time of the next step, or None. Waves do not count: requests update their values."""
+        """Time of the next step, or None.
+
+        Waves do not count: requests update their values.
+        """
         return self.steps[0].at if self.steps else None
 
     def tick(self, now: int) -> None:
@@ -63,7 +68,12 @@ class Control:
         for message, field, wave in self.moving:
             if message.name in values.frames:
                 values.update(
-                    message, {field.name: raw_of(field, at(wave, now / 1000, self.line.faults.random.random))}
+                    message,
+                    {
+                        field.name: raw_of(
+                            field, at(wave, now / 1000, self.line.faults.random.random)
+                        )
+                    },
                 )
 
     def do(self, now: int, step: Step) -> None:
@@ -79,12 +89,21 @@ class Control:
             self.line.computer.restart(now)
 
     def set(self, name: str, key: str, value: object) -> None:
-        """Set a field of a frame now and at each start. Raise `icdgen.errors.UserError`."""
-        for message, field, element_value in fields_of(self.icd, self.node, name, key, value):
+        """Set a field of a frame now and at each start.
+
+        Raise `icdgen.errors.UserError`.
+        """
+        for message, field, element_value in fields_of(
+            self.icd, self.node, name, key, value
+        ):
             self._set(message, field, element_value)
 
     def _set(self, message: Message, field: FrameField, value: object) -> None:
-        self.moving = [m for m in self.moving if (m[0].name, m[1].name) != (message.name, field.name)]
+        self.moving = [
+            m
+            for m in self.moving
+            if (m[0].name, m[1].name) != (message.name, field.name)
+        ]
         if isinstance(value, Mapping):
             self.moving.append((message, field, value))
             return
@@ -106,7 +125,10 @@ class Control:
         self.set(name, key, value)
 
     def execute(self, now: int, text: str) -> str:
-        """Execute a command line and return its response. Raise `icdgen.errors.UserError`."""
+        """Execute a command line and return its response.
+
+        Raise `icdgen.errors.UserError`.
+        """
         try:
             words = shlex.split(text)
         except ValueError as error:
@@ -124,13 +146,18 @@ class Control:
         elif command == "restart" and not arguments:
             self.line.computer.restart(now)
         else:
-            help = "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart"
+            help = (
+                "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart"
+            )
             raise UserError(f"`{text}` is no order", help)
         return "ok"
 
 
-def fields_of(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, FrameField, object]]:
-    """Return a field of a frame and its value, or all elements of an array with their values.
+def fields_of(
+    icd: Icd, node: Node, name: str, key: str, value: object
+) -> list[tuple[Message, FrameField, object]]:
+    """Return a field of a frame and its value, or all elements of an array with their
+    values.
 
     The values of an array are a list, or its text. A variable-length array may have a
     shorter list; the result then begins with its counter. Raise
@@ -141,8 +168,13 @@ def fields_of(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
     fields = icd.longest_frame(message)
     elements = find_array(fields, key, vocabulary)
     nodes = by_name(message.layout.sequence, key, vocabulary)
-    node_of_array = nodes[0] if nodes else elements[0].steps[-1].node if elements else None
-    part = next((part for part in message.layout.counted_parts if part.node is node_of_array), None)
+    node_of_array = (
+        nodes[0] if nodes else elements[0].steps[-1].node if elements else None
+    )
+    part = next(
+        (part for part in message.layout.counted_parts if part.node is node_of_array),
+        None,
+    )
     is_none = part is not None and str(value).strip() == "[]"
     if not elements and not is_none:
         return [(message, find_field(message, fields, key, vocabulary), value)]
@@ -176,12 +208,20 @@ def raw_value_of(message: Message, field: FrameField, value: object) -> int | by
     """Return the raw value of a user's value. Raise `icdgen.errors.UserError`."""
     if field.role in ("overlay", "derived"):
         raise UserError(
-            f"{message.name}, {field.name}: an overlay field has no bits of its own", "set the fields that have them"
+            f"{message.name}, {field.name}: an overlay field has no bits of its own",
+            "set the fields that have them",
         )
     text = "true" if value is True else "false" if value is False else str(value)
     raw = typed(field, text)
-    if isinstance(raw, int) and field.type != "float" and not field.raw_min <= raw <= field.raw_max:
-        raise UserError(f"{message.name}, {field.name}: {value} does not fit", f"{field.bits} bits hold the raw value")
+    if (
+        isinstance(raw, int)
+        and field.type != "float"
+        and not field.raw_min <= raw <= field.raw_max
+    ):
+        raise UserError(
+            f"{message.name}, {field.name}: {value} does not fit",
+            f"{field.bits} bits hold the raw value",
+        )
     return raw
 
 
@@ -218,28 +258,42 @@ def read(path: Path, icd: Icd, node: Node) -> list[Step]:
 def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
     """Return a checked step of a script. Raise `icdgen.errors.UserError`."""
     where = f"{path}: step {number}"
-    if not isinstance(row, dict) or set(row) - {"at", "set", "faults", "log", "restart"}:
+    if not isinstance(row, dict) or set(row) - {
+        "at",
+        "set",
+        "faults",
+        "log",
+        "restart",
+    }:
         raise UserError(f"{where}: there is no such step", HELP)
     seconds, values = row.get("at", 0), row.get("set", {})
     if type(seconds) not in (int, float) or not 0 <= seconds < 1e9:
         raise UserError(f"{where}: `at` is no time in seconds", HELP)
-    if not isinstance(values, dict) or not all(isinstance(fields, dict) for fields in values.values()):
+    if not isinstance(values, dict) or not all(
+        isinstance(fields, dict) for fields in values.values()
+    ):
         raise UserError(f"{where}: `set` is no mapping of messages to fields", HELP)
     for name, fields in values.items():
         for key, value in fields.items():
-            for message, field, element_value in fields_of(icd, node, str(name), str(key), value):
+            for message, field, element_value in fields_of(
+                icd, node, str(name), str(key), value
+            ):
                 if isinstance(element_value, Mapping):
                     _check_wave(f"{where}, {name}, {key}", field, element_value)
                 else:
                     raw_value_of(message, field, element_value)
     fault_texts = row.get("faults")
     if fault_texts is not None and not (
-        isinstance(fault_texts, list) and all(isinstance(field, str) for field in fault_texts)
+        isinstance(fault_texts, list)
+        and all(isinstance(field, str) for field in fault_texts)
     ):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)
     return Step(
         round(seconds * 1000),
-        {str(name): {str(key): value for key, value in fields.items()} for name, fields in values.items()},
+        {
+            str(name): {str(key): value for key, value in fields.items()}
+            for name, fields in values.items()
+        },
         None if fault_texts is None else [faults.parse(field) for field in fault_texts],
         bool(row.get("log", False)),
         bool(row.get("restart", False)),
@@ -248,9 +302,24 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
 
 def _check_wave(where: str, field: FrameField, wave: Wave) -> None:
     if field.role in ("overlay", "derived"):
-        raise UserError(f"{where}: an overlay field has no bits of its own", "let the fields move that have them")
+        raise UserError(
+            f"{where}: an overlay field has no bits of its own",
+            "let the fields move that have them",
+        )
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
-    if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or field.is_bytes:
-        raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")
-    if not all(type(n) in (int, float) and math.isfinite(n) for n in numbers) or numbers[2] <= 0:
-        raise UserError(f"{where}: `min`, `max` and `period` are numbers, the last above 0")
+    if (
+        set(wave) - {"wave", "min", "max", "period"}
+        or wave.get("wave", "sine") not in WAVES
+        or field.is_bytes
+    ):
+        raise UserError(
+            f"{where}: there is no such wave",
+            f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}",
+        )
+    if (
+        not all(type(n) in (int, float) and math.isfinite(n) for n in numbers)
+        or numbers[2] <= 0
+    ):
+        raise UserError(
+            f"{where}: `min`, `max` and `period` are numbers, the last above 0"
+        )

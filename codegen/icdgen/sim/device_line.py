@@ -15,7 +15,9 @@ class DeviceLine:
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
         self.computer, self.faults = computer, faults
-        self._due: list[tuple[int, int, bytes]] = []  # heap of time, order of creation and bytes
+        self._due: list[tuple[int, int, bytes]] = (
+            []
+        )  # heap of time, order of creation and bytes
         self._sent = 0
 
     def received(self, now: int, data: bytes) -> None:
@@ -49,7 +51,9 @@ class DeviceLine:
         return self.computer.deadline
 
     def queue(self, now: int, on: str, data: bytes) -> None:
-        """Queue the bytes of a message, with the faults for messages of the kind ``on``."""
+        """Queue the bytes of a message, with the faults for messages of the kind
+        ``on``.
+        """
         for delay, piece in self.faults.apply(on, data):
             self._sent += 1
             heapq.heappush(self._due, (now + delay, self._sent, piece))

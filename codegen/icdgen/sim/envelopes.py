@@ -23,7 +23,9 @@ class EnvelopeLine(DeviceLine):
     ``chosen`` are the values of the frame fields that the sender chooses.
     """
 
-    def __init__(self, computer: Computer, faults: Faults, chosen: Mapping[str, int]) -> None:
+    def __init__(
+        self, computer: Computer, faults: Faults, chosen: Mapping[str, int]
+    ) -> None:
         super().__init__(computer, faults)
         program = computer.program
         self.form = need(program.facts.stream, "stream")
@@ -34,8 +36,14 @@ class EnvelopeLine(DeviceLine):
         section = program.icd.protocol_of(program.node)["stream"]
         self.replies: dict[str, str] = section.get("replies", {})
         answers = set(self.replies.values())
-        messages = [variant.message for variants in self.ids.telemetry.values() for variant in variants]
-        self.unsolicited = [message for message in messages if message.name not in answers]
+        messages = [
+            variant.message
+            for variants in self.ids.telemetry.values()
+            for variant in variants
+        ]
+        self.unsolicited = [
+            message for message in messages if message.name not in answers
+        ]
         self._every = computer.settings.every_ms
         self._next = 0
 
@@ -67,7 +75,9 @@ class EnvelopeLine(DeviceLine):
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
         program = self.computer.program
         message = codec.message_of_frame_if_any(
-            program.icd, [variant.message for variant in self.ids.telecommand.get(id, ())], data
+            program.icd,
+            [variant.message for variant in self.ids.telecommand.get(id, ())],
+            data,
         )
         if message is None or not self._is_valid(message, data):
             program.count("refused")
@@ -90,4 +100,10 @@ class EnvelopeLine(DeviceLine):
 
     def _send(self, now: int, on: str, message: Message) -> None:
         assert message.telemetry_id is not None
-        self.queue(now, on, self.sender.encode(message.telemetry_id, self.computer.program.current(now, message)))
+        self.queue(
+            now,
+            on,
+            self.sender.encode(
+                message.telemetry_id, self.computer.program.current(now, message)
+            ),
+        )

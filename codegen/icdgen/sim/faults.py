@@ -42,14 +42,21 @@ class Faults:
 
     def hits(self, kind: str, on: str) -> bool:
         """Return whether this message has the fault."""
-        return any(f.kind == kind and on in f.on and self.random.random() < f.share for f in self.faults)
+        return any(
+            f.kind == kind and on in f.on and self.random.random() < f.share
+            for f in self.faults
+        )
 
     def apply(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
-        """Return the bytes of a message with faults: pieces and their delays in milliseconds."""
+        """Return the bytes of a message with faults: pieces and their delays in
+        milliseconds.
+        """
         if self.hits("drop", on):
             return []
         out = bytearray(data)
-        if out and self.hits("corrupt", on):  # XOR with 1 to 255 always changes the byte
+        if out and self.hits(
+            "corrupt", on
+        ):  # XOR with 1 to 255 always changes the byte
             out[self.random.randrange(len(out))] ^= self.random.randrange(1, 256)
         if out and self.hits("cut", on):
             del out[self.random.randrange(len(out))]
@@ -59,7 +66,17 @@ class Faults:
         if self.hits("noise", on):
             out[:0] = self.random.randbytes(self.random.randrange(1, 32))
         pieces = [bytes(out)] * (2 if self.hits("duplicate", on) else 1)
-        return [(self.random.randrange(1, self.late_ms + 1) if self.hits("late", on) else 0, piece) for piece in pieces]
+        return [
+            (
+                (
+                    self.random.randrange(1, self.late_ms + 1)
+                    if self.hits("late", on)
+                    else 0
+                ),
+                piece,
+            )
+            for piece in pieces
+        ]
 
 
 def parse(text: str) -> Fault:
@@ -79,8 +96,15 @@ def parse(text: str) -> Fault:
     if not 0 <= value <= 1:
         raise UserError(f"`{text}`: the share is not between 0 and 1 (100%)", help)
     allowed = {"nack": ("telecommand",), "late": OUT}.get(match["kind"], (*OUT, *IN))
-    on = tuple(match["on"].split(",")) if match["on"] else (allowed if match["kind"] == "nack" else OUT)
+    on = (
+        tuple(match["on"].split(","))
+        if match["on"]
+        else (allowed if match["kind"] == "nack" else OUT)
+    )
     for kind in on:
         if kind not in allowed:
-            raise UserError(f"`{text}`: it cannot be on `{kind}`", f"what it can be on: {', '.join(allowed)}")
+            raise UserError(
+                f"`{text}`: it cannot be on `{kind}`",
+                f"what it can be on: {', '.join(allowed)}",
+            )
     return Fault(match["kind"], value, on)

@@ -25,7 +25,9 @@ class Line(DeviceLine):
         super().__init__(computer, faults)
         # All programs of a device use its line and its framing.
         self.link = computer.program.link
-        self.decoder = UartDecoder(self.link, computer.program.facts.longest_telecommand)
+        self.decoder = UartDecoder(
+            self.link, computer.program.facts.longest_telecommand
+        )
 
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
@@ -61,7 +63,9 @@ class Line(DeviceLine):
             return
         form = facts.files.upload if facts.files else None
         upload = form is not None and form.packet.message.telecommand_id == message[0]
-        for _, received in self.faults.apply("upload" if upload else "telecommand", message):
+        for _, received in self.faults.apply(
+            "upload" if upload else "telecommand", message
+        ):
             self._telecommand(now, received)
 
     def _request(self, now: int, message: bytes) -> None:
@@ -87,8 +91,15 @@ class Line(DeviceLine):
         form = program.facts.acknowledge
         if outcome.acknowledge and form:
             acknowledge = bytearray(form.length)
-            acknowledge[form.id_at], acknowledge[form.error_at] = message[0], outcome.code
-            self._send(now + self.computer.settings.processing_ms, "acknowledge", bytes(acknowledge))
+            acknowledge[form.id_at], acknowledge[form.error_at] = (
+                message[0],
+                outcome.code,
+            )
+            self._send(
+                now + self.computer.settings.processing_ms,
+                "acknowledge",
+                bytes(acknowledge),
+            )
         if outcome.reset is None:
             self._push(now)
 
@@ -96,7 +107,11 @@ class Line(DeviceLine):
         """Send the packets of a burst, which are unsolicited on a UART."""
         program = self.computer.program
         transfers = program.transfers
-        if transfers is None or not transfers.pushed or UART not in transfers.form.packet_ids:
+        if (
+            transfers is None
+            or not transfers.pushed
+            or UART not in transfers.form.packet_ids
+        ):
             return
         pushed, transfers.pushed, transfers.burst = transfers.pushed, [], []
         head = bytes([transfers.form.packet_ids[UART]])

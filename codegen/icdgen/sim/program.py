@@ -37,20 +37,35 @@ class Outcome:
 class Program:
     """A program that has just been started."""
 
-    def __init__(self, icd: Icd, node: Node, storage: Storage, settings: Settings, now: int) -> None:
+    def __init__(
+        self, icd: Icd, node: Node, storage: Storage, settings: Settings, now: int
+    ) -> None:
         self.icd, self.node, self.settings = icd, node, settings
         self.facts = facts.of(icd, node)
         self.link = link_of(icd, self.facts)
         self.values = Values(icd, node)
         form = self.facts.files
-        self.transfers = Transfers(self.facts, self.link, form, storage, settings.busy_ms) if form else None
+        self.transfers = (
+            Transfers(self.facts, self.link, form, storage, settings.busy_ms)
+            if form
+            else None
+        )
         protocol = icd.protocol_of(node)
         copy_to = protocol.get("program_copy", {}).get("destination")
-        room = protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
-        self.programs = Programs(self.facts, self.link, storage, settings.busy_ms, copy_to, room)
+        room = (
+            protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
+        )
+        self.programs = Programs(
+            self.facts, self.link, storage, settings.busy_ms, copy_to, room
+        )
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
-        self.last = (0, True, 0, 0)  # id, processed, code and parameter of the last telecommand
+        self.last = (
+            0,
+            True,
+            0,
+            0,
+        )  # id, processed, code and parameter of the last telecommand
         self.free_at = now  # end of processing of the last telecommand
         self.log_at: int | None = None
         self._identify()
@@ -81,7 +96,9 @@ class Program:
         """Reject a telecommand without processing it."""
         self.count("telecommands")
         telecommand = self.facts.telecommands.get(message[0])
-        outcome = self._refusal("parameter", acknowledge=telecommand is None or telecommand.acknowledge)
+        outcome = self._refusal(
+            "parameter", acknowledge=telecommand is None or telecommand.acknowledge
+        )
         self.last = (message[0], True, outcome.code, outcome.parameter)
         return outcome
 
@@ -103,7 +120,11 @@ class Program:
                 return self._fetched(message)
         raw |= self.programs.answer(now, message)
         raw |= self._statistics(message) | self._acknowledged(now, message)
-        return self.values.encode(message, {**self.values.raw(message), **raw}) if raw else self.values.frame(message)
+        return (
+            self.values.encode(message, {**self.values.raw(message), **raw})
+            if raw
+            else self.values.frame(message)
+        )
 
     def log_due(self, now: int) -> bytes | None:
         """Return an unsolicited log message if it is due."""
@@ -123,16 +144,23 @@ class Program:
         frames = []
         for slot in layout.selected(setting[0]):
             message = self.facts.telemetry.get(slot.id) if slot.id is not None else None
-            data = self.current(now, message) if message else bytes([layout.fill]) * slot.length
+            data = (
+                self.current(now, message)
+                if message
+                else bytes([layout.fill]) * slot.length
+            )
             frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
         return LogMessage.encode(self.link, setting[0], frames)
 
-    def first_invalid(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
+    def first_invalid(
+        self, message: Message, raw: Mapping[str, int | bytes]
+    ) -> int | None:
         """Return the index of the first field with an invalid value, or None."""
         for index, field in enumerate(self.icd.longest_frame(message)):
             value = raw.get(field.name)  # optional fields may be missing
             is_invalid = isinstance(value, int) and (
-                bool(violations(field, value)) and codec.special_of(field, value) is None
+                bool(violations(field, value))
+                and codec.special_of(field, value) is None
                 if self.settings.strict
                 else field.const is not None and value != field.const
             )
@@ -143,14 +171,23 @@ class Program:
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
         telecommand = self.facts.telecommands.get(message[0])
         if telecommand is None or telecommand.name in self.unsupported:
-            return self._refusal("unknown_id", acknowledge=telecommand is None or telecommand.acknowledge)
+            return self._refusal(
+                "unknown_id", acknowledge=telecommand is None or telecommand.acknowledge
+            )
         data, form = message[1:], self.facts.checksum
-        # The checksum is optional unless `telecommand_always` has the bus: the length shows whether it is there.
-        if form and bus in form.telecommand_buses and len(data) == telecommand.length + form.bytes:
+        # The checksum is optional unless `telecommand_always` has the bus: the length
+        # shows whether it is there.
+        if (
+            form
+            and bus in form.telecommand_buses
+            and len(data) == telecommand.length + form.bytes
+        ):
             data = data[: telecommand.length]
             if message != i2c_write(self.link, message[0], data, crc=True):
                 return self._refusal("checksum")
-        elif form and bus in form.telecommand_always and len(data) == telecommand.length:
+        elif (
+            form and bus in form.telecommand_always and len(data) == telecommand.length
+        ):
             return self._refusal("checksum")
         if len(data) != telecommand.length:
             return self._refusal("length")
@@ -165,37 +202,61 @@ class Program:
             self.programs.telecommand(now, telecommand, raw)
         except Refused as refused:
             names = [field.name for field in self.icd.longest_frame(telecommand)]
-            return self._refusal("parameter", names.index(refused.field) if refused.field else 0)
+            return self._refusal(
+                "parameter", names.index(refused.field) if refused.field else 0
+            )
         if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
-        code, reset = self.facts.errors.get("none", 0), telecommand if telecommand.expects_reset else None
-        return Outcome(code, acknowledge=telecommand.acknowledge and not reset, reset=reset)
+        code, reset = self.facts.errors.get("none", 0), (
+            telecommand if telecommand.expects_reset else None
+        )
+        return Outcome(
+            code, acknowledge=telecommand.acknowledge and not reset, reset=reset
+        )
 
     def _unsupported(self) -> set[str]:
         """Return the telecommands of a procedure that only other nodes support."""
-        section = self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
+        section = (
+            self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
+        )
         if self.node.name in section.get("nodes", [self.node.name]):
             return set()
-        return {step["message"] for step in section.values() if isinstance(step, dict) and "message" in step}
+        return {
+            step["message"]
+            for step in section.values()
+            if isinstance(step, dict) and "message" in step
+        }
 
-    def _refusal(self, reason: str, parameter: int = 0, acknowledge: bool = True) -> Outcome:
+    def _refusal(
+        self, reason: str, parameter: int = 0, acknowledge: bool = True
+    ) -> Outcome:
         return Outcome(self.facts.errors.get(reason, 1), parameter, acknowledge)
 
     def _identify(self) -> None:
         step = self.facts.identification
         if step:
-            values = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
-            self.values.update(step.message, {n: values.get(r) or 0 for r, n in step.fields.items() if r in values})
+            values = {
+                "node_type": self.node.node_type,
+                "interface_version": self.node.interface_version,
+            }
+            self.values.update(
+                step.message,
+                {n: values.get(r) or 0 for r, n in step.fields.items() if r in values},
+            )
 
     def _statistics(self, message: Message) -> Raw:
         step = self.facts.statistics
         if step is None or step.message.name != message.name:
             return {}
-        bits = {field.name: field.bits for field in self.icd.longest_frame(step.message)}
+        bits = {
+            field.name: field.bits for field in self.icd.longest_frame(step.message)
+        }
         result: Raw = {}
         for role, name in step.fields.items():
             count = self.counts.get(role, 0)
-            result[name] = count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
+            result[name] = (
+                count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
+            )
         return result
 
     def _acknowledged(self, now: int, message: Message) -> Raw:
@@ -204,16 +265,27 @@ class Program:
             return {}
         id, _, code, parameter = self.last
         processed = int(now >= self.free_at)
-        return {polled.id: id, polled.processed: processed, polled.error: code, polled.parameter: parameter}
+        return {
+            polled.id: id,
+            polled.processed: processed,
+            polled.error: code,
+            polled.parameter: parameter,
+        }
 
     def _fetched(self, message: Message) -> bytes:
         assert self.transfers
         packet = self.transfers.fetch()
         head = self.facts.bytes_of(packet.number, self.transfers.form.counter_bytes)
-        return (head + packet.data).ljust(message.length, bytes([self.transfers.form.fill]))[: message.length]
+        return (head + packet.data).ljust(
+            message.length, bytes([self.transfers.form.fill])
+        )[: message.length]
 
     def _log_role(self) -> dict[str, Any]:
-        role: dict[str, Any] = self.icd.protocol_of(self.node).get("unsolicited_log", {}).get("configured_by", {})
+        role: dict[str, Any] = (
+            self.icd.protocol_of(self.node)
+            .get("unsolicited_log", {})
+            .get("configured_by", {})
+        )
         return role
 
     def _log_setting(self) -> tuple[bytes, int] | None:
@@ -223,7 +295,10 @@ class Program:
         if message is None or not self.facts.log_message:
             return None
         raw, fields = self.values.raw(message), role["fields"]
-        return bytes(raw[fields["mask"]]), int(raw[fields["period"]]) * role["period_unit_ms"]
+        return (
+            bytes(raw[fields["mask"]]),
+            int(raw[fields["period"]]) * role["period_unit_ms"],
+        )
 
     def _plan_log(self, now: int) -> None:
         setting = self._log_setting()

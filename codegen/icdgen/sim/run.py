@@ -60,17 +60,27 @@ def node_of(icd: Icd, name: str | None) -> Node:
 
     Raise `icdgen.errors.UserError`.
     """
-    candidates = [node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)]
+    candidates = [
+        node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)
+    ]
     if name is None:
         if len(candidates) == 1:
             return candidates[0]
         if not candidates:
-            raise UserError("no node of the ICD says how its messages are framed on a stream of bytes", FRAMING)
+            raise UserError(
+                "no node of the ICD says how its messages are framed on a stream of bytes",
+                FRAMING,
+            )
         names = ", ".join(node.name for node in candidates)
-        raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}")
+        raise UserError(
+            "it is not said which node is meant", f"--node NAME; nodes: {names}"
+        )
     node = find_node(icd, name)
     if not has_protocol(icd, node):
-        raise UserError(f"the ICD does not say how messages of {node.name} are framed on a stream of bytes", FRAMING)
+        raise UserError(
+            f"the ICD does not say how messages of {node.name} are framed on a stream of bytes",
+            FRAMING,
+        )
     return node
 
 
@@ -80,17 +90,34 @@ def has_protocol(icd: Icd, node: Node) -> bool:
     return node_facts.framing is not None or node_facts.stream is not None
 
 
-def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, control.Control]:
-    """Return the device on its line, and its control. Raise `icdgen.errors.UserError`."""
+def build(
+    icd: Icd, name: str | None, options: Options
+) -> tuple[DeviceLine, control.Control]:
+    """Return the device on its line, and its control.
+
+    Raise `icdgen.errors.UserError`.
+    """
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
     storage.files.update(_file(icd, node, text) for text in options.files)
-    settings = Settings(options.boot, options.busy, options.processing, options.strict, round(options.every * 1000))
-    line_faults = faults.Faults(Random(options.seed), [faults.parse(fault) for fault in options.faults], options.late)
+    settings = Settings(
+        options.boot,
+        options.busy,
+        options.processing,
+        options.strict,
+        round(options.every * 1000),
+    )
+    line_faults = faults.Faults(
+        Random(options.seed),
+        [faults.parse(fault) for fault in options.faults],
+        options.late,
+    )
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
     line: DeviceLine = (
-        EnvelopeLine(computer, line_faults, chosen) if computer.program.facts.stream else Line(computer, line_faults)
+        EnvelopeLine(computer, line_faults, chosen)
+        if computer.program.facts.stream
+        else Line(computer, line_faults)
     )
     steps = control.read(options.script, icd, node) if options.script else []
     controller = control.Control(icd, node, line, steps)
@@ -100,12 +127,21 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[DeviceLine, con
 
 
 def run(
-    icd: Icd, name: str | None, transports: list[Transport], options: Options, report: Callable[[str], None]
+    icd: Icd,
+    name: str | None,
+    transports: list[Transport],
+    options: Options,
+    report: Callable[[str], None],
 ) -> None:
     """Run the device until interrupted. Raise `icdgen.errors.UserError`."""
     line, controller = build(icd, name, options)
-    if line.keeps_packets and any("udp" not in transport[:2] for transport in transports):
-        raise UserError("only packets delimit messages here, and a stream of bytes keeps none apart", "use --udp PORT")
+    if line.keeps_packets and any(
+        "udp" not in transport[:2] for transport in transports
+    ):
+        raise UserError(
+            "only packets delimit messages here, and a stream of bytes keeps none apart",
+            "use --udp PORT",
+        )
     asyncio.run(_run(line, controller, transports, options.orders, report))
 
 
@@ -137,7 +173,9 @@ async def _listen(server: serve.Server, report: Callable[[str], None]) -> None:
     loop = asyncio.get_running_loop()
     lines: asyncio.Queue[str | None] = asyncio.Queue()
 
-    def read() -> None:  # in a thread: asyncio cannot wait for files or terminals on all systems
+    def read() -> (
+        None
+    ):  # in a thread: asyncio cannot wait for files or terminals on all systems
         for line in sys.stdin or ():
             loop.call_soon_threadsafe(lines.put_nowait, line)
         loop.call_soon_threadsafe(lines.put_nowait, None)
@@ -155,16 +193,28 @@ async def _listen(server: serve.Server, report: Callable[[str], None]) -> None:
 
 
 def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
-    """Return a file from a text ``TYPE:COUNTER=PATH``. Raise `icdgen.errors.UserError`."""
+    """Return a file from a text ``TYPE:COUNTER=PATH``.
+
+    Raise `icdgen.errors.UserError`.
+    """
     node_facts = facts.of(icd, node)
     key, _, path = text.partition("=")
     kind, colon, counter = key.rpartition(":")
     number = numbers.integer(counter.strip())
     type_ = _type(icd, node_facts, kind.strip()) if path and colon else None
-    if type_ is None or number is None or not (0 <= type_ <= 255 and 0 <= number <= 255):
-        raise UserError(f"`{text}` is no file of the device", "TYPE:COUNTER=PATH, for instance 2:1=log.bin")
+    if (
+        type_ is None
+        or number is None
+        or not (0 <= type_ <= 255 and 0 <= number <= 255)
+    ):
+        raise UserError(
+            f"`{text}` is no file of the device",
+            "TYPE:COUNTER=PATH, for instance 2:1=log.bin",
+        )
     if node_facts.index and type_ == node_facts.index.file_type:
-        raise UserError(f"`{text}`: the index file is made of the others", "leave it out")
+        raise UserError(
+            f"`{text}`: the index file is made of the others", "leave it out"
+        )
     try:
         data = Path(path).read_bytes()
         changed = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
@@ -181,9 +231,16 @@ def _type(icd: Icd, node_facts: facts.Facts, text: str) -> int | None:
     """Return a file type from its number or name. Raise `icdgen.errors.UserError`."""
     from icdgen.values.entry import from_physical
 
-    load = node_facts.files.download.load if node_facts.files and node_facts.files.download else None
+    load = (
+        node_facts.files.download.load
+        if node_facts.files and node_facts.files.download
+        else None
+    )
     fields = icd.longest_frame(load.message) if load else ()
-    field = next((field for field in fields if load and field.name == load.fields.get("type")), None)
+    field = next(
+        (field for field in fields if load and field.name == load.fields.get("type")),
+        None,
+    )
     if field is None:
         raise UserError("the ICD describes no files", "leave --file out")
     return from_physical(field, text)  # type: ignore[return-value]
@@ -194,7 +251,10 @@ def _saver(folder: Path | None) -> Callable[[int, bytes], None] | None:
     if folder is None:
         return None
     if folder.exists() and not folder.is_dir():
-        raise UserError(f"{folder} is not a folder", "--uploads names the folder for uploaded programs")
+        raise UserError(
+            f"{folder} is not a folder",
+            "--uploads names the folder for uploaded programs",
+        )
     folder.mkdir(parents=True, exist_ok=True)
 
     def save(destination: int, data: bytes) -> None:

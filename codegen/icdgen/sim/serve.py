@@ -43,7 +43,10 @@ class Server:
         self.wake.set()
 
     def execute(self, text: str) -> str:
-        """Execute a command and return its response. Raise `icdgen.errors.UserError`."""
+        """Execute a command and return its response.
+
+        Raise `icdgen.errors.UserError`.
+        """
         answer = self.control.execute(self.now, text)
         self._flush(self.now)
         self.wake.set()
@@ -56,12 +59,23 @@ class Server:
             self.control.tick(now)
             self.line.tick(now)
             self._flush(now)
-            times = [at for at in (self.line.deadline, self.control.deadline) if at is not None]
+            times = [
+                at
+                for at in (self.line.deadline, self.control.deadline)
+                if at is not None
+            ]
             self.wake.clear()
-            # Round up by half a millisecond, as `now` is rounded down: otherwise the loop would wake up too early.
-            wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
+            # Round up by half a millisecond, as `now` is rounded down: otherwise the
+            # loop would wake up too early.
+            wait = (
+                IDLE
+                if not times
+                else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
+            )
             try:
-                async with asyncio.timeout(wait):  # `wait_for` can lose an interrupt that arrives with data
+                async with asyncio.timeout(
+                    wait
+                ):  # `wait_for` can lose an interrupt that arrives with data
                     await self.wake.wait()
             except TimeoutError:
                 continue
@@ -76,7 +90,8 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
     """Listen for TCP connections. Return the address for a message, and the server."""
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        # The client has disconnected, or the simulator ends. Otherwise asyncio would print the cancellation.
+        # The client has disconnected, or the simulator ends. Otherwise asyncio would
+        # print the cancellation.
         with suppress(OSError, asyncio.CancelledError):
             await _handle(server, reader, writer)
 
@@ -87,10 +102,13 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
     return f"tcp://{host}:{listening.sockets[0].getsockname()[1]}", listening
 
 
-async def udp(server: Server, host: str, port: int, connects: bool = False) -> tuple[str, object]:
+async def udp(
+    server: Server, host: str, port: int, connects: bool = False
+) -> tuple[str, object]:
     """Exchange UDP datagrams. Each is a piece of the stream, or a packet.
 
-    Responses go to the last sender. With ``connects``, they go to ``host`` and ``port``.
+    Responses go to the last sender. With ``connects``, they go to ``host`` and
+    ``port``.
     """
 
     class Protocol(asyncio.DatagramProtocol):
@@ -113,12 +131,16 @@ async def udp(server: Server, host: str, port: int, connects: bool = False) -> t
             size = len(data) if server.line.keeps_packets else PIECE
             for at in range(0, len(data), size):
                 if (connects or self.peer is not None) and self.transport:
-                    self.transport.sendto(data[at : at + size], None if connects else self.peer)
+                    self.transport.sendto(
+                        data[at : at + size], None if connects else self.peer
+                    )
 
     loop = asyncio.get_running_loop()
     try:
         if connects:
-            transport, _ = await loop.create_datagram_endpoint(Protocol, remote_addr=(host, port))
+            transport, _ = await loop.create_datagram_endpoint(
+                Protocol, remote_addr=(host, port)
+            )
             return f"to udp://{host}:{port}", transport
         transport, _ = await loop.create_datagram_endpoint(Protocol, (host, port))
     except OSError as error:
@@ -126,11 +148,18 @@ async def udp(server: Server, host: str, port: int, connects: bool = False) -> t
     return f"udp://{host}:{transport.get_extra_info('sockname')[1]}", transport
 
 
-async def connect(server: Server, kind: str, host: str, port: int) -> tuple[str, object]:
-    """Connect to a server, and reconnect when the connection is lost. Return its address."""
+async def connect(
+    server: Server, kind: str, host: str, port: int
+) -> tuple[str, object]:
+    """Connect to a server, and reconnect when the connection is lost.
+
+    Return its address.
+    """
     if kind == "udp":
         return await udp(server, host, port, connects=True)
-    return f"to tcp://{host}:{port}", asyncio.create_task(_stay_connected(server, host, port))
+    return f"to tcp://{host}:{port}", asyncio.create_task(
+        _stay_connected(server, host, port)
+    )
 
 
 async def _stay_connected(server: Server, host: str, port: int) -> None:
@@ -142,7 +171,9 @@ async def _stay_connected(server: Server, host: str, port: int) -> None:
         await asyncio.sleep(RECONNECT_INTERVAL)
 
 
-async def _handle(server: Server, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def _handle(
+    server: Server, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
+) -> None:
     """Handle a connection until it ends."""
     send = writer.write
     server.clients.append(send)
@@ -160,7 +191,9 @@ async def pty(server: Server) -> tuple[str, object]:
     import tty
 
     master, slave = os.openpty()
-    tty.setraw(slave)  # stays open, so that the device remains when a client closes its end
+    tty.setraw(
+        slave
+    )  # stays open, so that the device remains when a client closes its end
     os.set_blocking(master, False)
     loop, waiting = asyncio.get_running_loop(), bytearray()
 
@@ -178,7 +211,9 @@ async def pty(server: Server) -> tuple[str, object]:
             loop.remove_writer(master)
 
     def send(data: bytes) -> None:
-        if len(waiting) < 1 << 22:  # without a reader, bytes are lost, as on a real line
+        if (
+            len(waiting) < 1 << 22
+        ):  # without a reader, bytes are lost, as on a real line
             waiting.extend(data)
             loop.add_writer(master, write)
 
@@ -190,6 +225,14 @@ async def pty(server: Server) -> tuple[str, object]:
 def _listen_error(kind: str, host: str, port: int, error: OSError) -> UserError:
     """Return the error for an address that cannot be opened."""
     is_taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
-    why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)
-    help = "port 0 takes a free one" if is_taken else "--host is an address of this machine"
+    why = (
+        os.strerror(error.errno)
+        if error.errno and error.errno > 0
+        else error.strerror or str(error)
+    )
+    help = (
+        "port 0 takes a free one"
+        if is_taken
+        else "--host is an address of this machine"
+    )
     return UserError(f"cannot listen on {kind} {host}:{port}: {why}", help)

@@ -40,12 +40,21 @@ class Storage:
 
     def _entry(self, link: Link, key: tuple[int, int]) -> IndexEntry:
         file = self.files[key]
-        _, size = link.index_file.fields.get("meta", (0, 0)) if link.index_file else (0, 0)
+        _, size = (
+            link.index_file.fields.get("meta", (0, 0)) if link.index_file else (0, 0)
+        )
         form, mask, meta = link.log_file, link.mask, b""
         if form and mask and key[0] == form.file_type:
             meta = file.data[form.mask_at : form.mask_at + mask.size]
         checksum = checksum_of(link, file.data)
-        return IndexEntry(key[0], key[1], checksum, len(file.data), file.time, meta[:size].ljust(size, b"\0"))
+        return IndexEntry(
+            key[0],
+            key[1],
+            checksum,
+            len(file.data),
+            file.time,
+            meta[:size].ljust(size, b"\0"),
+        )
 
     def put(self, destination: int, data: bytes) -> None:
         """Store a complete program."""
@@ -53,7 +62,9 @@ class Storage:
         if self.on_upload:
             self.on_upload(destination, data)
 
-    def write(self, destination: int, offset: int, data: bytes, room: int | None = None) -> bool:
+    def write(
+        self, destination: int, offset: int, data: bytes, room: int | None = None
+    ) -> bool:
         """Commit a block of a program. Return whether there is room for it."""
         if offset + len(data) > (LARGEST if room is None else min(LARGEST, room)):
             return False

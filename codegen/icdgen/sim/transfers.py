@@ -35,10 +35,21 @@ class Packet(NamedTuple):
 
 
 class Transfers:
-    """State of all transfers of a program. ``busy_ms`` is the duration of slow steps."""
+    """State of all transfers of a program.
 
-    def __init__(self, facts: Facts, link: Link, form: Files, storage: Storage, busy_ms: int) -> None:
-        self.facts, self.link, self.form, self.storage, self.busy_ms = facts, link, form, storage, busy_ms
+    ``busy_ms`` is the duration of slow steps.
+    """
+
+    def __init__(
+        self, facts: Facts, link: Link, form: Files, storage: Storage, busy_ms: int
+    ) -> None:
+        self.facts, self.link, self.form, self.storage, self.busy_ms = (
+            facts,
+            link,
+            form,
+            storage,
+            busy_ms,
+        )
         self.pointer = 0
         self.block = b""
         self.loaded = self.bad = False
@@ -46,10 +57,14 @@ class Transfers:
         self.received: dict[int, bytes] = {}
         self.failed = False
         self.busy: dict[str, int] = {}  # step -> time of its end
-        self.fetched = Packet(0, bytes([form.fill]) * form.packet_bytes)  # last requested packet
+        self.fetched = Packet(
+            0, bytes([form.fill]) * form.packet_bytes
+        )  # last requested packet
         self.burst: list[int] = []  # positions of packets that the client will request
         self.pushed: list[Packet] = []  # unsolicited packets to send
-        self.maps: dict[str, tuple[str, slice]] = {}  # message -> field, and range of the map
+        self.maps: dict[str, tuple[str, slice]] = (
+            {}
+        )  # message -> field, and range of the map
         if holes := facts.hole_map:
             for index, message in enumerate(holes.messages):
                 self.maps[message.name] = holes.field, slice(
@@ -71,16 +86,29 @@ class Transfers:
         providers: dict[str, Callable[[int], Raw]] = {
             "list.information": self._information,
             "download.ready": self._ready,
-            "upload.initiated": lambda now: {"busy": self._is_busy("upload.initiate", now)},
+            "upload.initiated": lambda now: {
+                "busy": self._is_busy("upload.initiate", now)
+            },
             "upload.checksum": self._checksum,
-            "upload.finalized": lambda now: {"busy": self._is_busy("upload.finalize", now), "error": int(self.failed)},
+            "upload.finalized": lambda now: {
+                "busy": self._is_busy("upload.finalize", now),
+                "error": int(self.failed),
+            },
             "erase.progress": lambda now: {"busy": self._is_busy("erase.request", now)},
-            "format.progress": lambda now: {"busy": self._is_busy("format.request", now)},
+            "format.progress": lambda now: {
+                "busy": self._is_busy("format.request", now)
+            },
         }
         self.telecommands = {
-            step.message.name: (step, handlers[name]) for name, step in self.steps.items() if name in handlers
+            step.message.name: (step, handlers[name])
+            for name, step in self.steps.items()
+            if name in handlers
         }
-        self.frames = [(step, providers[name]) for name, step in self.steps.items() if name in providers]
+        self.frames = [
+            (step, providers[name])
+            for name, step in self.steps.items()
+            if name in providers
+        ]
 
     def telecommand(self, now: int, message: Message, raw: Raw) -> None:
         """Process a telecommand of the transfers; ignore others. Raise `Refused`."""
@@ -100,7 +128,11 @@ class Transfers:
         for step, give in self.frames:
             if step.message.name == message.name:
                 values = give(now)
-                result |= {name: values[role] for role, name in step.fields.items() if role in values}
+                result |= {
+                    name: values[role]
+                    for role, name in step.fields.items()
+                    if role in values
+                }
         return result
 
     def fetch(self) -> Packet:
@@ -130,9 +162,20 @@ class Transfers:
     def _information(self, now: int) -> Raw:
         files, busy = list(self.storage.files.items()), self._is_busy("list.reset", now)
         if busy or self.pointer >= len(files):
-            return {"busy": busy, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
+            return {
+                "busy": busy,
+                "type": 0,
+                "counter": 0,
+                "size": 0,
+                "time": 0,
+                "checksum": 0,
+            }
         (type_, counter), file = files[self.pointer]
-        about = {"size": len(file.data), "time": file.time, "checksum": checksum_of(self.link, file.data)}
+        about = {
+            "size": len(file.data),
+            "time": file.time,
+            "checksum": checksum_of(self.link, file.data),
+        }
         return {"busy": 0, "type": type_, "counter": counter, **about}
 
     def _load(self, now: int, values: Raw) -> None:
@@ -150,12 +193,23 @@ class Transfers:
             return {"ready": 0, "error": 0, "checksum": 0, "length": 0}
         covered = self.block
         if self.form.download and self.form.download.checksum_covers_fill:
-            covered = b"".join(self._packet_at(at).data for at in range(self.facts.packets_of(len(covered))))
+            covered = b"".join(
+                self._packet_at(at).data
+                for at in range(self.facts.packets_of(len(covered)))
+            )
         checksum = checksum_of(self.link, covered)
-        return {"ready": 1, "error": int(self.bad), "checksum": checksum, "length": len(self.block)}
+        return {
+            "ready": 1,
+            "error": int(self.bad),
+            "checksum": checksum,
+            "length": len(self.block),
+        }
 
     def _burst(self, now: int, values: Raw) -> None:
-        if self.form.download and values.get("length", 0) != self.form.download.message_length:
+        if (
+            self.form.download
+            and values.get("length", 0) != self.form.download.message_length
+        ):
             self.bad = True
             raise Refused()
         count = self.facts.packets_of(len(self.block))
@@ -167,7 +221,9 @@ class Transfers:
 
     def _packet_at(self, position: int) -> Packet:
         size = self.form.packet_bytes
-        data = self.block[position * size : (position + 1) * size].ljust(size, bytes([self.form.fill]))
+        data = self.block[position * size : (position + 1) * size].ljust(
+            size, bytes([self.form.fill])
+        )
         return Packet(self.form.first_packet + position, data)
 
     def _initiate(self, now: int, values: Raw) -> None:
@@ -178,7 +234,11 @@ class Transfers:
 
     def _destination(self, values: Raw) -> int:
         destination = int(values["destination"])
-        if self.form.upload and self.form.upload.destinations and destination not in self.form.upload.destinations:
+        if (
+            self.form.upload
+            and self.form.upload.destinations
+            and destination not in self.form.upload.destinations
+        ):
             raise Refused()
         return destination
 
@@ -187,22 +247,31 @@ class Transfers:
         self._clear_map()
 
     def _clear_map(self) -> None:
-        empty = 0x00 if not self.facts.hole_map or self.facts.hole_map.received else 0xFF
+        empty = (
+            0x00 if not self.facts.hole_map or self.facts.hole_map.received else 0xFF
+        )
         self.map = bytearray([empty]) * len(self.map)
 
     def _packet(self, now: int, values: Raw) -> None:
         number = int(values["number"])
         position, form = number - self.form.first_packet, self.facts.hole_map
-        if not 0 <= position < self.form.block_packets:  # a damaged counter must not exhaust the memory
+        if (
+            not 0 <= position < self.form.block_packets
+        ):  # a damaged counter must not exhaust the memory
             return
         self.received[position] = values["bytes"]  # type: ignore[assignment]
         if form and position // 8 < len(self.map):
             weight = 1 << (7 - position % 8 if form.msb0 else position % 8)
-            self.map[position // 8] ^= weight if bool(self.map[position // 8] & weight) != form.received else 0
+            self.map[position // 8] ^= (
+                weight if bool(self.map[position // 8] & weight) != form.received else 0
+            )
 
     def _upload_block(self) -> bytes:
         empty = bytes([self.form.fill]) * self.form.packet_bytes
-        return b"".join(self.received.get(at, empty) for at in range(max(self.received, default=-1) + 1))
+        return b"".join(
+            self.received.get(at, empty)
+            for at in range(max(self.received, default=-1) + 1)
+        )
 
     def _checksum(self, now: int) -> Raw:
         return {"checksum": checksum_of(self.link, self._upload_block())}
@@ -211,7 +280,9 @@ class Transfers:
         block, length = self._upload_block(), int(values["length"])
         destination, offset = self._destination(values), int(values["offset"])
         room = self.form.upload.destination_bytes if self.form.upload else None
-        self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length], room)
+        self.failed = length > len(block) or not self.storage.write(
+            destination, offset, block[:length], room
+        )
         self._start("upload.finalize", now)
 
     def _erase(self, now: int, values: Raw) -> None:

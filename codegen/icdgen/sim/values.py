@@ -14,19 +14,25 @@ from icdgen.values.frame import violations
 
 
 class Values:
-    """The frame of each message, by name. A composite frame is consistent with its parts."""
+    """The frame of each message, by name.
+
+    A composite frame is consistent with its parts.
+    """
 
     def __init__(self, icd: Icd, node: Node) -> None:
         self.icd = icd
         self.messages = {m.name: m for m in icd.messages_of(node)}
         self.frames = {
-            m.name: self.encode(m, allowed_values(icd, m)) for m in self.messages.values() if m.telemetry_id is not None
+            m.name: self.encode(m, allowed_values(icd, m))
+            for m in self.messages.values()
+            if m.telemetry_id is not None
         }
 
     def frame(self, message: Message) -> bytes:
         """Return the current frame."""
         data = bytearray(self.frames[message.name])
-        # The frame of a part is the original: it may have been set after the composite frame.
+        # The frame of a part is the original: it may have been set after the composite
+        # frame.
         for part, first, last in self._parts(message):
             data[first:last] = self.frame(part)
         return bytes(data)
@@ -41,23 +47,38 @@ class Values:
         """Return the raw values of the current frame."""
         return codec.decode(self.icd.node(message.node), message, self.frame(message))
 
-    def update(self, message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int | bytes]:
-        """Set fields. Return the values set, including counters. Raise `icdgen.codec.CodecError`.
+    def update(
+        self, message: Message, raw: Mapping[str, int | bytes]
+    ) -> dict[str, int | bytes]:
+        """Set fields.
+
+        Return the values set, including counters. Raise `icdgen.codec.CodecError`.
 
         Variable-length bytes and text get the length of the new value. An array gets
         all elements up to the last one that is set.
         """
         current, new = self.raw(message), dict(raw)
-        steps = [step for field in self.icd.longest_frame(message) if field.name in raw for step in field.steps]
+        steps = [
+            step
+            for field in self.icd.longest_frame(message)
+            if field.name in raw
+            for step in field.steps
+        ]
         counters: dict[str, int] = {}
         for part in message.layout.counted_parts:
-            octets, count = new.get(part.name), codec.size_of_values(part, {**current, **raw})
+            octets, count = new.get(part.name), codec.size_of_values(
+                part, {**current, **raw}
+            )
             if isinstance(octets, bytes):
                 new[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
             elements = (step.element for step in steps if step.node is part.node)
-            count = max([count, *(element + 1 for element in elements if element is not None)])
+            count = max(
+                [count, *(element + 1 for element in elements if element is not None)]
+            )
             # Several arrays can have one counter.
-            counters[part.counter] = max(count - part.plus, counters.get(part.counter, 0))
+            counters[part.counter] = max(
+                count - part.plus, counters.get(part.counter, 0)
+            )
         new = {**counters, **new}
         self.put(message, self.encode(message, {**current, **new}))
         return new
@@ -74,11 +95,16 @@ class Values:
 
 
 def allowed_values(icd: Icd, message: Message) -> dict[str, int | bytes]:
-    """Return allowed values of all raw fields of the longest frame, 0 if that is allowed.
+    """Return allowed values of all raw fields of the longest frame, 0 if that is
+    allowed.
 
     Overlay fields read the bits of raw fields and have no values.
     """
-    return {field.name: _allowed_value(message, field) for field in icd.longest_frame(message) if field.is_raw}
+    return {
+        field.name: _allowed_value(message, field)
+        for field in icd.longest_frame(message)
+        if field.is_raw
+    }
 
 
 def _allowed_value(message: Message, field: FrameField) -> int | bytes:
@@ -91,7 +117,9 @@ def _allowed_value(message: Message, field: FrameField) -> int | bytes:
 
 
 def _candidates(field: FrameField) -> Iterable[int]:
-    """Return raw values that may be allowed: the constant, 0, enumeration members, limits."""
+    """Return raw values that may be allowed: the constant, 0, enumeration members,
+    limits.
+    """
     if field.const is not None:
         yield field.const
     yield 0
@@ -104,7 +132,9 @@ def _candidates(field: FrameField) -> Iterable[int]:
             yield from _on_curve(field, bound)
             continue
         if field.type == "float":
-            yield from (codec.float_bits(field, float(bound) + step) for step in (0, 1, -1))
+            yield from (
+                codec.float_bits(field, float(bound) + step) for step in (0, 1, -1)
+            )
             continue
         raw: Fraction = field.scale.raw(bound) if field.scale else bound
         yield from (floor(raw), ceil(raw), floor(raw) - 1, ceil(raw) + 1)
@@ -120,7 +150,9 @@ def _on_curve(field: FrameField, bound: Fraction) -> Iterable[int]:
 
 
 def raw_of(field: FrameField, value: float) -> int:
-    """Return the raw value nearest to a physical one, limited to the range of the field."""
+    """Return the raw value nearest to a physical one, limited to the range of the
+    field.
+    """
     if field.curve is not None:
         return _raw_on_curve(field, field.curve, value)
     if field.type == "float":
@@ -131,7 +163,10 @@ def raw_of(field: FrameField, value: float) -> int:
 
 
 def _raw_on_curve(field: FrameField, curve: Curve, value: float) -> int:
-    """Return the raw value of a calibration, limited to its range; 0 without an inverse."""
+    """Return the raw value of a calibration, limited to its range.
+
+    Returns 0 without an inverse.
+    """
     if not field.is_invertible:
         return 0
     if field.type == "float":

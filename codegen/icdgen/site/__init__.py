@@ -1,4 +1,6 @@
-"""Documentation site of ICDs: rendered in memory, written to a folder, or served over HTTP."""
+"""Documentation site of ICDs: rendered in memory, written to a folder, or served over
+HTTP.
+"""
 
 from __future__ import annotations
 

@@ -41,25 +41,33 @@ def make(
 ) -> Site:
     """Load and check ICDs, and render the site.
 
-    ``previous`` is an older release to compare with, in the syntax of `icdgen.diff.inputs`. ``watch`` passes the files on, for
-    example to show the progress. Raises `UserError` if a file cannot be read or a template has an error.
+    ``previous`` is an older release to compare with, in the syntax of
+    `icdgen.diff.inputs`. ``watch`` passes the files on, for example to show the
+    progress. Raises `UserError` if a file cannot be read or a template has an error.
     """
     loaded = load_checked(icds, HtmlBackend.named_in)
-    site = Site(loaded.ok, list(loaded.findings), dict(loaded.texts), inputs=dict(loaded.inputs))
+    site = Site(
+        loaded.ok, list(loaded.findings), dict(loaded.texts), inputs=dict(loaded.inputs)
+    )
     older = _older(site, previous, icds) if site.ok and previous is not None else None
     if site.ok:
         render = Renderer(HtmlBackend.name, templates)
         backend = HtmlBackend(older)
         backend.packages = packages or Packages()
         site.files = {
-            str(path): page for path, page in watch(backend.files(loaded.icd, render)) if isinstance(page, str)
+            str(path): page
+            for path, page in watch(backend.files(loaded.icd, render))
+            if isinstance(page, str)
         }
         site.inputs |= render.looked_at
     return site
 
 
 def _older(site: Site, previous: str, icds: list[Path]) -> Side:
-    """Load the older release; if it has errors, the site has its findings and is not rendered."""
+    """Load the older release.
+
+    If it has errors, the site has its findings and is not rendered.
+    """
     from icdgen.diff import inputs
 
     side = inputs.one_side(previous, icds)
@@ -71,8 +79,15 @@ def _older(site: Site, previous: str, icds: list[Path]) -> Side:
 
 
 def write(site: Site, out: Path, check: bool = False) -> Plan:
-    """Write the site to a folder, or only compare with ``check``. Returns the changes. Raises `UserError`."""
-    changes = plan(out, HtmlBackend.name, ((PurePosixPath(name), text) for name, text in site.files.items()))
+    """Write the site to a folder, or only compare with ``check``.
+
+    Returns the changes. Raises `UserError`.
+    """
+    changes = plan(
+        out,
+        HtmlBackend.name,
+        ((PurePosixPath(name), text) for name, text in site.files.items()),
+    )
     if not check:
         apply(changes)
     return changes

@@ -1,4 +1,7 @@
-"""HTTP server of the site, for this machine only. It renders the site again if an ICD changes."""
+"""HTTP server of the site, for this machine only.
+
+It renders the site again if an ICD changes.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,9 @@ class Source:
         """Return the current site. Raises `UserError`."""
         with self._lock:
             inputs = self._site.inputs.items() if self._site else ()
-            if self._site is None or any(fingerprints.of_path(os.fspath(path)) != old for path, old in inputs):
+            if self._site is None or any(
+                fingerprints.of_path(os.fspath(path)) != old for path, old in inputs
+            ):
                 # If `make` raises, the next request tries again.
                 self._site = None
                 self._site = make(*self._arguments)
@@ -62,7 +67,11 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
             """Send a page, a redirection or an error."""
             # Only localhost: otherwise a web page could read the site by DNS rebinding.
             if (self.headers.get("Host") or "").rsplit(":", 1)[0] not in _NAMES:
-                self._send(HTTPStatus.FORBIDDEN, ".txt", "This server answers only to localhost.\n")
+                self._send(
+                    HTTPStatus.FORBIDDEN,
+                    ".txt",
+                    "This server answers only to localhost.\n",
+                )
                 return
             name = unquote(urlsplit(self.path).path).lstrip("/")
             if not name or name.endswith("/"):
@@ -70,22 +79,37 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
             try:
                 site = source.site()
             except UserError as error:
-                self._send(HTTPStatus.INTERNAL_SERVER_ERROR, ".html", _complaint(f"{error}\n{error.help}"))
+                self._send(
+                    HTTPStatus.INTERNAL_SERVER_ERROR,
+                    ".html",
+                    _complaint(f"{error}\n{error.help}"),
+                )
                 return
             if not site.ok:
                 report = reports.get("text")(site.findings, site.texts)
-                self._send(HTTPStatus.INTERNAL_SERVER_ERROR, ".html", _complaint(report))
+                self._send(
+                    HTTPStatus.INTERNAL_SERVER_ERROR, ".html", _complaint(report)
+                )
             elif f"{name}/index.html" in site.files:
-                self._send(HTTPStatus.MOVED_PERMANENTLY, ".txt", "", Location=f"/{name}/")
+                self._send(
+                    HTTPStatus.MOVED_PERMANENTLY, ".txt", "", Location=f"/{name}/"
+                )
             elif name in site.files:
                 self._send(HTTPStatus.OK, os.path.splitext(name)[1], site.files[name])
             else:
-                self._send(HTTPStatus.NOT_FOUND, ".html", _complaint(f"There is no page {name}"))
+                self._send(
+                    HTTPStatus.NOT_FOUND,
+                    ".html",
+                    _complaint(f"There is no page {name}"),
+                )
 
         do_HEAD = do_GET
 
         def handle(self) -> None:
-            """Handle requests of a connection. Browsers close connections at any time, which is not an error."""
+            """Handle requests of a connection.
+
+            Browsers close connections at any time, which is not an error.
+            """
             try:
                 super().handle()
             except ConnectionError:
@@ -96,10 +120,14 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
             with suppress(ConnectionError):
                 super().finish()
 
-        def _send(self, status: HTTPStatus, suffix: str, text: str, **headers: str) -> None:
+        def _send(
+            self, status: HTTPStatus, suffix: str, text: str, **headers: str
+        ) -> None:
             data = text.encode("utf-8")
             self.send_response(status)
-            self.send_header("Content-Type", f"{_TYPES.get(suffix, 'text/plain')}; charset=utf-8")
+            self.send_header(
+                "Content-Type", f"{_TYPES.get(suffix, 'text/plain')}; charset=utf-8"
+            )
             self.send_header("Content-Length", str(len(data)))
             # An ICD, and so every page, can change at any time.
             self.send_header("Cache-Control", "no-cache")
@@ -132,15 +160,25 @@ def serve(
     port: int,
     say: Callable[[str], None],
 ) -> None:
-    """Serve the site until Ctrl+C. ``say`` shows the address. Raises `UserError` if the port is in use."""
+    """Serve the site until Ctrl+C.
+
+    ``say`` shows the address. Raises `UserError` if the port is in use.
+    """
     source = Source(icds, previous, templates, packages)
     try:
         server = ThreadingHTTPServer((HOST, port), handler(source))
     except OSError as error:
-        raise UserError(f"cannot listen on port {port}: {error.strerror}", "choose another one with --port") from None
+        raise UserError(
+            f"cannot listen on port {port}: {error.strerror}",
+            "choose another one with --port",
+        ) from None
     with server:
         site = source.site()
-        state = f"{len(site.files)} files" if site.ok else "the ICDs have errors: see the pages"
+        state = (
+            f"{len(site.files)} files"
+            if site.ok
+            else "the ICDs have errors: see the pages"
+        )
         say(f"http://localhost:{server.server_port}/ ({state}); Ctrl+C ends it")
         try:
             server.serve_forever()

@@ -1,4 +1,6 @@
-"""First ICD of a project, for ``icdgen init``: a commented device that is ready to check, generate and simulate."""
+"""First ICD of a project, for ``icdgen init``: a commented device that is ready to
+check, generate and simulate.
+"""
 
 from __future__ import annotations
 
@@ -34,16 +36,27 @@ crate = "{package}"  # the name in `use {package}::{name}`
 """
 
 
-def write(folder: Path, name: str, style: Style | None = None, origin: str = "") -> list[Path]:
-    """Write ``icd/NAME.yaml``, its errata file and, if they do not exist, the schema and ``icdgen.toml``.
+def write(
+    folder: Path, name: str, style: Style | None = None, origin: str = ""
+) -> list[Path]:
+    """Write ``icd/NAME.yaml``, its errata file and, if they do not exist, the schema
+    and ``icdgen.toml``.
 
-    Returns the paths of the written files, relative to ``folder``. With a ``style``, the ICD has the style of the node
-    ``origin``. Raises `UserError`, before anything is written, if the name is invalid or a file of this name exists.
+    Returns the paths of the written files, relative to ``folder``. With a ``style``,
+    the ICD has the style of the node ``origin``. Raises `UserError`, before anything is
+    written, if the name is invalid or a file of this name exists.
     """
     if not _NAME.fullmatch(name):
-        proposal = re.sub(r"[^a-z0-9]+", "_", latin(name).lower()).strip("_").lstrip("0123456789_")[:64]
+        proposal = (
+            re.sub(r"[^a-z0-9]+", "_", latin(name).lower())
+            .strip("_")
+            .lstrip("0123456789_")[:64]
+        )
         help = f"for instance `icdgen init {proposal or 'battery'}`"
-        raise UserError(f"`{name}` cannot name a node: lower-case letters, digits and _, a letter first", help)
+        raise UserError(
+            f"`{name}` cannot name a node: lower-case letters, digits and _, a letter first",
+            help,
+        )
     device = _filled("device.yaml", name)
     if style is not None:
         from icdgen.starter.style import in_style
@@ -55,7 +68,10 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
     }
     for path in files:
         if os.path.lexists(path):
-            raise UserError(f"{path.relative_to(folder)} already exists", "take another name, or move the file away")
+            raise UserError(
+                f"{path.relative_to(folder)} already exists",
+                "take another name, or move the file away",
+            )
     if not os.path.lexists(folder / config.NAME):
         files[folder / config.NAME] = _CONFIG.format(name=name, package=_package(name))
     if not os.path.lexists(folder / "icd" / schema.COPY):
@@ -66,7 +82,9 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
 
 
 def _package(name: str) -> str:
-    """Return the name of the package: the name of the project, or with the suffix `_icd` if a language does not allow it."""
+    """Return the name of the package: the name of the project, or with the suffix
+    `_icd` if a language does not allow it.
+    """
     try:
         packages.of_project(config.Config(name=name))
     except UserError:
@@ -77,4 +95,6 @@ def _package(name: str) -> str:
 def _filled(template: str, name: str) -> str:
     """Return a template of `icdgen init` for a device."""
     text = (shipped.templates() / "init" / template).read_text(encoding="utf-8")
-    return text.replace("{{ name }}", name).replace("{{ title }}", name.replace("_", " ").capitalize())
+    return text.replace("{{ name }}", name).replace(
+        "{{ title }}", name.replace("_", " ").capitalize()
+    )

@@ -1,4 +1,6 @@
-"""Style of an existing node, for the first ICD of another device: its links, byte order and bit order."""
+"""Style of an existing node, for the first ICD of another device: its links, byte order
+and bit order.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +18,29 @@ from icdgen.icd.rules.protocol_names import MESSAGES
 
 # Protocol sections about links. The other sections are about files, logs and programs
 # of the node itself.
-_SECTIONS = ("message_id", "errors", "client", "identification", "uart", "i2c", "can", "crc8", "stream", "checksums")
+_SECTIONS = (
+    "message_id",
+    "errors",
+    "client",
+    "identification",
+    "uart",
+    "i2c",
+    "can",
+    "crc8",
+    "stream",
+    "checksums",
+)
 # Keys of these sections that name messages of the node, which are not copied.
 _KEYS_ABOUT_MESSAGES = {"stream": ("replies",)}
 # Keys about the manual of the node, and about messages that are not copied.
-_KEYS_ABOUT_THE_MANUAL = ("source", "assumptions", "listed", "group", "contains", "printed_constant")
+_KEYS_ABOUT_THE_MANUAL = (
+    "source",
+    "assumptions",
+    "listed",
+    "group",
+    "contains",
+    "printed_constant",
+)
 _DIRECTIONS = (TELECOMMAND, TELEMETRY)
 
 Tree = dict[str, Any]
@@ -47,21 +67,49 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
     sections: dict[str, Any] = {}
     for owner in scope:
         sections.update(owner.source.get("protocol") or {})
-    protocol = {key: spelled.plain(sections[key]) for key in _SECTIONS if key in sections}
+    protocol = {
+        key: spelled.plain(sections[key]) for key in _SECTIONS if key in sections
+    }
     if not protocol:
-        raise UserError(f"{node.name} does not say how its messages travel", "take the style of another node")
+        raise UserError(
+            f"{node.name} does not say how its messages travel",
+            "take the style of another node",
+        )
     for key, omitted in _KEYS_ABOUT_MESSAGES.items():
         if key in protocol:
-            protocol[key] = {name: value for name, value in protocol[key].items() if name not in omitted}
+            protocol[key] = {
+                name: value
+                for name, value in protocol[key].items()
+                if name not in omitted
+            }
     named = set(_strings(protocol, MESSAGES))
-    messages = [message.source for owner in scope for message in owner.messages if message.name in named]
+    messages = [
+        message.source
+        for owner in scope
+        for message in owner.messages
+        if message.name in named
+    ]
     fields = [field for message in messages for field in message.get("fields") or ()]
     used_units = {field.get("unit") for field in fields}
     used_enums = {field.get("enum") for field in fields} | set(_strings(protocol, None))
-    units = [unit for owner in scope for unit in owner.source.get("units") or () if unit["symbol"] in used_units]
-    enums = [enum.source for owner in scope for enum in owner.enums if enum.name in used_enums]
+    units = [
+        unit
+        for owner in scope
+        for unit in owner.source.get("units") or ()
+        if unit["symbol"] in used_units
+    ]
+    enums = [
+        enum.source
+        for owner in scope
+        for enum in owner.enums
+        if enum.name in used_enums
+    ]
     return Style(
-        {key: node.source["node"][key] for key in ("byte_order", "bit_order", "id_bits") if key in node.source["node"]},
+        {
+            key: node.source["node"][key]
+            for key in ("byte_order", "bit_order", "id_bits")
+            if key in node.source["node"]
+        },
         protocol,
         list(map(spelled.plain, units)),
         list(map(spelled.plain, enums)),
@@ -72,7 +120,8 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
 def in_style(text: str, style: Style, origin: str) -> str:
     """Return the ICD ``text`` with the style of the node ``origin``.
 
-    The style replaces the protocol section, and enumerations and messages of the same names. Comments are preserved.
+    The style replaces the protocol section, and enumerations and messages of the same
+    names. Comments are preserved.
     """
     root = read.read(text, source.parse(text.encode(), "the first ICD"))
     parts = {scalars.name(child.key): child for child in root.children}
@@ -81,7 +130,9 @@ def in_style(text: str, style: Style, origin: str) -> str:
             child.value = emit.node(style.node[scalars.name(child.key)])
     own_messages = [_name(child) for child in _children(parts["messages"])]
     node_keys = {scalars.name(child.key) for child in _children(parts["node"])}
-    added = emit.branch({key: value for key, value in style.node.items() if key not in node_keys})
+    added = emit.branch(
+        {key: value for key, value in style.node.items() if key not in node_keys}
+    )
     parts["node"].value.children += added.children  # type: ignore[union-attr]
     parts["protocol"].value = emit.branch(_seeded(style.protocol, own_messages))
     parts["protocol"].trailing = [f"# how messages travel, as {origin} has it"]
@@ -100,31 +151,51 @@ def in_style(text: str, style: Style, origin: str) -> str:
 
 
 def _seeded(protocol: Tree, messages: list[str]) -> Tree:
-    """Return the protocol section with checksum seeds of 0 for these messages instead of the seeds of other messages."""
+    """Return the protocol section with checksum seeds of 0 for these messages instead
+    of the seeds of other messages.
+    """
     checksums = {
-        name: {**checksum, "seeds": dict.fromkeys(messages, 0)} if "seeds" in checksum else checksum
+        name: (
+            {**checksum, "seeds": dict.fromkeys(messages, 0)}
+            if "seeds" in checksum
+            else checksum
+        )
         for name, checksum in protocol.get("checksums", {}).items()
     }
     return {**protocol, "checksums": checksums} if checksums else protocol
 
 
 def _renumber(messages: list[Child], style: Style) -> None:
-    """Replace ids that are out of range in the style, or that its messages have, by unused ids."""
+    """Replace ids that are out of range in the style, or that its messages have, by
+    unused ids.
+    """
     ranges = _ranges(style.protocol)
-    used = {(direction, message[key]) for message in style.messages for key, direction in KEYS_OF_IDS[message["kind"]]}
+    used = {
+        (direction, message[key])
+        for message in style.messages
+        for key, direction in KEYS_OF_IDS[message["kind"]]
+    }
     for message in messages:
         entries = {scalars.name(child.key): child for child in _children(message)}
         for key, direction in KEYS_OF_IDS[_value(entries["kind"])]:
             first, last = ranges[direction]
             candidates = (_value(entries[key]), *range(first, last + 1))
-            free = [id for id in candidates if first <= id <= last and (direction, id) not in used]
-            entries[key].value = Text(free[0], str(free[0])) if free else entries[key].value
+            free = [
+                id
+                for id in candidates
+                if first <= id <= last and (direction, id) not in used
+            ]
+            entries[key].value = (
+                Text(free[0], str(free[0])) if free else entries[key].value
+            )
             used.add((direction, _value(entries[key])))
 
 
 def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
     """Return the first and last id of each direction."""
-    section, rows = protocol.get("message_id") or {}, protocol.get("stream", {}).get("header", ())
+    section, rows = protocol.get("message_id") or {}, protocol.get("stream", {}).get(
+        "header", ()
+    )
     bits = min((row["bits"] for row in rows if row["role"] == "id"), default=8)
     # Ids of the first ICD are small numbers, also if the link could carry larger ones.
     most = (1 << min(bits, 8)) - 1
@@ -136,7 +207,9 @@ def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
 
 
 class _SpelledTrees:
-    """Converts trees of files to plain values that preserve the spelling of hexadecimal numbers, such as 0x1F."""
+    """Converts trees of files to plain values that preserve the spelling of hexadecimal
+    numbers, such as 0x1F.
+    """
 
     def __init__(self, texts: Mapping[str, str]) -> None:
         self.lines = {file: text.split("\n") for file, text in texts.items()}
@@ -145,7 +218,9 @@ class _SpelledTrees:
         """Return a tree without places, and without keys about the manual."""
         if isinstance(value, Map):
             return {
-                key: self._item(item, value.at(key)) for key, item in value.items() if key not in _KEYS_ABOUT_THE_MANUAL
+                key: self._item(item, value.at(key))
+                for key, item in value.items()
+                if key not in _KEYS_ABOUT_THE_MANUAL
             }
         if isinstance(value, Seq):
             return [self._item(item, place) for item, place in value.placed()]
@@ -156,16 +231,27 @@ class _SpelledTrees:
         if not isinstance(value, int) or isinstance(value, bool):
             return self.plain(value)
         lines = self.lines.get(place.file, [])
-        spelling = lines[place.line - 1][place.column - 1 :][: place.length] if place.line <= len(lines) else ""
+        spelling = (
+            lines[place.line - 1][place.column - 1 :][: place.length]
+            if place.line <= len(lines)
+            else ""
+        )
         return emit.Spelled(spelling) if spelling.lower().startswith("0x") else value
 
 
 def _strings(value: Any, keys: tuple[str, ...] | None) -> Iterator[str]:
-    """Yield the texts of these keys at any depth; without ``keys`` the texts of all keys."""
+    """Yield the texts of these keys at any depth.
+
+    Without ``keys`` the texts of all keys.
+    """
     if isinstance(value, dict):
         for key, item in value.items():
             if keys is None or key in keys:
-                yield from (text for text in (item if isinstance(item, list) else [item]) if isinstance(text, str))
+                yield from (
+                    text
+                    for text in (item if isinstance(item, list) else [item])
+                    if isinstance(text, str)
+                )
             yield from _strings(item, keys)
     elif isinstance(value, list):
         for item in value:
@@ -185,4 +271,11 @@ def _value(child: Child) -> Any:
 
 def _name(child: Child) -> str:
     """Return the value of the key `name` of a mapping; empty without the key."""
-    return next((_value(entry) for entry in _children(child) if scalars.name(entry.key) == "name"), "")
+    return next(
+        (
+            _value(entry)
+            for entry in _children(child)
+            if scalars.name(entry.key) == "name"
+        ),
+        "",
+    )

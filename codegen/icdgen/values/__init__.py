@@ -1,1 +1,3 @@
-"""Decoding and encoding single messages with the reference codec: ``icdgen decode`` and ``icdgen encode``."""
+"""Decoding and encoding single messages with the reference codec: ``icdgen decode`` and
+``icdgen encode``.
+"""

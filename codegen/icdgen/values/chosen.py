@@ -11,16 +11,29 @@ from icdgen.values import numbers
 
 
 def values_of(facts: Facts, chosen: Sequence[str]) -> dict[str, int]:
-    """Return the values of fields of the framing by role, from texts ``ROLE=NUMBER``. Raises `icdgen.errors.UserError`."""
-    fields = {field.role: field for field in facts.stream.fields if field.role in GIVEN} if facts.stream else {}
+    """Return the values of fields of the framing by role, from texts ``ROLE=NUMBER``.
+
+    Raises `icdgen.errors.UserError`.
+    """
+    fields = (
+        {field.role: field for field in facts.stream.fields if field.role in GIVEN}
+        if facts.stream
+        else {}
+    )
     values = {}
     for text in chosen:
         role, _, number = text.partition("=")
         value, field = numbers.integer(number.strip()), fields.get(role.strip())
         if field is None:
             has = f"it has {', '.join(fields)}" if fields else "it has none to choose"
-            raise UserError(f"`{text}`: the envelope of {facts.node.name} has no field `{role.strip()}`", has)
+            raise UserError(
+                f"`{text}`: the envelope of {facts.node.name} has no field `{role.strip()}`",
+                has,
+            )
         if value is None or not 0 <= value <= field.mask:
-            raise UserError(f"`{text}` does not fit", f"{role.strip()}=NUMBER, from 0 to {field.mask}")
+            raise UserError(
+                f"`{text}` does not fit",
+                f"{role.strip()}=NUMBER, from 0 to {field.mask}",
+            )
         values[field.role] = value
     return values

@@ -19,10 +19,15 @@ _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "
 
 
 def members(field: AnyScalar) -> str:
-    """Return the members of the enumeration of a field, for the end of a message; empty without an enumeration."""
+    """Return the members of the enumeration of a field, for the end of a message.
+
+    Returns empty without an enumeration.
+    """
     if not field.enum:
         return ""
-    return "; members: " + ", ".join(f"{member.values} {member.name}" for member in field.enum.members)
+    return "; members: " + ", ".join(
+        f"{member.values} {member.name}" for member in field.enum.members
+    )
 
 
 def out_of_range(field: AnyScalar, text: str) -> str:
@@ -31,7 +36,9 @@ def out_of_range(field: AnyScalar, text: str) -> str:
 
 
 def raw_value(field: FrameField, text: str) -> int | bytes:
-    """Return the raw value that a text gives directly; the bits of a float are ``0x...``.
+    """Return the raw value that a text gives directly.
+
+    The bits of a float are ``0x...``.
 
     Raises `BadValue`. Does not check the range.
     """
@@ -51,13 +58,18 @@ def raw_value(field: FrameField, text: str) -> int | bytes:
 
 
 def from_physical(field: FrameField, text: str) -> int | bytes:
-    """Return the raw value that is nearest to a physical value. Raises `BadValue`. Does not check the range."""
+    """Return the raw value that is nearest to a physical value.
+
+    Raises `BadValue`. Does not check the range.
+    """
     _settable(field)
     return _READERS.get(field.type, _integer)(field, text)
 
 
 def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
-    """Return the raw value of a physical value, or of a raw value with ``raw``. Raises `BadValue`.
+    """Return the raw value of a physical value, or of a raw value with ``raw``.
+
+    Raises `BadValue`.
 
     Bytes and text of variable length are not padded.
     """
@@ -65,34 +77,52 @@ def typed(field: FrameField, text: str, raw: bool = False) -> int | bytes:
     if has_variable_length and (raw or field.type == "bytes"):
         return _bytes(field, text)
     value = (raw_value if raw else from_physical)(field, text)
-    return value[: len(text)] if has_variable_length and isinstance(value, bytes) else value
+    return (
+        value[: len(text)]
+        if has_variable_length and isinstance(value, bytes)
+        else value
+    )
 
 
 def _settable(field: FrameField) -> None:
     """Raise `BadValue` for a derived value or an overlay field, which cannot be set."""
     if field.derived is not None:
         of = ", ".join(f"`{name}`" for name in field.derived.fields)
-        raise BadValue(f"it is derived from {of or 'numbers'}", "set the fields that it is derived from")
+        raise BadValue(
+            f"it is derived from {of or 'numbers'}",
+            "set the fields that it is derived from",
+        )
     if field.role == "overlay":
-        raise BadValue("an overlay field has no bits of its own", "set the fields that have them")
+        raise BadValue(
+            "an overlay field has no bits of its own", "set the fields that have them"
+        )
 
 
 def _bool(field: FrameField, text: str) -> int:
     """Return the raw value of a flag."""
     if text.lower() not in _TRUTH:
-        raise BadValue(f"`{text}` is neither true nor false (nor yes, no, on, off, 1, 0)")
+        raise BadValue(
+            f"`{text}` is neither true nor false (nor yes, no, on, off, 1, 0)"
+        )
     return _TRUTH[text.lower()]
 
 
 def _bytes(field: FrameField, text: str) -> bytes:
-    """Return bytes of hexadecimal text; a field of variable length can have fewer than the most."""
+    """Return bytes of hexadecimal text.
+
+    Returns a field of variable length can have fewer than the most.
+    """
     try:
         value = parse_hex(text)
     except BadHex as error:
         raise BadValue(str(error)) from None
     room, has_variable_length = field.bits // 8, field.scalar.length is not None
     if len(value) > room or (len(value) < room and not has_variable_length):
-        wanted = f"up to {room} bytes are taken" if has_variable_length else f"{room} bytes are needed"
+        wanted = (
+            f"up to {room} bytes are taken"
+            if has_variable_length
+            else f"{room} bytes are needed"
+        )
         raise BadValue(f"{wanted}, {len(value)} given")
     return value
 
@@ -102,13 +132,22 @@ def _text(field: FrameField, text: str) -> bytes:
     try:
         return codec.raw_from_text(field, text)
     except codec.CodecError:
-        raise BadValue(f"`{text}` is not of up to {field.bits // 8} ASCII characters") from None
+        raise BadValue(
+            f"`{text}` is not of up to {field.bits // 8} ASCII characters"
+        ) from None
 
 
 def _special(field: FrameField, text: str) -> int | None:
     """Return the special value with this meaning (in any case) or None."""
     meaning = text.casefold()
-    return next((special.value for special in field.special if special.meaning.casefold() == meaning), None)
+    return next(
+        (
+            special.value
+            for special in field.special
+            if special.meaning.casefold() == meaning
+        ),
+        None,
+    )
 
 
 def _float(field: FrameField, text: str, raw: bool = False) -> int:
@@ -119,7 +158,9 @@ def _float(field: FrameField, text: str, raw: bool = False) -> int:
         value = numbers.integer(text)
         if raw and value is not None:
             return value
-        raise BadValue(f"`{text}` is not a number; the bits of a float can be given with --raw")
+        raise BadValue(
+            f"`{text}` is not a number; the bits of a float can be given with --raw"
+        )
     if not raw and (special := _special(field, text)) is not None:
         return special
     if field.curve is not None and not raw:
@@ -129,9 +170,13 @@ def _float(field: FrameField, text: str, raw: bool = False) -> int:
     except OverflowError:
         # If the limits exclude the value, too, they explain more than the width of the
         # float.
-        if not raw and not all(bound.holds(_exact(field, text)) for bound in bounds(field.limits)):
+        if not raw and not all(
+            bound.holds(_exact(field, text)) for bound in bounds(field.limits)
+        ):
             raise BadValue(out_of_range(field, text)) from None
-        raise BadValue(f"{text} is beyond what a {field.bits}-bit float can represent") from None
+        raise BadValue(
+            f"{text} is beyond what a {field.bits}-bit float can represent"
+        ) from None
     if value is None:
         raise BadValue(f"`{text}` is not a number")
     return value
@@ -143,7 +188,10 @@ def _integer(field: FrameField, text: str) -> int:
         return special
     if field.curve is not None:
         return _on_curve(field, text)
-    if field.scale is None and (value := numbers.integer(without_unit(field, text))) is not None:
+    if (
+        field.scale is None
+        and (value := numbers.integer(without_unit(field, text))) is not None
+    ):
         return value
     exact = _exact(field, text)
     if field.scale:
@@ -169,7 +217,10 @@ def _exact(field: FrameField, text: str) -> Fraction:
     """Return the exact number of a text, with or without the unit of the field."""
     exact = numbers.rational(without_unit(field, text))
     if exact is None:
-        raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
+        raise BadValue(
+            f"`{text}` is not a number"
+            + (f" (in {field.unit.symbol})" if field.unit else "")
+        )
     return exact
 
 
@@ -185,15 +236,27 @@ def without_unit(field: AnyScalar, text: str) -> str:
 
 def _enum(field: FrameField, text: str) -> int:
     """Return the raw value of an enumeration field."""
-    return _integer(field, text) if field.enum is None else _member(field, field.enum, text)
+    return (
+        _integer(field, text)
+        if field.enum is None
+        else _member(field, field.enum, text)
+    )
 
 
 def _member(field: FrameField, enum: Enum, text: str) -> int:
-    """Return the value of a member, by name, by words that only one member has, or by number."""
+    """Return the value of a member, by name, by words that only one member has, or by
+    number.
+    """
     number = numbers.integer(text)
-    matches = {member.values: member.value for member in by_name(enum.members, text, ())}
+    matches = {
+        member.values: member.value for member in by_name(enum.members, text, ())
+    }
     if not matches and number is None:
-        matches = {member.values: member.value for member in enum.members if _has_words(member, text)}
+        matches = {
+            member.values: member.value
+            for member in enum.members
+            if _has_words(member, text)
+        }
     if number is not None:
         matches[str(number)] = number
     if len(matches) == 1:

@@ -14,13 +14,21 @@ class Ambiguous(UserError):
 
 
 class BadHex(UserError):
-    """A text is not bytes in hexadecimal. The text of the error has the place of the first wrong character."""
+    """A text is not bytes in hexadecimal.
+
+    The text of the error has the place of the first wrong character.
+    """
 
 
 class BadLength(UserError):
-    """A frame does not have the length of its message. ``expected`` and ``actual`` are in bytes."""
+    """A frame does not have the length of its message.
 
-    def __init__(self, message: str, expected: int, actual: int, help: str = "") -> None:
+    ``expected`` and ``actual`` are in bytes.
+    """
+
+    def __init__(
+        self, message: str, expected: int, actual: int, help: str = ""
+    ) -> None:
         super().__init__(message, help)
         self.expected, self.actual = expected, actual
 

@@ -39,7 +39,10 @@ class _HasName(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ArrayOfFields:
-    """An array of scalars in a frame. If a struct contains the array, each element of the struct has one."""
+    """An array of scalars in a frame.
+
+    If a struct contains the array, each element of the struct has one.
+    """
 
     steps: tuple[PathStep, ...]  # path from the layout of the message to the array
     elements: list[FrameField]
@@ -51,7 +54,10 @@ class ArrayOfFields:
 
     @property
     def alias(self) -> str | None:
-        """Return the name with identifiers instead of names; None if no node on the path has an identifier."""
+        """Return the name with identifiers instead of names.
+
+        Returns None if no node on the path has an identifier.
+        """
         return alias_of_steps(self.steps)
 
 
@@ -64,7 +70,10 @@ def find_node(icd: Icd, name: str) -> Node:
         if node.name == name.strip().lower():
             return node
     names = [node.name for node in icd.nodes]
-    raise NotFound(f"there is no node `{name}`", question(close_words(name, names)) or f"nodes: {', '.join(names)}")
+    raise NotFound(
+        f"there is no node `{name}`",
+        question(close_words(name, names)) or f"nodes: {', '.join(names)}",
+    )
 
 
 def is_part(icd: Icd, node: Node) -> bool:
@@ -79,7 +88,9 @@ def only_node(icd: Icd) -> Node | None:
 
 
 def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
-    """Return the node that the first word names, and the other words. If there is only one node, its name is optional.
+    """Return the node that the first word names, and the other words.
+
+    If there is only one node, its name is optional.
 
     Raises `NotFound`.
     """
@@ -95,40 +106,71 @@ def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
 
 
 def find_frame(icd: Icd, words: Sequence[str]) -> tuple[Node, str, list[str]]:
-    """Return node, message and assignments of the words ``[NODE] MESSAGE [FIELD=VALUE]...``. Raises `NotFound`."""
+    """Return node, message and assignments of the words ``[NODE] MESSAGE
+    [FIELD=VALUE]...``.
+
+    Raises `NotFound`.
+    """
     node, other_words = find_named(icd, words)
     if not other_words:
-        raise NotFound(f"no message of {node.name} is named", f"`icdgen show {node.name}` lists what there is")
+        raise NotFound(
+            f"no message of {node.name} is named",
+            f"`icdgen show {node.name}` lists what there is",
+        )
     return node, other_words[0], other_words[1:]
 
 
-def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) -> Message:
-    """Return the message of a node, or of its included nodes, by name (in any case), identifier, alias or id.
+def find_message(
+    icd: Icd, node_name: str, key: str, kind: str | None = None
+) -> Message:
+    """Return the message of a node, or of its included nodes, by name (in any case),
+    identifier, alias or id.
 
-    Ids are written as ``146``, ``0x92`` or ``01 35``. ``kind`` restricts the search; "telecommand" and "telemetry" include
-    the configuration messages that can be sent or requested. Raises `NotFound` or `Ambiguous`, with suggestions.
+    Ids are written as ``146``, ``0x92`` or ``01 35``. ``kind`` restricts the search;
+    "telecommand" and "telemetry" include the configuration messages that can be sent or
+    requested. Raises `NotFound` or `Ambiguous`, with suggestions.
     """
     node = find_node(icd, node_name)
-    messages = [message for message in icd.messages_of(node) if kind is None or is_of_kind(message, kind)]
+    messages = [
+        message
+        for message in icd.messages_of(node)
+        if kind is None or is_of_kind(message, kind)
+    ]
     # Names come first: a message can be called like an id of another one.
     matches = by_name(messages, key, node.vocabulary) or _by_id(messages, key, kind)
     if len(matches) == 1:
         return matches[0]
     if matches:
         form = facts.of(icd, node).stream
-        listed = ", ".join(f"`{message.name}` ({describe(message, form)})" for message in matches)
-        raise Ambiguous(f"`{key}` fits several messages of {node.name}: {listed}", "give the full name, or the kind")
-    raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key, kind))
+        listed = ", ".join(
+            f"`{message.name}` ({describe(message, form)})" for message in matches
+        )
+        raise Ambiguous(
+            f"`{key}` fits several messages of {node.name}: {listed}",
+            "give the full name, or the kind",
+        )
+    raise NotFound(
+        f"{node.name} has no {kind or 'message'} `{key}`",
+        _message_help(icd, node, messages, key, kind),
+    )
 
 
-def find_sharing(icd: Icd, node_name: str, key: str, kind: str | None = None) -> list[Message]:
-    """Return the messages of one direction that share the id ``key``; an empty list if fewer than two have it.
+def find_sharing(
+    icd: Icd, node_name: str, key: str, kind: str | None = None
+) -> list[Message]:
+    """Return the messages of one direction that share the id ``key``.
+
+    Returns an empty list if fewer than two have it.
 
     Raises `NotFound`.
     """
     messages = icd.messages_of(find_node(icd, node_name))
     for direction in (TELECOMMAND, TELEMETRY):
-        sharing = _by_id([message for message in messages if is_of_kind(message, direction)], key, direction)
+        sharing = _by_id(
+            [message for message in messages if is_of_kind(message, direction)],
+            key,
+            direction,
+        )
         if len(sharing) > 1 and kind in (None, direction):
             return sharing
     return []
@@ -146,24 +188,36 @@ def _by_id(messages: Sequence[Message], key: str, kind: str | None) -> list[Mess
 
 
 def find_field(
-    message: Message, fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()
+    message: Message,
+    fields: Sequence[FrameField],
+    key: str,
+    vocabulary: tuple[str, ...] = (),
 ) -> FrameField:
-    """Return the field by name (in any case), identifier, alias, or words that only it has: ``x`` for Commanded X speed.
+    """Return the field by name (in any case), identifier, alias, or words that only it
+    has: ``x`` for Commanded X speed.
 
-    `fields` are all scalars of the longest frame of the message. Raises `NotFound` or `Ambiguous`, with suggestions.
+    `fields` are all scalars of the longest frame of the message. Raises `NotFound` or
+    `Ambiguous`, with suggestions.
     """
     matches = by_name(fields, key, vocabulary) or _by_words(fields, key, vocabulary)
     if len(matches) == 1:
         return matches[0]
     if matches:
         listed = ", ".join(f"`{field.name}`" for field in matches)
-        raise Ambiguous(f"`{key}` fits several fields: {listed}", "give more of the name")
+        raise Ambiguous(
+            f"`{key}` fits several fields: {listed}", "give more of the name"
+        )
     help = _suggest_named(key, fields) or _list_fields(fields)
     raise NotFound(f"{message.name} has no field `{key}`", help)
 
 
-def find_array(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()) -> list[FrameField]:
-    """Return the elements of the array with this name (in any case) or identifier; an empty list without a match."""
+def find_array(
+    fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()
+) -> list[FrameField]:
+    """Return the elements of the array with this name (in any case) or identifier.
+
+    Returns an empty list without a match.
+    """
     arrays: list[ArrayOfFields] = []
     # The elements of an array are contiguous in `fields`, and the first has index 0.
     for field in fields:
@@ -176,10 +230,14 @@ def find_array(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ..
     return matches[0].elements if len(matches) == 1 else []
 
 
-def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
-    """Return the items that a name matches, by the first of these comparisons that has a match.
+def by_name(
+    items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]
+) -> list[_Named]:
+    """Return the items that a name matches, by the first of these comparisons that has
+    a match.
 
-    The comparisons are: the exact name; the name in any case; the same words in any spelling; an alias of the same words.
+    The comparisons are: the exact name; the name in any case; the same words in any
+    spelling; an alias of the same words.
     """
     wanted = _joined(key, vocabulary)
     steps: list[Callable[[_Named], bool]] = [
@@ -187,7 +245,11 @@ def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> l
         lambda item: item.name.casefold() == key.strip().casefold(),
         *(
             lambda item, names=names: wanted
-            in (_joined(name, vocabulary) for name in names(item) if _has_indices_of(key, name))
+            in (
+                _joined(name, vocabulary)
+                for name in names(item)
+                if _has_indices_of(key, name)
+            )
             for names in (_names, _aliases)
             if wanted
         ),
@@ -200,7 +262,9 @@ def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> l
 
 
 def is_of_kind(message: Message, kind: str) -> bool:
-    """Return whether a message is of a kind, or is a configuration message that can be sent or requested as that kind."""
+    """Return whether a message is of a kind, or is a configuration message that can be
+    sent or requested as that kind.
+    """
     if kind == TELECOMMAND:
         return message.telecommand_id is not None
     if kind == TELEMETRY:
@@ -209,25 +273,33 @@ def is_of_kind(message: Message, kind: str) -> bool:
 
 
 def describe(message: Message, form: Stream | None = None) -> str:
-    """Return kind and ids: ``telemetry 146``, ``configuration 120/247``, or ``telemetry 01 35`` if ``form`` has id bytes."""
+    """Return kind and ids: ``telemetry 146``, ``configuration 120/247``, or ``telemetry
+    01 35`` if ``form`` has id bytes.
+    """
     return f"{message.kind} {'/'.join(id_text(form, id) for id in message.ids)}"
 
 
 def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
     """Return the ids of a message in the direction of a kind."""
-    return {TELECOMMAND: (message.telecommand_id,), TELEMETRY: (message.telemetry_id,)}.get(kind or "", message.ids)
+    return {
+        TELECOMMAND: (message.telecommand_id,),
+        TELEMETRY: (message.telemetry_id,),
+    }.get(kind or "", message.ids)
 
 
 def _names(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
     """Return the name and the identifier of an item."""
-    identifier = item.alias if isinstance(item, FrameField | ArrayOfFields) else item.identifier
+    identifier = (
+        item.alias if isinstance(item, FrameField | ArrayOfFields) else item.identifier
+    )
     return filter(None, (item.name, identifier))
 
 
 def _aliases(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
     """Return the aliases of an item.
 
-    A field of a struct has aliases with its path, and also without the path if the path contains no array.
+    A field of a struct has aliases with its path, and also without the path if the path
+    contains no array.
     """
     if not isinstance(item, FrameField | ArrayOfFields):
         return item.aliases
@@ -235,45 +307,76 @@ def _aliases(item: _HasName | FrameField | ArrayOfFields) -> Iterable[str]:
     without_path = [last.text(alias) for alias in last.node.aliases]
     path = name_of_steps(before)
     with_path = [f"{path}.{alias}" for alias in without_path] if before else []
-    return with_path if any(step.element is not None for step in before) else [*with_path, *without_path]
+    return (
+        with_path
+        if any(step.element is not None for step in before)
+        else [*with_path, *without_path]
+    )
 
 
 def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
-    """Return the words of a text without separators, for a comparison that ignores the spelling."""
+    """Return the words of a text without separators, for a comparison that ignores the
+    spelling.
+    """
     return "".join(naming.words(text, vocabulary))
 
 
 def _has_indices_of(key: str, name: str) -> bool:
-    """Return whether a key has no indices or those in a name: ``gain[-1]`` has the words, but not the index, of ``Gain[1]``."""
+    """Return whether a key has no indices or those in a name: ``gain[-1]`` has the
+    words, but not the index, of ``Gain[1]``.
+    """
     indices = _INDEX.findall(key)
     return not indices or indices == _INDEX.findall(name)
 
 
-def _by_words(fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...]) -> list[FrameField]:
-    """Return the fields with all words of a key, or else the fields whose words begin with them."""
+def _by_words(
+    fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...]
+) -> list[FrameField]:
+    """Return the fields with all words of a key, or else the fields whose words begin
+    with them.
+    """
     wanted = set(naming.words(key, vocabulary))
     if not wanted:
         return []
     candidates: list[tuple[FrameField, set[str]]] = []
     for field in fields:
         if _has_indices_of(key, field.name):
-            candidates.append((field, {word for name in _names(field) for word in naming.words(name, vocabulary)}))
+            candidates.append(
+                (
+                    field,
+                    {
+                        word
+                        for name in _names(field)
+                        for word in naming.words(name, vocabulary)
+                    },
+                )
+            )
     matches = [field for field, words in candidates if wanted <= words]
     if matches:
         return matches
     return [
-        field for field, words in candidates if all(any(word.startswith(prefix) for word in words) for prefix in wanted)
+        field
+        for field, words in candidates
+        if all(any(word.startswith(prefix) for word in words) for prefix in wanted)
     ]
 
 
-def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, kind: str | None) -> str:
-    """Return the help for an unknown message: its real kind, another node, or a similar name."""
+def _message_help(
+    icd: Icd, node: Node, messages: Sequence[Message], key: str, kind: str | None
+) -> str:
+    """Return the help for an unknown message: its real kind, another node, or a similar
+    name.
+    """
     # Without the kind there may be a match.
     if kind is not None:
         with suppress(NotFound, Ambiguous):
             other = find_message(icd, node.name, key)
             return f"`{other.name}` is {describe(other, facts.of(icd, node).stream)}"
-    owners = [other for other in icd.nodes if other is not node and by_name(other.messages, key, other.vocabulary)]
+    owners = [
+        other
+        for other in icd.nodes
+        if other is not node and by_name(other.messages, key, other.vocabulary)
+    ]
     if owners:
         return f"it is a message of {' and '.join(owner.name for owner in owners)}"
     close = _suggest_named(key, messages)
@@ -281,7 +384,9 @@ def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, k
 
 
 def _list_fields(fields: Sequence[FrameField]) -> str:
-    """Return the help that lists the fields of a message, or their number if there are many."""
+    """Return the help that lists the fields of a message, or their number if there are
+    many.
+    """
     names = [field.name for field in fields]
     if len(names) > MOST_LISTED:
         return f"it has {len(names)} fields; `icdgen show` lists them"
@@ -289,6 +394,11 @@ def _list_fields(fields: Sequence[FrameField]) -> str:
 
 
 def _suggest_named(key: str, items: Sequence[_HasName] | Sequence[FrameField]) -> str:
-    """Return a question with similar names; an item with a similar alias is listed by its name."""
-    names = {alias: item.name for item in items for alias in _aliases(item)} | {item.name: item.name for item in items}
+    """Return a question with similar names.
+
+    An item with a similar alias is listed by its name.
+    """
+    names = {alias: item.name for item in items for alias in _aliases(item)} | {
+        item.name: item.name for item in items
+    }
     return question(dict.fromkeys(names[text] for text in close_words(key, names)))

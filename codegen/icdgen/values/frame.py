@@ -1,4 +1,7 @@
-"""Decoded frame: a message with its bytes and the value of each field. Decoding and encoding return it."""
+"""Decoded frame: a message with its bytes and the value of each field.
+
+Decoding and encoding return it.
+"""
 
 from __future__ import annotations
 
@@ -31,11 +34,18 @@ class Row:
     @property
     def physical(self) -> Fraction | None:
         """Exact physical value of a field with a scale; None for any other field."""
-        return None if isinstance(self.raw, bytes) else codec.physical(self.field, self.raw)
+        return (
+            None
+            if isinstance(self.raw, bytes)
+            else codec.physical(self.field, self.raw)
+        )
 
     @property
     def number(self) -> float | None:
-        """Physical value as the nearest double, or the number of a float field; None for any other field."""
+        """Physical value as the nearest double, or the number of a float field.
+
+        None for any other field.
+        """
         if isinstance(self.raw, bytes):
             return None
         if self.field.type == "float" and self.field.curve is None:
@@ -50,7 +60,9 @@ class Row:
 
     @property
     def raw_text(self) -> str:
-        """Raw value as text: a number in its display format, floats and bytes in hexadecimal; empty for derived values."""
+        """Raw value as text: a number in its display format, floats and bytes in
+        hexadecimal; empty for derived values.
+        """
         if self.field.derived is not None:
             return ""
         if isinstance(self.raw, bytes):
@@ -66,7 +78,9 @@ class Row:
         if isinstance(self.raw, bytes):
             return codec.text(self.raw) if kind == "text" else self.raw_text
         if kind == "enum":
-            return self.member if self.member is not None else f"unknown {self.raw_text}"
+            return (
+                self.member if self.member is not None else f"unknown {self.raw_text}"
+            )
         if kind == "bool":
             return "true" if self.raw else "false"
         # Without a display format, a float is shown as the shortest decimal that
@@ -75,12 +89,18 @@ class Row:
         if self.number is not None and (self.field.curve is not None or is_rounded):
             return number_text(self.field, self.number)
         if kind == "float":
-            return floats.text_of(codec.float_value(self.field, self.raw), self.field.bits)
+            return floats.text_of(
+                codec.float_value(self.field, self.raw), self.field.bits
+            )
         physical = self.physical
         return self.raw_text if physical is None else number_text(self.field, physical)
 
     def to_json(self) -> dict[str, object]:
-        """Return the field as values for JSON: ``{"name", "type", "raw", "value", ...}``. ``value`` is the one to display."""
+        """Return the field as values for JSON: ``{"name", "type", "raw", "value",
+        ...}``.
+
+        ``value`` is the one to display.
+        """
         kind = self.field.type
         raw: object = self.raw
         value: object
@@ -99,7 +119,12 @@ class Row:
             value = self.member
         else:
             value = self.raw if self.number is None else self.number
-        result: dict[str, object] = {"name": self.field.name, "type": kind, "raw": raw, "value": value}
+        result: dict[str, object] = {
+            "name": self.field.name,
+            "type": kind,
+            "raw": raw,
+            "value": value,
+        }
         if self.physical is not None:
             result |= {"physical": self.number, "exact": str(self.physical)}
         elif kind == "float" or self.field.curve is not None:
@@ -130,16 +155,25 @@ class Frame:
     @property
     def wrong_constants(self) -> list[Row]:
         """Constant fields with another value than their constant."""
-        return [row for row in self.rows if row.field.const is not None and row.raw != row.field.const]
+        return [
+            row
+            for row in self.rows
+            if row.field.const is not None and row.raw != row.field.const
+        ]
 
     def to_json(self) -> dict[str, object]:
         """Return the frame as values for JSON.
 
-        The keys are ``node``, ``message``, ``kind``, ``id`` (or ``set_id`` and ``get_id``), ``length``, ``bytes`` and
-        ``fields``, and ``remarks`` if there are any.
+        The keys are ``node``, ``message``, ``kind``, ``id`` (or ``set_id`` and
+        ``get_id``), ``length``, ``bytes`` and ``fields``, and ``remarks`` if there are
+        any.
         """
         message = self.message
-        ids = {key: getattr(message, key) for key in ("id", "set_id", "get_id") if getattr(message, key) is not None}
+        ids = {
+            key: getattr(message, key)
+            for key in ("id", "set_id", "get_id")
+            if getattr(message, key) is not None
+        }
         result = {
             "node": self.node.name,
             "message": message.name,
@@ -147,12 +181,24 @@ class Frame:
             **ids,
             "length": len(self.data),
         }
-        result |= {"bytes": self.data.hex(), "fields": [row.to_json() for row in self.rows]}
+        result |= {
+            "bytes": self.data.hex(),
+            "fields": [row.to_json() for row in self.rows],
+        }
         return result | ({"remarks": list(self.remarks)} if self.remarks else {})
 
 
-def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, str] | None = None) -> Frame:
-    """Decode ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
+def frame(
+    icd: Icd,
+    node: Node,
+    message: Message,
+    data: bytes,
+    notes: dict[str, str] | None = None,
+) -> Frame:
+    """Decode ``data``.
+
+    ``notes`` are further remarks by field name. Raises `codec.LengthError`.
+    """
     owner = icd.node(message.node)  # with the default orders of the message
     values = codec.decode_frame(owner, message, data)
     rows = []
@@ -162,13 +208,19 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
             continue
         raw = values[field.name]
         extra = (notes or {}).get(field.name)
-        rows.append(Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ()))))
+        rows.append(
+            Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ())))
+        )
     form = facts.of(icd, node).stream
-    return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)), form)
+    return Frame(
+        node, message, data, tuple(rows), tuple(_reserved(owner, message, data)), form
+    )
 
 
 def remarks(field: AnyScalar, raw: int | bytes) -> list[str]:
-    """Return the remarks about a value: its special meaning, or why the ICD does not allow it."""
+    """Return the remarks about a value: its special meaning, or why the ICD does not
+    allow it.
+    """
     if isinstance(raw, bytes):
         return []
     # A special value is allowed even if it is outside of the limits.
@@ -182,7 +234,9 @@ def violations(field: AnyScalar, raw: int) -> list[str]:
 
 
 def unlisted(field: AnyScalar, raw: int) -> list[str]:
-    """Return why a raw value differs from the constant, or from all members of the enumeration, of a field."""
+    """Return why a raw value differs from the constant, or from all members of the
+    enumeration, of a field.
+    """
     reasons = []
     if field.const is not None and raw != field.const:
         reasons.append(f"must be {value_text(field.const)}")
@@ -213,6 +267,10 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     reasons = []
     for gap in layout.gaps(message, node):
         pieces = pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
-        if any(data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)):
-            reasons.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
+        if any(
+            data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)
+        ):
+            reasons.append(
+                f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0"
+            )
     return reasons

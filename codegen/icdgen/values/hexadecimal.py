@@ -17,9 +17,11 @@ HELP = "bytes are two digits each, for instance `2efb 0a00`, `0x2e, 0xfb` or `2E
 
 
 def parse_hex(text: str) -> bytes:
-    r"""Return the bytes of ``2efb 0a00``, ``0x2e,0xfb``, ``2E:FB``, ``{0x2e, 0xfb}`` or ``\x2e\xfb``, on one or more lines.
+    r"""Return the bytes of ``2efb 0a00``, ``0x2e,0xfb``, ``2E:FB``, ``{0x2e, 0xfb}`` or
+    ``\x2e\xfb``, on one or more lines.
 
-    After a prefix, a single digit is also a byte (``0x5``). Raises `BadHex` with the place of the first error.
+    After a prefix, a single digit is also a byte (``0x5``). Raises `BadHex` with the
+    place of the first error.
     """
     quoted = _QUOTED.fullmatch(text)
     at, end = quoted.span("inside") if quoted else (0, len(text))
@@ -28,7 +30,9 @@ def parse_hex(text: str) -> bytes:
     while at < end:
         token = _TOKEN.match(text, at, end)
         if token is None:
-            raise BadHex(f"{_place(text, at)}: {_show(text[at])} is not hexadecimal", HELP)
+            raise BadHex(
+                f"{_place(text, at)}: {_show(text[at])} is not hexadecimal", HELP
+            )
         digits = token["digits"]
         if prefixed == at and digits is None:
             raise BadHex(f"{_place(text, at)}: digits must follow the prefix", HELP)
@@ -39,9 +43,15 @@ def parse_hex(text: str) -> bytes:
             # as in `2ex`.
             after = text[token.end() : min(token.end() + 1, end)]
             if after.isalnum():
-                raise BadHex(f"{_place(text, token.end())}: {_show(after)} is not hexadecimal", HELP)
+                raise BadHex(
+                    f"{_place(text, token.end())}: {_show(after)} is not hexadecimal",
+                    HELP,
+                )
             if len(digits) % 2:
-                raise BadHex(f"{_place(text, at)}: `{digits[:20]}` is an odd number of digits", HELP)
+                raise BadHex(
+                    f"{_place(text, at)}: `{digits[:20]}` is an odd number of digits",
+                    HELP,
+                )
             result += bytes.fromhex(digits)
         elif token["prefix"]:
             prefixed = token.end()

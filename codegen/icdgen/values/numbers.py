@@ -18,7 +18,10 @@ _SPECIAL = {"nan": "nan", "inf": "inf", "infinity": "inf"}
 
 
 def integer(text: str) -> int | None:
-    """Return the integer that a text states: ``12``, ``-3``, ``0x5A``, ``0b101``; None for any other text."""
+    """Return the integer that a text states: ``12``, ``-3``, ``0x5A``, ``0b101``.
+
+    Returns None for any other text.
+    """
     if len(text) > LONGEST:
         return None
     if match := _HEX.fullmatch(text):
@@ -29,14 +32,20 @@ def integer(text: str) -> int | None:
 
 
 def rational(text: str) -> Fraction | None:
-    """Return the exact value of ``12``, ``-0.5``, ``1e-3`` or ``1/3``; None for any other text."""
+    """Return the exact value of ``12``, ``-0.5``, ``1e-3`` or ``1/3``.
+
+    Returns None for any other text.
+    """
     if len(text) > LONGEST:
         return None
-    return Fraction(text) if _DECIMAL.fullmatch(text) or _RATIO.fullmatch(text) else None
+    return (
+        Fraction(text) if _DECIMAL.fullmatch(text) or _RATIO.fullmatch(text) else None
+    )
 
 
 def float_bits(text: str, bits: int) -> int | None:
-    """Return the bits of the nearest 32-bit or 64-bit float of a text, which can also be ``nan`` or ``inf``.
+    """Return the bits of the nearest 32-bit or 64-bit float of a text, which can also
+    be ``nan`` or ``inf``.
 
     Returns None if the text is not a number. Raises `OverflowError`.
     """
@@ -45,4 +54,6 @@ def float_bits(text: str, bits: int) -> int | None:
         return floats.bits_of(float(_SPECIAL[word]), bits) | sign << bits - 1
     # The sign is set separately: a Fraction has no negative zero.
     exact = rational(text)
-    return None if exact is None else floats.nearest(abs(exact), bits) | sign << bits - 1
+    return (
+        None if exact is None else floats.nearest(abs(exact), bits) | sign << bits - 1
+    )

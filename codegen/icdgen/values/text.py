@@ -17,9 +17,14 @@ _COLUMNS = [
 
 
 def to_text(frame: Frame, width: int | None = None) -> str:
-    """Return message, bytes and a table of the fields. ``width`` is the width of the terminal, None for a pipe."""
+    """Return message, bytes and a table of the fields.
+
+    ``width`` is the width of the terminal, None for a pipe.
+    """
     message = frame.message
-    lines = [f"{frame.node.name}: {message.name} ({describe(message, frame.form)}), {byte_count(len(frame.data))}"]
+    lines = [
+        f"{frame.node.name}: {message.name} ({describe(message, frame.form)}), {byte_count(len(frame.data))}"
+    ]
     if frame.data:
         lines.append(frame.data.hex(" "))
     text = "".join(clean(line) + "\n" for line in lines)
@@ -34,4 +39,8 @@ def to_text(frame: Frame, width: int | None = None) -> str:
         for row in frame.rows
     ]
     table = render(_COLUMNS, rows, width)
-    return text + ("\n" + table if table else "") + "".join(f"\nnote: {clean(remark)}\n" for remark in frame.remarks)
+    return (
+        text
+        + ("\n" + table if table else "")
+        + "".join(f"\nnote: {clean(remark)}\n" for remark in frame.remarks)
+    )

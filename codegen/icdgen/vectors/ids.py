@@ -15,5 +15,14 @@ def test_ids(ids: Iterable[int], bits: int = 32) -> list[int]:
     candidates = set(range(BYTE))
     for id in ids:
         # Truncated to 8 or 16 bits, shifted down, or with an additional high bit.
-        candidates |= {id - 1, id, id + 1, id & 0xFF, id >> 8, id & 0xFFFF, id | 1 << 8, id | 1 << 16}
+        candidates |= {
+            id - 1,
+            id,
+            id + 1,
+            id & 0xFF,
+            id >> 8,
+            id & 0xFFFF,
+            id | 1 << 8,
+            id | 1 << 16,
+        }
     return sorted(id for id in candidates if 0 <= id < 1 << bits)

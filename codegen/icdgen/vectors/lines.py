@@ -54,19 +54,27 @@ def lines(vectors: NodeVectors, text: str) -> NodeLines:
         if line == '"shared_ids": [':
             numbers.shared = [next(remaining_lines)[0] for _ in vectors.shared]
         elif line == '"enums": [':
-            numbers.enums = {enum.name: next(remaining_lines)[0] for enum, _ in vectors.enums}
+            numbers.enums = {
+                enum.name: next(remaining_lines)[0] for enum, _ in vectors.enums
+            }
         elif line == '"messages": [':
             break
     for message_vectors in vectors.messages:
-        numbers.messages[message_vectors.message.name] = _message(message_vectors, remaining_lines)
+        numbers.messages[message_vectors.message.name] = _message(
+            message_vectors, remaining_lines
+        )
     return numbers
 
 
 def _message(vectors: MessageVectors, remaining_lines: enumerate[str]) -> MessageLines:
-    numbers = MessageLines(next(number for number, line in remaining_lines if line.startswith('{"name":')))
+    numbers = MessageLines(
+        next(number for number, line in remaining_lines if line.startswith('{"name":'))
+    )
     for number, line in remaining_lines:
         if line == '"fields": [':
-            numbers.fields = {field.name: next(remaining_lines)[0] for field in vectors.fields}
+            numbers.fields = {
+                field.name: next(remaining_lines)[0] for field in vectors.fields
+            }
         elif line.startswith('"refused_lengths": '):
             numbers.lengths = number
         elif line == '"vectors": [':

@@ -11,7 +11,15 @@ from typing import Any
 from icdgen import codec
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.layout import VariablePart
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
+from icdgen.icd.model import (
+    CONFIGURATION,
+    TELECOMMAND,
+    TELEMETRY,
+    Enum,
+    Icd,
+    Message,
+    Node,
+)
 from icdgen.vectors import patterns, shared
 from icdgen.vectors.settings import Settings, bits_of, settings
 
@@ -42,7 +50,8 @@ class MessageVectors:
 
     message: Message
     fields: tuple[FrameField, ...]  # fields of the longest frame
-    # Initial values: 0, empty or ``const``; overlays have the value that they read. Absent optional fields are missing.
+    # Initial values: 0, empty or ``const``; overlays have the value that they read.
+    # Absent optional fields are missing.
     default: Raw
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # lengths of refused frames
@@ -92,7 +101,11 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
             rows.append(frame_row(node, message, f"chosen values {number}", frame))
     fields = frame_fields(message.layout, node.orders)
     raw_fields = [field for field in fields if field.is_raw]
-    settable = [field for field in raw_fields if (field.has_formula and field.is_invertible) or field.type == "text"]
+    settable = [
+        field
+        for field in raw_fields
+        if (field.has_formula and field.is_invertible) or field.type == "text"
+    ]
     return MessageVectors(
         message=message,
         fields=fields,
@@ -100,7 +113,11 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         rows=tuple(rows),
         lengths=_refused_lengths(message),
         miscounted=tuple(_miscounted(node, message)),
-        unfit={field.name: unfit for field in raw_fields if (unfit := patterns.unfit(message, field))},
+        unfit={
+            field.name: unfit
+            for field in raw_fields
+            if (unfit := patterns.unfit(message, field))
+        },
         settings={field.name: settings(field) for field in settable},
     )
 
@@ -112,7 +129,11 @@ def _refused_lengths(message: Message) -> tuple[int, ...]:
     # permitted.
     # With one variable part, the fixed part alone is the shortest decodable frame.
     least = layout.shortest if layout.has_gaps else layout.length
-    ends = {end + step for end in (least, layout.shortest, layout.shortest + 1, layout.longest) for step in (-1, 1)}
+    ends = {
+        end + step
+        for end in (least, layout.shortest, layout.shortest + 1, layout.longest)
+        for step in (-1, 1)
+    }
     if not layout.parts:
         ends = {layout.longest - 1, layout.longest + 1}
     return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(layout.lengths)))
@@ -134,11 +155,26 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         return
     frame = patterns.random_frame(message, "miscounted")
     counter = _counter(message, node, last)
-    few, most, low, high = last.fewest, last.most, counter.raw_min + last.plus, counter.raw_max + last.plus
+    few, most, low, high = (
+        last.fewest,
+        last.most,
+        counter.raw_min + last.plus,
+        counter.raw_max + last.plus,
+    )
     # Highest bit of the counter, which a narrower implementation would ignore
     top = 1 << counter.bits - 1
-    pairs = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high), (few, few + top), (most, most + top)]
-    for count, stated in (*pairs, *([(few, few - 1), (most, low)] if last.plus else ())):
+    pairs = [
+        (few, few + 1),
+        (most, most - 1),
+        (most - 1, most),
+        (most, high),
+        (few, few + top),
+        (most, most + top),
+    ]
+    for count, stated in (
+        *pairs,
+        *([(few, few - 1), (most, low)] if last.plus else ()),
+    ):
         if stated != count >= few and low <= stated <= high:
             invalid = patterns.with_counts(message, node, frame, {last.name: stated})
             yield invalid[: last.begin + count * last.step]
@@ -166,12 +202,20 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
         # Above the maximum, in a frame of the maximum length
         if high < counter.raw_max:
             invalid.append(codec.frame_of(longest, highest | {counter: high + 1}))
-    yield from (candidate for candidate in dict.fromkeys(invalid) if not _is_frame(node, message, candidate))
+    yield from (
+        candidate
+        for candidate in dict.fromkeys(invalid)
+        if not _is_frame(node, message, candidate)
+    )
 
 
 def _counter(message: Message, node: Node, part: VariablePart) -> FrameField:
     """Return the field that counts the elements of a variable part."""
-    return next(field for field in frame_fields(message.layout, node.orders) if field.name == part.counter)
+    return next(
+        field
+        for field in frame_fields(message.layout, node.orders)
+        if field.name == part.counter
+    )
 
 
 def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
@@ -184,14 +228,27 @@ def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """Return the vector of a frame, decoded and encoded by the reference codec."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
     # Absent optional fields have no raw value.
-    present = [field for field in frame_fields(message.layout, node.orders) if field.name in raw]
+    present = [
+        field
+        for field in frame_fields(message.layout, node.orders)
+        if field.name in raw
+    ]
     exact = ((field.name, codec.physical(field, raw[field.name])) for field in present)
     # Lookup tables and polynomials have no exact fraction; `doubles` covers them.
     physical = {name: value for name, value in exact if value is not None}
     scaled = (field for field in present if field.has_formula)
-    doubles = {field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0) for field in scaled}
-    texts = {field.name: ascii_text(raw[field.name]) for field in present if field.type == "text"}
-    return Row(why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles)
+    doubles = {
+        field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0)
+        for field in scaled
+    }
+    texts = {
+        field.name: ascii_text(raw[field.name])
+        for field in present
+        if field.type == "text"
+    }
+    return Row(
+        why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles
+    )
 
 
 def ascii_text(raw: bytes) -> str | None:
@@ -201,7 +258,10 @@ def ascii_text(raw: bytes) -> str | None:
 
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
-    ids_by_direction = {direction: shared.ids(icd, node, direction) for direction in (TELECOMMAND, TELEMETRY)}
+    ids_by_direction = {
+        direction: shared.ids(icd, node, direction)
+        for direction in (TELECOMMAND, TELEMETRY)
+    }
     settings: dict[int, list[Message]] = {}
     for pick in ("set_id", "get_id"):  # a set_id has precedence over an equal get_id
         taken = set(settings)
@@ -211,6 +271,8 @@ def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
                 settings.setdefault(id, []).append(message)
     ids_by_direction[CONFIGURATION] = dict(sorted(settings.items()))
     return {
-        direction: {id: [message.name for message in messages] for id, messages in ids.items()}
+        direction: {
+            id: [message.name for message in messages] for id, messages in ids.items()
+        }
         for direction, ids in ids_by_direction.items()
     }

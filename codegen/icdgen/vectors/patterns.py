@@ -17,7 +17,8 @@ from icdgen.icd.places import AnyScalar
 
 RANDOM_FRAMES = 4
 
-# Every byte and every nibble differs from its neighbours; the first has the top bit clear, the second set.
+# Every byte and every nibble differs from its neighbours; the first has the top bit
+# clear, the second set.
 _DISTINCT = (0x123456789ABCDEF0, 0xFEDCBA9876543210)
 
 # Zeros, ones, common values, infinities, quiet and signaling NaNs with payloads,
@@ -49,7 +50,9 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
         return
     last = message.layout.parts[-1]
     counts, few = _counts(last), last.fewest
-    yield f"all zeros, {few or 'no'} element{'s' * (few > 1)}", cut(message, node, bytes(message.length), few)
+    yield f"all zeros, {few or 'no'} element{'s' * (few > 1)}", cut(
+        message, node, bytes(message.length), few
+    )
     for number, (why, frame) in enumerate(_longest(message)):
         yield why, cut(message, node, frame, last.most)
         count = counts[number % len(counts)]
@@ -63,17 +66,32 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     yielded = set()
     for field in fields.values():
-        chosen = {fields[condition.field]: condition.values[0] for condition in field.conditions}
+        chosen = {
+            fields[condition.field]: condition.values[0]
+            for condition in field.conditions
+        }
         for condition in field.conditions:
             selector = fields[condition.field]
-            near = sorted({value + step for value in condition.values for step in (-1, 0, 1)})
-            for value in (number for number in near if selector.raw_min <= number <= selector.raw_max):
+            near = sorted(
+                {value + step for value in condition.values for step in (-1, 0, 1)}
+            )
+            for value in (
+                number
+                for number in near
+                if selector.raw_min <= number <= selector.raw_max
+            ):
                 values = {**chosen, selector: value}
-                why = ", ".join(f"{field.name} {number}" for field, number in values.items())
+                why = ", ".join(
+                    f"{field.name} {number}" for field, number in values.items()
+                )
                 if why not in yielded:
                     yielded.add(why)
-                    yield why, codec.frame_of(random_frame(message, f"alternative {why}"), values)
-                    yield f"{why}, all others ones", codec.frame_of(b"\xff" * message.length, values)
+                    yield why, codec.frame_of(
+                        random_frame(message, f"alternative {why}"), values
+                    )
+                    yield f"{why}, all others ones", codec.frame_of(
+                        b"\xff" * message.length, values
+                    )
 
 
 def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -81,9 +99,15 @@ def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
     maximum, and all but one byte.
     """
     longest = message.length
-    sizes = {*range(1, min(longest, 10)), *(longest * part // 8 for part in range(1, 8)), longest - 1}
+    sizes = {
+        *range(1, min(longest, 10)),
+        *(longest * part // 8 for part in range(1, 8)),
+        longest - 1,
+    }
     for size in sorted(sizes - {0}):
-        yield f"ended early, bytes: {size}", random_frame(message, f"ended early {size}")[:size]
+        yield f"ended early, bytes: {size}", random_frame(
+            message, f"ended early {size}"
+        )[:size]
     yield "ended early, zeros", bytes(longest - 1)
 
 
@@ -109,7 +133,11 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
         is_longest = count == last.most
         # Derived from the frame, so that the choice is deterministic but differs
         # between frames.
-        return part.most if is_longest else choices[(sum(frame) + len(counts)) % len(choices)]
+        return (
+            part.most
+            if is_longest
+            else choices[(sum(frame) + len(counts)) % len(choices)]
+        )
 
     for part in earlier:
         counts[part.name] = choose(part)
@@ -118,13 +146,19 @@ def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     counters: dict[str, int] = {}
     for part in message.layout.parts:
         for inner in part.inner:
-            low, high = message.layout.smallest_raw(inner.counter), message.layout.largest_raw(inner.counter)
-            value = counters.setdefault(inner.counter, max(low, min(choose(inner) - inner.plus, high)))
+            low, high = message.layout.smallest_raw(
+                inner.counter
+            ), message.layout.largest_raw(inner.counter)
+            value = counters.setdefault(
+                inner.counter, max(low, min(choose(inner) - inner.plus, high))
+            )
             counts[part.inner_name(inner)] = value + inner.plus
     return shortened(message, with_counts(message, node, frame, counts), counts)
 
 
-def with_counts(message: Message, node: Node, frame: bytes, counts: Mapping[str, int]) -> bytes:
+def with_counts(
+    message: Message, node: Node, frame: bytes, counts: Mapping[str, int]
+) -> bytes:
     """Return the longest frame with these numbers of elements in the counters."""
     fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
     values = {}
@@ -151,7 +185,9 @@ def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
     for number in range((length * 8 - 1).bit_length()):
         code = _position_code(length, number)
         yield f"bit {number} of each bit's position", code
-        yield f"bit {number} of each bit's position, inverted", bytes(byte ^ 0xFF for byte in code)
+        yield f"bit {number} of each bit's position, inverted", bytes(
+            byte ^ 0xFF for byte in code
+        )
     for number in range(RANDOM_FRAMES):
         yield f"random {number}", random_frame(message, f"vector {number}")
 
@@ -163,7 +199,10 @@ def _position_code(length: int, number: int) -> bytes:
     Over all numbers, each bit of the frame has a different code, so that any mix-up of
     bits is detected.
     """
-    return bytes(sum(((byte * 8 + bit) >> number & 1) << bit for bit in range(8)) for byte in range(length))
+    return bytes(
+        sum(((byte * 8 + bit) >> number & 1) << bit for bit in range(8))
+        for byte in range(length)
+    )
 
 
 def random_frame(message: Message, seed: str) -> bytes:
@@ -171,7 +210,9 @@ def random_frame(message: Message, seed: str) -> bytes:
 
     ``seed`` distinguishes frames of one message.
     """
-    return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(message.length)
+    return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(
+        message.length
+    )
 
 
 def values(field: AnyScalar) -> list[int | bytes]:
@@ -181,15 +222,31 @@ def values(field: AnyScalar) -> list[int | bytes]:
         ascending = bytes(number & 0xFF for number in range(1, size + 1))
         if field.type == "text":
             # A text that ends early, and a character in the last byte only.
-            ended, last = ascending[: size // 2].ljust(size, b"\0"), bytes(size - 1) + b"x"
-            return list(dict.fromkeys((ascending, ended, last, bytes(size), b"\x7f" * size, b"\x80" * size)))
+            ended, last = (
+                ascending[: size // 2].ljust(size, b"\0"),
+                bytes(size - 1) + b"x",
+            )
+            return list(
+                dict.fromkeys(
+                    (
+                        ascending,
+                        ended,
+                        last,
+                        bytes(size),
+                        b"\x7f" * size,
+                        b"\x80" * size,
+                    )
+                )
+            )
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
         named = (special.value for special in field.special)
         return list(dict.fromkeys((*_FLOATS[field.bits], *named, *_near_bits(field))))
     if field.type == "bool":
         return [0, 1]
-    return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))
+    return list(
+        dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max)
+    )
 
 
 def _numbers(field: AnyScalar) -> Iterator[int]:
@@ -203,7 +260,11 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
     # Off-by-one errors at the upper end, which the maximum alone would not show.
     yield high - 1
     if field.type == "enum" and field.enum is not None:
-        yield from (value for member in field.enum.members for value in dict.fromkeys((member.value, member.last)))
+        yield from (
+            value
+            for member in field.enum.members
+            for value in dict.fromkeys((member.value, member.last))
+        )
         yield from (
             value
             for member in field.enum.members
@@ -216,7 +277,11 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
         yield from (field.const, field.const + 1)
     for special in field.special:
         yield special.value
-    yield from (number for near in _near(field) for number in (math.floor(near), math.ceil(near)))
+    yield from (
+        number
+        for near in _near(field)
+        for number in (math.floor(near), math.ceil(near))
+    )
 
 
 def _near_bits(field: AnyScalar) -> Iterator[int]:
@@ -239,11 +304,17 @@ def raw_columns(message: Message, node: Node) -> Iterator[dict[str, int | bytes]
 
     Neighboring fields advance out of step.
     """
-    fields = [field for field in frame_fields(message.layout, node.orders) if field.is_raw]
-    counters = {part.counter: _counter_values(message, part) for part in message.layout.counted_parts}
+    fields = [
+        field for field in frame_fields(message.layout, node.orders) if field.is_raw
+    ]
+    counters = {
+        part.counter: _counter_values(message, part)
+        for part in message.layout.counted_parts
+    }
     columns = [counters.get(field.name) or values(field) for field in fields]
     alternatives = dict.fromkeys(
-        tuple((condition.field, condition.values[0]) for condition in field.conditions) for field in fields
+        tuple((condition.field, condition.values[0]) for condition in field.conditions)
+        for field in fields
     )
     # A shift by the index prevents that equal fields always have equal values.
     for row in range(max(map(len, columns), default=0)):
@@ -261,15 +332,25 @@ def _counter_values(message: Message, part: VariablePart) -> list[int | bytes]:
 
     Every second value is the maximum, so that all elements are tested.
     """
-    low, high = message.layout.smallest_raw(part.counter), message.layout.largest_raw(part.counter)
-    return [max(low, min(number - part.plus, high)) for count in _counts(part) for number in (part.most, count)]
+    low, high = message.layout.smallest_raw(part.counter), message.layout.largest_raw(
+        part.counter
+    )
+    return [
+        max(low, min(number - part.plus, high))
+        for count in _counts(part)
+        for number in (part.most, count)
+    ]
 
 
 def unfit(message: Message, field: FrameField) -> list[int]:
     """Return raw values that encoding must refuse."""
     if any(field.name == part.counter for part in message.layout.counted_parts):
-        low, high = message.layout.smallest_raw(field.name), message.layout.largest_raw(field.name)
-        return list(dict.fromkeys((high + 1, low - 1, field.raw_max + 1, field.raw_min - 1)))
+        low, high = message.layout.smallest_raw(field.name), message.layout.largest_raw(
+            field.name
+        )
+        return list(
+            dict.fromkeys((high + 1, low - 1, field.raw_max + 1, field.raw_min - 1))
+        )
     # Languages represent other types by values of exactly their range.
     if field.type not in ("uint", "int", "enum"):
         return []

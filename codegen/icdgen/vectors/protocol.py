@@ -43,7 +43,11 @@ def nodes(icd: Icd) -> list[Node]:
     includes.
     """
     included = {name for node in icd.nodes for name in node.includes}
-    return [node for node in icd.nodes if icd.protocol_of(node) and node.name not in included]
+    return [
+        node
+        for node in icd.nodes
+        if icd.protocol_of(node) and node.name not in included
+    ]
 
 
 def cases(icd: Icd, node: Node) -> list[Case]:
@@ -60,7 +64,10 @@ def text(icd: Icd) -> str | None:
     """Return the vector file, one case per line; None if no node has a protocol."""
     parts = []
     for node in nodes(icd):
-        lines = [json.dumps(case._asdict(), separators=(",", ":")) for case in cases(icd, node)]
+        lines = [
+            json.dumps(case._asdict(), separators=(",", ":"))
+            for case in cases(icd, node)
+        ]
         head = f'{{"node": {json.dumps(node.name)}, "digest": "{node.digest[:16]}", "cases": [\n'
         parts.append(head + ",\n".join(lines) + "\n]}")
     if not parts:

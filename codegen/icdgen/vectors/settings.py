@@ -14,7 +14,8 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.layout import Scalar
 from icdgen.icd.places import AnyScalar
 
-# Refused by all fields except floats: NaNs (quiet, signaling, negative), infinities, and numbers beyond any raw value.
+# Refused by all fields except floats: NaNs (quiet, signaling, negative), infinities,
+# and numbers beyond any raw value.
 NEVER = (
     "7ff8000000000000", "7ff0000000000001", "fff8000000000123", "7ff0000000000000", "fff0000000000000",
     "7fefffffffffffff", "ffefffffffffffff",
@@ -45,7 +46,9 @@ def settings(field: AnyScalar) -> Settings:
 
 
 @lru_cache(maxsize=1 << 12)
-def _settings(type: str, bits: int, scale: Scale | None, curve: Curve | None) -> dict[str, int | bytes | None]:
+def _settings(
+    type: str, bits: int, scale: Scale | None, curve: Curve | None
+) -> dict[str, int | bytes | None]:
     """Return the assignments for a type, width and calibration.
 
     Cached, because many fields have the same ones.
@@ -89,7 +92,11 @@ def _doubles(field: Scalar) -> Iterator[float]:
     # directions.
     for raw in (low - 1, high, (low + high) // 2, low + (high - low) // 3):
         near = float(_above(field, raw))
-        yield from (math.nextafter(near, -math.inf), near, math.nextafter(near, math.inf))
+        yield from (
+            math.nextafter(near, -math.inf),
+            near,
+            math.nextafter(near, math.inf),
+        )
     yield from _ties(field)
 
 
@@ -129,14 +136,17 @@ def _ties(field: Scalar) -> Iterator[float]:
     assert field.scale is not None
     half, offset = field.scale.factor / 2, field.scale.offset
     common = math.lcm(half.denominator, offset.denominator)
-    # The midpoint above raw r is ((2 r + 1) a + b) / common. It is a double if the odd part of the denominator cancels.
+    # The midpoint above raw r is ((2 r + 1) a + b) / common. It is a double if the odd
+    # part of the denominator cancels.
     a, b = int(half * common), int(offset * common)
     odd = common // (common & -common)
     divisor = math.gcd(2 * a, odd)
     if (a + b) % divisor:
         return
     step = odd // divisor
-    first = -(a + b) // divisor * pow(2 * a // divisor, -1, step) % step if step > 1 else 0
+    first = (
+        -(a + b) // divisor * pow(2 * a // divisor, -1, step) % step if step > 1 else 0
+    )
     low, high = field.raw_min, field.raw_max
     lowest = low + (first - low) % step
     highest = high - (high - first) % step

@@ -33,7 +33,9 @@ def ids(icd: Icd, node: Node, direction: str) -> dict[int, list[Message]]:
     """
     messages_by_id: dict[int, list[Message]] = {}
     for message in icd.messages_of(node):
-        id = message.telecommand_id if direction == TELECOMMAND else message.telemetry_id
+        id = (
+            message.telecommand_id if direction == TELECOMMAND else message.telemetry_id
+        )
         if id is not None:
             messages_by_id.setdefault(id, []).append(message)
     return dict(sorted(messages_by_id.items()))
@@ -47,11 +49,16 @@ def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
         for id, messages in ids(icd, node, direction).items():
             # Ids of one message are tested by the vectors of the message.
             if len(messages) > 1:
-                rows = (_row(icd, direction, id, messages, frame) for frame in dict.fromkeys(_frames(icd, messages)))
+                rows = (
+                    _row(icd, direction, id, messages, frame)
+                    for frame in dict.fromkeys(_frames(icd, messages))
+                )
                 yield from (row for row in rows if row is not None)
 
 
-def _row(icd: Icd, direction: str, id: int, messages: list[Message], frame: bytes) -> SharedRow | None:
+def _row(
+    icd: Icd, direction: str, id: int, messages: list[Message], frame: bytes
+) -> SharedRow | None:
     """Return the row of a frame.
 
     None for a frame whose counter contradicts its length; the vectors of the message
@@ -73,8 +80,19 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
     """Yield frames of each message: its constants among zeros, ones and random bytes,
     each bit of a constant inverted, and wrong lengths.
     """
-    lengths = sorted({length for message in messages for length in (message.layout.shortest, message.length)})
-    yield from (bytes(size) for size in sorted({near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}))
+    lengths = sorted(
+        {
+            length
+            for message in messages
+            for length in (message.layout.shortest, message.length)
+        }
+    )
+    yield from (
+        bytes(size)
+        for size in sorted(
+            {near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}
+        )
+    )
     yield from (b"\xff" * size for size in lengths)
     for message in messages:
         node = icd.node(message.node)
@@ -98,7 +116,9 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
         for field in constant_fields:
             for bit in range(field.bits):
                 inverted = int(values[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
-                signed = inverted - (inverted >> field.bits - 1 << field.bits if field.is_signed else 0)
+                signed = inverted - (
+                    inverted >> field.bits - 1 << field.bits if field.is_signed else 0
+                )
                 yield codec.frame_with(node, message, values | {field.name: signed})
 
 

@@ -28,7 +28,10 @@ def text(vectors: NodeVectors) -> str:
         "digest": node.digest[:16],
         "includes": list(node.includes),
     }
-    identification = {"node_type": node.node_type, "interface_version": node.interface_version}
+    identification = {
+        "node_type": node.node_type,
+        "interface_version": node.interface_version,
+    }
     head |= {key: value for key, value in identification.items() if value is not None}
     parts = [f"{_json(key)}: {_json(value)}" for key, value in head.items()]
     parts.append(f'"never_set": {_json(list(NEVER))}')
@@ -36,7 +39,9 @@ def text(vectors: NodeVectors) -> str:
     if vectors.shared:
         parts.append(_array("shared_ids", list(_shared(vectors.shared))))
     parts.append(_array("enums", list(_enums(vectors))))
-    parts.append(_array("messages", [_message(message) for message in vectors.messages]))
+    parts.append(
+        _array("messages", [_message(message) for message in vectors.messages])
+    )
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
@@ -80,19 +85,31 @@ def raw_json(field: AnyScalar, value: int | bytes | None) -> int | str | None:
 
 def _ids(vectors: NodeVectors) -> Iterator[str]:
     for direction, messages in vectors.ids.items():
-        named = {str(id): names[0] if len(names) == 1 else names for id, names in messages.items()}
+        named = {
+            str(id): names[0] if len(names) == 1 else names
+            for id, names in messages.items()
+        }
         yield f"{_json(direction)}: {_json(named)}"
 
 
 def _shared(rows: Iterable[SharedRow]) -> Iterator[str]:
     for row in rows:
-        line = {"direction": row.direction, "id": row.id, "bytes": row.frame.hex(), "message": row.message}
-        yield _json(line if row.expected is None else {**line, "expected": row.expected})
+        line = {
+            "direction": row.direction,
+            "id": row.id,
+            "bytes": row.frame.hex(),
+            "message": row.message,
+        }
+        yield _json(
+            line if row.expected is None else {**line, "expected": row.expected}
+        )
 
 
 def _enums(vectors: NodeVectors) -> Iterator[str]:
     for enum, unknown in vectors.enums:
-        members = [[m.value, m.name, *([] if m.to is None else [m.to])] for m in enum.members]
+        members = [
+            [m.value, m.name, *([] if m.to is None else [m.to])] for m in enum.members
+        ]
         yield _json({"name": enum.name, "members": members, "unknown": unknown})
 
 
@@ -110,25 +127,39 @@ def _message(vectors: MessageVectors) -> str:
         *inner, last = message.layout.parts
         head["tail"] = _variable_part(last, {"least": last.begin})
         if inner:
-            head["inner"] = [_variable_part(part, {"begin": part.begin}) for part in inner]
+            head["inner"] = [
+                _variable_part(part, {"begin": part.begin}) for part in inner
+            ]
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in vectors.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
     if vectors.miscounted:
-        parts.append(f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}')
+        parts.append(
+            f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}'
+        )
     parts.append(_array("vectors", [_row(vectors.fields, row) for row in vectors.rows]))
     return "{" + ",\n".join(parts) + "}"
 
 
 def _variable_part(part: VariablePart, begin: dict[str, int]) -> dict[str, object]:
-    row = {"part": part.name, "counter": part.counter, **begin, "step": part.step, "most": part.most}
+    row = {
+        "part": part.name,
+        "counter": part.counter,
+        **begin,
+        "step": part.step,
+        "most": part.most,
+    }
     row |= {"plus": part.plus} if part.plus else {}
     nested = [_variable_part(inner, {"begin": inner.begin}) for inner in part.inner]
     return row | ({"nested": nested} if nested else {})
 
 
 def _field(vectors: MessageVectors, field: FrameField) -> str:
-    row: dict[str, object] = {"name": field.name, "type": field.type, "bits": field.bits}
+    row: dict[str, object] = {
+        "name": field.name,
+        "type": field.type,
+        "bits": field.bits,
+    }
     if field.enum is not None:
         row["enum"] = field.enum.name
     if field.scale is not None:
@@ -140,17 +171,25 @@ def _field(vectors: MessageVectors, field: FrameField) -> str:
     if field.role == "derived":
         row["derived"] = field.scalar.formula
     if field.conditions:
-        row["when"] = {condition.field: list(condition.values) for condition in field.conditions}
+        row["when"] = {
+            condition.field: list(condition.values) for condition in field.conditions
+        }
     row["default"] = raw_json(field, vectors.default.get(field.name))
     if field.special:
         row["special"] = [raw_json(field, special.value) for special in field.special]
     if field.limits:
-        limits = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
-        row["limits"] = {key: decimal(value) for key, value in limits.items() if value is not None}
+        limits = {
+            key: getattr(field.limits, key) for key in ("min", "max", "above", "below")
+        }
+        row["limits"] = {
+            key: decimal(value) for key, value in limits.items() if value is not None
+        }
     if field.name in vectors.unfit:
         row["unfit"] = vectors.unfit[field.name]
     if field.name in vectors.settings:
-        row["set"] = [[given, raw_json(field, raw)] for given, raw in vectors.settings[field.name]]
+        row["set"] = [
+            [given, raw_json(field, raw)] for given, raw in vectors.settings[field.name]
+        ]
     return _json(row)
 
 
@@ -161,9 +200,14 @@ def _row(fields: tuple[FrameField, ...], row: Row) -> str:
     line["raw"] = [raw_json(field, row.raw.get(field.name)) for field in fields]
     if any(field.scale is not None for field in fields):
         scaled = (field.name for field in fields if field.scale is not None)
-        line["physical"] = [decimal(row.physical[name]) if name in row.physical else None for name in scaled]
+        line["physical"] = [
+            decimal(row.physical[name]) if name in row.physical else None
+            for name in scaled
+        ]
     if any(field.has_formula for field in fields):
-        line["doubles"] = [row.doubles.get(field.name) for field in fields if field.has_formula]
+        line["doubles"] = [
+            row.doubles.get(field.name) for field in fields if field.has_formula
+        ]
     if row.texts:
         line["texts"] = list(row.texts.values())
     return _json(line)

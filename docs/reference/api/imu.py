@@ -141,7 +141,12 @@ assert limit == 400
 # [allows]
 holds = fields[0].allows(400.5)
 # []
-assert not holds and fields[0].allows(400.0) and not fields[0].allows(0.5) and fields[1].allows(1e9)
+assert (
+    not holds
+    and fields[0].allows(400.0)
+    and not fields[0].allows(0.5)
+    and fields[1].allows(1e9)
+)
 # [limit]
 limit = Setup.RATE_HZ_MAX
 # []

@@ -79,7 +79,8 @@ else:
     field_specifiers=(field, part, scaled, curve, curve_only, whole, text),
 )
 class MessageType(type):
-    """Metaclass of messages and structs: a dataclass with slots, whose fields `field` declares.
+    """Metaclass of messages and structs: a dataclass with slots, whose fields `field`
+    declares.
 
     `Message.from_bytes` and `Message.to_bytes` are compiled from the fields at their
     first use. The attributes that `dataclasses` needs are created at their first use,
@@ -89,7 +90,10 @@ class MessageType(type):
     def __new__(
         mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _types.Any]
     ) -> _types.Any:
-        """Create the class. Slots hold the values of the fields and replace the declarations."""
+        """Create the class.
+
+        Slots hold the values of the fields and replace the declarations.
+        """
         if "LENGTH" in namespace:  # the base classes declare no fields
             infos: list[FieldInfo] = []
             notes = namespace.get("__annotations__", {})
@@ -146,7 +150,10 @@ class Struct(StructFacts, metaclass=MessageType):
         __dataclass_fields__ = _DataclassFields()
 
         def __init__(self, /, **values):
-            """Take raw or physical values. The physical value has precedence. Raise `RangeError`."""
+            """Take raw or physical values.
+
+            The physical value has precedence. Raise `RangeError`.
+            """
             given = frozenset(values) if self.CONDITIONAL else ()
             for info in self.FIELDS:
                 fresh = info.default if info.struct is None else info.fresh
@@ -166,10 +173,12 @@ class Struct(StructFacts, metaclass=MessageType):
         def from_physical(
             cls: Callable[P, _types.S], *args: P.args, **values: P.kwargs
         ) -> _types.S:
-            """Create an object from physical values, or raw values if a field has no other.
+            """Create an object from physical values, or raw values if a field has no
+            other.
 
-            Values of overlay fields and derived values are ignored. Raise `RangeError`, and
-            `TypeError` for the raw value of a field that has a physical value or a text.
+            Values of overlay fields and derived values are ignored. Raise `RangeError`,
+            and `TypeError` for the raw value of a field that has a physical value or a
+            text.
             """
             ...
 
@@ -177,10 +186,12 @@ class Struct(StructFacts, metaclass=MessageType):
 
         @classmethod
         def from_physical(cls, /, **values):
-            """Create an object from physical values, or raw values if a field has no other.
+            """Create an object from physical values, or raw values if a field has no
+            other.
 
-            Values of overlay fields and derived values are ignored. Raise `RangeError`, and
-            `TypeError` for the raw value of a field that has a physical value or a text.
+            Values of overlay fields and derived values are ignored. Raise `RangeError`,
+            and `TypeError` for the raw value of a field that has a physical value or a
+            text.
             """
             for info in cls.FIELDS:
                 if info.physical and info.leads_back and info.attribute in values:
@@ -215,7 +226,9 @@ class Struct(StructFacts, metaclass=MessageType):
         return values
 
     def _own(self) -> dict[str, _types.Any]:
-        """Return the values of the fields by attribute, without overlay fields and derived values."""
+        """Return the values of the fields by attribute, without overlay fields and
+        derived values.
+        """
         return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
 
     @classmethod
@@ -235,7 +248,10 @@ class Struct(StructFacts, metaclass=MessageType):
         return checked
 
     def _checked(self) -> _types.Any:
-        """Return an equal object with values of the types that decoding returns. Raise `RangeError`."""
+        """Return an equal object with values of the types that decoding returns.
+
+        Raise `RangeError`.
+        """
         return self
 
     def to_json(self, physical: bool = False) -> str:
@@ -306,7 +322,10 @@ class Message(NodeMessageBase[N_contra], MessageFacts, Struct):
         return parts(self)
 
     def to_bytes(self) -> bytes:
-        """Encode the message. Reserved bits are 0. Raise `RangeError` if a value is out of range."""
+        """Encode the message.
+
+        Reserved bits are 0. Raise `RangeError` if a value is out of range.
+        """
         from ._compiled import compiled
 
         frame: bytes = compiled(type(self), "to_bytes")(self)
@@ -318,9 +337,9 @@ class Message(NodeMessageBase[N_contra], MessageFacts, Struct):
     ) -> dict[str, _types.Any]:
         """Decode consecutive frames into one numpy array per field.
 
-        The keys are equal to the keys of `as_dict`. Byte-aligned fields are views of the frames, or
-        of a copy if the frames are mutable. Raise `LengthError` if the data is not a
-        multiple of the length of a frame.
+        The keys are equal to the keys of `as_dict`. Byte-aligned fields are views of
+        the frames, or of a copy if the frames are mutable. Raise `LengthError` if the
+        data is not a multiple of the length of a frame.
 
         Frames of different lengths are given as a list. A variable-length field at the
         end of the frame becomes an array of arrays, or of bytes. An optional field
@@ -344,7 +363,10 @@ class Message(NodeMessageBase[N_contra], MessageFacts, Struct):
 
 
 def view(message: Message, attribute: str, kind: type[_types.T]) -> _types.T:
-    """Return the value of an overlay field, from the encoded message. Raise `RangeError`."""
+    """Return the value of an overlay field, from the encoded message.
+
+    Raise `RangeError`.
+    """
     from ._codec import value_of_bits
 
     (info,) = (overlay for overlay in message.VIEWS if overlay.attribute == attribute)
@@ -362,7 +384,10 @@ def derived(message: Message, attribute: str) -> float:
 
 
 def on_curve(message: Message, attribute: str) -> float:
-    """Return the physical value of an overlay field with a calibration. Raise `RangeError`."""
+    """Return the physical value of an overlay field with a calibration.
+
+    Raise `RangeError`.
+    """
     from ._curves import on_curve as value_on
 
     (curve,) = (

@@ -200,7 +200,10 @@ def _open_column_fields(info: FieldInfo) -> list[_ColumnField]:
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
-    """Return the first elements of each row, as lists or as bytes. ``counts`` are per row."""
+    """Return the first elements of each row, as lists or as bytes.
+
+    ``counts`` are per row.
+    """
     mask = numpy.arange(rows.shape[1]) < counts[:, None]
     values = rows[mask]
     ends = numpy.concatenate(([0], numpy.cumsum(counts))).astype(numpy.int32)
@@ -300,7 +303,10 @@ class _Decoder:
         self.bytes[byte][: self.count] = values
 
     def _flags(self, plan: _Plan) -> dict[str, Any]:
-        """Return all columns of booleans. Each 64-bit word processes eight frames at a time."""
+        """Return all columns of booleans.
+
+        Each 64-bit word processes eight frames at a time.
+        """
         numpy = self.numpy
         flags = numpy.empty((len(plan.names), self.words), numpy.uint64)
         lowest = numpy.uint64(0x0101010101010101)  # lowest bit of each byte of a word

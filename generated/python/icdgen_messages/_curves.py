@@ -19,7 +19,8 @@ from ._types import FieldInfo
 
 
 def on_curve(curve: _types.Curve, raw: float) -> float:
-    """Return the physical value of a raw value, by the last piece that begins at or below it.
+    """Return the physical value of a raw value, by the last piece that begins at or
+    below it.
 
     >>> on_curve(((0.0, (-40.0, 0.5, 0.25)),), 2)
     -38.0

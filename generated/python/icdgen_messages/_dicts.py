@@ -14,7 +14,10 @@ OCTETS = ("bytes", "text")  # types whose raw values are bytes
 
 
 def filled(struct: type[S], values: Mapping[str, Any]) -> S:
-    """Return a struct or message with these values and defaults. See `Struct.from_dict`."""
+    """Return a struct or message with these values and defaults.
+
+    See `Struct.from_dict`.
+    """
     result, remaining = struct(), dict(values)
     for info in struct.FIELDS:
         if info.when:  # the value of a field that is not present is ignored

@@ -26,8 +26,8 @@ def is_special(value: float, special: float) -> bool:
 
 def float32(bits: int) -> float:
     """Return the number of 32 bits. NaNs keep sign and payload."""
-    # A NaN has all bits of the exponent and a payload other than 0. The payloads have 23
-    # and 52 bits, which begin at the same end.
+    # A NaN has all bits of the exponent and a payload other than 0. The payloads have
+    # 23 and 52 bits, which begin at the same end.
     if bits & 0x7F800000 == 0x7F800000 and bits & 0x007FFFFF:
         wide = (bits >> 31) << 63 | 0x7FF << 52 | (bits & 0x007FFFFF) << 29
         return float64(wide)
@@ -67,7 +67,9 @@ def keep_nans(message: MessageFacts, data: _types.Buffer) -> None:
 
 
 def with_nans(message: MessageFacts, frame: bytes) -> bytes:
-    """Return ``frame`` with the exact bits of the byte-aligned 32-bit floats of ``message``."""
+    """Return ``frame`` with the exact bits of the byte-aligned 32-bit floats of
+    ``message``.
+    """
     exact = bytearray(frame)
     for name, byte in _aligned(message):
         bits = float32_bits(getattr(message, name))

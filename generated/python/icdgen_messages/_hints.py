@@ -23,12 +23,16 @@ Derivation = tuple[tuple[str, ...], tuple[float, ...], tuple[tuple[str, int, int
 """Attributes, numbers and steps of a derived value: see `_derived`."""
 
 Curve = tuple[tuple[float, tuple[float, ...]], ...]
-"""Pieces of a calibration, each with its first raw value and coefficients: see `_curves`."""
+"""Pieces of a calibration, each with its first raw value and coefficients: see
+`_curves`.
+"""
 
 T = TypeVar("T")
 
 Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
-"""One of several messages with an id: name, lengths, and byte, mask and value of constants."""
+"""One of several messages with an id: name, lengths, and byte, mask and value of
+constants.
+"""
 
 Known = Union[str, tuple[Candidate, ...]]
 """The message of an id, or its candidates if several share it."""

@@ -20,7 +20,9 @@ class Piece:
 
 
 def byte_order(info: FieldInfo, message: type[MessageFacts]) -> str:
-    """Return ``little`` or ``big``: the byte order of the field, or else of the message."""
+    """Return ``little`` or ``big``: the byte order of the field, or else of the
+    message.
+    """
     return info.byte_order or message.BYTE_ORDER
 
 

@@ -96,7 +96,10 @@ class Messages:
         return message
 
     def of(self, id: int) -> tuple[type[_lazy.Message], ...]:
-        """Return all messages of an id, several if they share it. Raise `UnknownIdError`."""
+        """Return all messages of an id, several if they share it.
+
+        Raise `UnknownIdError`.
+        """
         entry: _lazy.Any = self[id]
         return tuple(message for message, _, _ in getattr(entry, "FRAMES", ())) or (
             entry,

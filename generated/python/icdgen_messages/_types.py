@@ -186,7 +186,8 @@ class FieldInfo:
         return self.type == "int"
 
     def allows(self, value: float) -> bool:
-        """Return whether a physical value (raw, if there is no scale) is within the limits.
+        """Return whether a physical value (raw, if there is no scale) is within the
+        limits.
 
         NaN is within no limits.
         """
@@ -206,7 +207,9 @@ class FieldInfo:
 
     @property
     def parts(self) -> tuple[FieldInfo, ...]:
-        """The elements of an array as fields with names like ``temperatures[3]``, or the field."""
+        """The elements of an array as fields with names like ``temperatures[3]``, or
+        the field.
+        """
         return tuple(map(self._part, range(self.elements))) or (self,)
 
     def _part(self, index: int) -> FieldInfo:
@@ -243,7 +246,9 @@ class FieldInfo:
         )
 
     def within(self, part: FieldInfo) -> FieldInfo:
-        """Return this field of a struct as a field of the message, whose struct is ``part``."""
+        """Return this field of a struct as a field of the message, whose struct is
+        ``part``.
+        """
         facts = {name: getattr(self, name) for name in self.__slots__}
         for key in ("attribute", "name", "physical", "whole"):
             if facts[key]:

@@ -1,1 +1,4 @@
-"""Runtime of the generated messages. The generator copies these modules into each generated package."""
+"""Runtime of the generated messages.
+
+The generator copies these modules into each generated package.
+"""

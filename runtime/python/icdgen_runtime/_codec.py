@@ -1,4 +1,6 @@
-"""Helpers of the compiled decoders and encoders, and the search for a value out of range."""
+"""Helpers of the compiled decoders and encoders, and the search for a value out of
+range.
+"""
 
 from __future__ import annotations
 
@@ -76,7 +78,10 @@ def _value(info: FieldInfo, bits: int) -> _types.Any:
 
 
 class Inverse(dict[object, int]):
-    """Byte by the values of a `bit_table`, with reserved bits 0. Filled at the first use."""
+    """Byte by the values of a `bit_table`, with reserved bits 0.
+
+    Filled at the first use.
+    """
 
     def __init__(self, table: tuple[_types.Any, ...]) -> None:
         super().__init__()
@@ -94,7 +99,10 @@ class Inverse(dict[object, int]):
 
 
 class Members(dict[int, "_types.OpenEnum"]):
-    """Members of an enumeration by value. Unknown values are added by the enumeration."""
+    """Members of an enumeration by value.
+
+    Unknown values are added by the enumeration.
+    """
 
     def __init__(self, enum: type[_types.OpenEnum]) -> None:
         super().__init__((member.value, member) for member in enum)
@@ -113,7 +121,10 @@ def unsigned_bits(value: int, bits: int) -> int:
 
 
 def signed_bits(value: int, bits: int) -> int:
-    """Return ``value`` in two's complement. Raise `OverflowError` if it needs more bits."""
+    """Return ``value`` in two's complement.
+
+    Raise `OverflowError` if it needs more bits.
+    """
     if (value.__index__() + (1 << (bits - 1))) >> bits:
         raise OverflowError
     return value & ((1 << bits) - 1)
@@ -134,7 +145,9 @@ def checked_bytes(value: _types.Buffer, size: int) -> bytes:
 
 
 def text(value: _types.Buffer) -> str:
-    """Return the characters before the first NUL. A byte that is not ASCII becomes U+FFFD.
+    """Return the characters before the first NUL.
+
+    A byte that is not ASCII becomes U+FFFD.
 
     >>> text(bytes([0x31, 0x2E, 0x32, 0, 0]))
     '1.2'
@@ -163,7 +176,10 @@ def texts_of(info: FieldInfo, value: _types.Any) -> _types.Any:
 
 
 def bytes_of_texts(info: FieldInfo, value: _types.Any) -> _types.Any:
-    """Return the raw value of a text, or of the texts of an array. Raise `RangeError`."""
+    """Return the raw value of a text, or of the texts of an array.
+
+    Raise `RangeError`.
+    """
     size = info.bits // 8
     if not info.elements:
         raw = text_bytes(value, info.physical, size)

@@ -78,7 +78,9 @@ def compiled(message: type[MessageFacts], name: str) -> _types.Any:
 
 
 def longest(owner: type[MessageFacts], name: str) -> _types.Any:
-    """Compile the function ``name`` of the class, for frames of exactly ``LENGTH`` bytes."""
+    """Compile the function ``name`` of the class, for frames of exactly ``LENGTH``
+    bytes.
+    """
     codec = Codec(owner)
     source = {"from_bytes": codec.decoder, "to_bytes": codec.encoder}[name]()
     # The source contains only numbers and names of attributes (see `_units_of`).
@@ -113,7 +115,9 @@ class _Item:
 
 
 class Codec:
-    """Sources of the decoder and the encoder of a message, and the objects that they refer to."""
+    """Sources of the decoder and the encoder of a message, and the objects that they
+    refer to.
+    """
 
     def __init__(self, message: type[MessageFacts]) -> None:
         self.message, self.order = message, message.BYTE_ORDER
@@ -249,17 +253,23 @@ class Codec:
                 yield from self._units_of(inner.within(part))
 
     def _attribute_of(self, info: FieldInfo) -> str:
-        """Return the attribute of a field as an expression, of the message or of a struct in it."""
+        """Return the attribute of a field as an expression, of the message or of a
+        struct in it.
+        """
         holder, _, name = info.attribute.rpartition(".")
         return f"{self._holders[holder] if holder else 'self'}.{name}"
 
     def _target(self, info: FieldInfo) -> str:
-        """Return the target of a decoded value: the attribute, or a variable for an element."""
+        """Return the target of a decoded value: the attribute, or a variable for an
+        element.
+        """
         is_element = info.attribute.endswith("]")
         return f"e{info.at}" if is_element else self._attribute_of(info)
 
     def _word_array(self, info: FieldInfo, byte: int) -> None:
-        """Add an array of words: one item of the struct format, which a second format splits."""
+        """Add an array of words: one item of the struct format, which a second format
+        splits.
+        """
         own, local = self._attribute_of(info), f"v{byte}"
         # `struct` makes signalling 32-bit NaNs quiet: unpack these floats as integers.
         is_single = info.type == "float" and info.bits == 32
@@ -350,7 +360,9 @@ class Codec:
         self._assign.append(f"{self._target(info)} = {value}")
 
     def _byte_of_bits(self, byte: int) -> None:
-        """Add a byte with fields of single bits: an item, a table, and pieces of crossing fields."""
+        """Add a byte with fields of single bits: an item, a table, and pieces of
+        crossing fields.
+        """
         local = f"v{byte}"
         self._items.append(_Item(byte, 1, "B", local, local))
         parts = sorted(self._parts.get(byte, ()), key=lambda part: part[0])
@@ -367,7 +379,9 @@ class Codec:
             self._prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
 
     def _encode_crossing(self, info: FieldInfo) -> None:
-        """Encode a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
+        """Encode a field that crosses bytes: its bits as an integer, and its pieces for
+        the bytes.
+        """
         own, local = self._attribute_of(info), f"n{info.at}"
         if info.type == "float":
             bits_of = self._named(
@@ -414,7 +428,9 @@ class Codec:
 
 
 def _is_run(info: FieldInfo) -> bool:
-    """Return whether the field is an array of words, which one struct format can unpack."""
+    """Return whether the field is an array of words, which one struct format can
+    unpack.
+    """
     is_word = info.at % 8 == 0 and info.bits in _INTEGERS
     return bool(info.elements) and is_word and info.type not in _NO_WORDS
 

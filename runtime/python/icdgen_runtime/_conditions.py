@@ -17,7 +17,9 @@ from ._types import FieldInfo, MessageFacts
 
 
 def settle(message: MessageFacts, given: _types.Any) -> None:
-    """Set optional fields that are not present to None, except for ``given`` attributes."""
+    """Set optional fields that are not present to None, except for ``given``
+    attributes.
+    """
     for info in message.FIELDS:
         is_given = info.attribute in given or info.physical in given
         if info.when and not is_given and not is_present(info, message):

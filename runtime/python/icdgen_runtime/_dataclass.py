@@ -1,4 +1,6 @@
-"""Attributes of messages that `dataclasses` and `inspect` read, created at their first use."""
+"""Attributes of messages that `dataclasses` and `inspect` read, created at their first
+use.
+"""
 
 from __future__ import annotations
 

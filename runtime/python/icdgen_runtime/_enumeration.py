@@ -63,5 +63,7 @@ class OpenEnum(IntEnum):
 
 
 def is_signed(enum: type[OpenEnum]) -> bool:
-    """Return whether the values are in two's complement: the manual lists a negative one."""
+    """Return whether the values are in two's complement: the manual lists a negative
+    one.
+    """
     return any(member < 0 for member in enum.__members__.values())

@@ -30,7 +30,10 @@ class RangeError(IcdError):
 
 
 class UnknownIdError(IcdError):
-    """The node has no message with this ``kind`` and ``id``. ``why`` is any further reason."""
+    """The node has no message with this ``kind`` and ``id``.
+
+    ``why`` is any further reason.
+    """
 
     def __init__(self, node: str, kind: str, id: object, why: str = "") -> None:
         what = f"{node} has no {kind} {_shortly(id)}"

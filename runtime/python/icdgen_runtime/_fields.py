@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 class Form:
-    """Declaration of another attribute of the preceding field, such as its physical value."""
+    """Declaration of another attribute of the preceding field, such as its physical
+    value.
+    """
 
     __slots__ = ("kind", "terms", "curve", "ends")
 
@@ -108,7 +110,9 @@ def _curve_property(info: FieldInfo) -> property:
 
 
 def _counted(info: FieldInfo, name: str, values: Any) -> None:
-    """Raise `RangeError` that names the attribute unless there is a value for each element."""
+    """Raise `RangeError` that names the attribute unless there is a value for each
+    element.
+    """
     from ._codec import elements_of, has_elements
 
     if not has_elements(info, values):
@@ -187,7 +191,8 @@ def part(
 
 
 def scaled(p: int, c: int, q: int, *, default: _types.Any) -> _types.Any:
-    """Declare the physical value ``(raw * p + c) / q`` of the field above, correctly rounded.
+    """Declare the physical value ``(raw * p + c) / q`` of the field above, correctly
+    rounded.
 
     Setting it sets the nearest raw value, the even one of two. Raise `RangeError`.
     """
@@ -199,7 +204,8 @@ def curve(
     default: _types.Any,
     ends: tuple[int, ...] = (),
 ) -> _types.Any:
-    """Declare the physical value of the field above by a calibration: see `FieldInfo.curve`.
+    """Declare the physical value of the field above by a calibration: see
+    `FieldInfo.curve`.
 
     Setting it sets the nearest raw value, the even one of two. Raise `RangeError`. If
     ``ends`` are given, the raw value is between these.
@@ -217,7 +223,8 @@ def curve_only(
 
 
 def whole(p: int, c: int, *, init: _types.Literal[False] = False) -> _types.Any:
-    """Declare the exact integer ``raw * p + c`` of the field above, in parts of its unit.
+    """Declare the exact integer ``raw * p + c`` of the field above, in parts of its
+    unit.
 
     Setting it sets the nearest raw value, the even one of two. Raise `RangeError`.
     """
@@ -225,7 +232,8 @@ def whole(p: int, c: int, *, init: _types.Literal[False] = False) -> _types.Any:
 
 
 def text(*, default: _types.Any) -> _types.Any:
-    """Declare the text of the field above, or the texts of an array, up to the first NUL.
+    """Declare the text of the field above, or the texts of an array, up to the first
+    NUL.
 
     A byte that is not ASCII reads as U+FFFD. Setting it may raise `RangeError`.
     """

@@ -10,7 +10,10 @@ from ._types import FieldInfo, MessageFacts
 
 
 def part(kind: type[_types.M], message: MessageFacts, index: int) -> _types.M:
-    """Return the part with this class and index. Raise `IcdError` if it does not exist."""
+    """Return the part with this class and index.
+
+    Raise `IcdError` if it does not exist.
+    """
     key = kind.NODE, kind.__name__
     begins = [begin for *owner, begin in message.PARTS if tuple(owner) == key]
     if not begins:

@@ -8,7 +8,9 @@ from ._errors import LengthError, UnknownIdError
 
 
 class Shared(Message):
-    """Class for all messages of an id: `from_bytes` returns the one that matches the frame."""
+    """Class for all messages of an id: `from_bytes` returns the one that matches the
+    frame.
+    """
 
     FRAMES: tuple[
         tuple[type[Message], range, tuple[tuple[int, int, int], ...]], ...

@@ -1,8 +1,11 @@
-"""``python -m tests.assurance.measure.coverage [--out FOLDER]``: what the golden vectors execute of the generated C.
+"""``python -m tests.assurance.measure.coverage [--out FOLDER]``: what the golden
+vectors execute of the generated C.
 
-Two programs are built with gcc for coverage: the testee of the conformance run, which is asked everything that the vectors of
-messages and of the protocol demand, and one that asks what only C has. Ends with status 1 if a line or a branch of what is made
-of the ICDs was not executed for a reason that is not known (gaps of the runtime are only listed), or if an answer differs.
+Two programs are built with gcc for coverage: the testee of the conformance run, which
+is asked everything that the vectors of messages and of the protocol demand, and one
+that asks what only C has. Ends with status 1 if a line or a branch of what is made of
+the ICDs was not executed for a reason that is not known (gaps of the runtime are only
+listed), or if an answer differs.
 """
 
 from __future__ import annotations
@@ -51,10 +54,14 @@ _SAYS = (
 
 @dataclass
 class Executed:
-    """How often each line of a file, each way out of its conditions and each function was taken."""
+    """How often each line of a file, each way out of its conditions and each function
+    was taken.
+    """
 
     lines: dict[int, int] = field(default_factory=lambda: defaultdict(int))
-    branches: dict[tuple[int, int], int] = field(default_factory=lambda: defaultdict(int))
+    branches: dict[tuple[int, int], int] = field(
+        default_factory=lambda: defaultdict(int)
+    )
     functions: dict[str, int] = field(default_factory=lambda: defaultdict(int))
     of: dict[int, str] = field(default_factory=dict)  # line -> function
 
@@ -62,7 +69,10 @@ class Executed:
 def measure(icd: Icd, folder: Path) -> tuple[dict[str, Executed], Path, list[str]]:
     """What is executed, by file; the folder of the generated code; differences."""
     language = Language(
-        "c-coverage", c_language.BACKENDS, ("gcc",), partial(c_language.build, compiler="gcc", flags=FLAGS)
+        "c-coverage",
+        c_language.BACKENDS,
+        ("gcc",),
+        partial(c_language.build, compiler="gcc", flags=FLAGS),
     )
     wrong = []
     for result in (
@@ -74,10 +84,16 @@ def measure(icd: Icd, folder: Path) -> tuple[dict[str, Executed], Path, list[str
     program = built / "out" / "rest"
     text = built / "source" / "rest.c"
     text.write_text(rest.source(icd), "utf-8")
-    execute("gcc", "-std=c99", *FLAGS, "-I", built / "source" / "c", text, "-o", program)
+    execute(
+        "gcc", "-std=c99", *FLAGS, "-I", built / "source" / "c", text, "-o", program
+    )
     done = subprocess.run([program], capture_output=True, text=True)
     wrong += [done.stdout] if done.returncode else []
-    return collected(built / "out", built / "source" / "c"), built / "source" / "c", wrong
+    return (
+        collected(built / "out", built / "source" / "c"),
+        built / "source" / "c",
+        wrong,
+    )
 
 
 def collected(out: Path, source: Path) -> dict[str, Executed]:
@@ -85,9 +101,16 @@ def collected(out: Path, source: Path) -> dict[str, Executed]:
     found: dict[str, Executed] = defaultdict(Executed)
     for data in sorted(out.glob("*.gcda")):
         done = subprocess.run(
-            ["gcov", "--json-format", "--stdout", "-b", data.name], cwd=out, capture_output=True, text=True
+            ["gcov", "--json-format", "--stdout", "-b", data.name],
+            cwd=out,
+            capture_output=True,
+            text=True,
         )
-        for file in (one for text in done.stdout.splitlines() for one in json.loads(text)["files"]):
+        for file in (
+            one
+            for text in done.stdout.splitlines()
+            for one in json.loads(text)["files"]
+        ):
             path = Path(file["file"])
             if not path.is_relative_to(source):
                 continue
@@ -103,8 +126,12 @@ def collected(out: Path, source: Path) -> dict[str, Executed]:
     return dict(found)
 
 
-def gaps(executed: dict[str, Executed], source: Path) -> list[tuple[str, int, str, str, str, str]]:
-    """File, line, function, what was not taken, the text and the reason (empty: not known), in order."""
+def gaps(
+    executed: dict[str, Executed], source: Path
+) -> list[tuple[str, int, str, str, str, str]]:
+    """File, line, function, what was not taken, the text and the reason (empty: not
+    known), in order.
+    """
     reasons = yaml.safe_load(REASONS.read_text("utf-8"))
     found = []
     for name, one in sorted(executed.items()):
@@ -115,16 +142,29 @@ def gaps(executed: dict[str, Executed], source: Path) -> list[tuple[str, int, st
                 missed.setdefault(number, "branch")
         for number, what in sorted(missed.items()):
             said, function = text[number - 1].strip(), one.of[number]
-            why = next((row["why"] for row in reasons if _is_about(row, name, function, what, said)), "")
+            why = next(
+                (
+                    row["why"]
+                    for row in reasons
+                    if _is_about(row, name, function, what, said)
+                ),
+                "",
+            )
             if not one.functions.get(function, 1) and name in SUPPORT:
                 why = why or "Nothing that is made of these ICDs calls the function."
             found.append((name, number, function, what, said, why))
     return found
 
 
-def _is_about(reason: dict[str, str], file: str, function: str, what: str, said: str) -> bool:
+def _is_about(
+    reason: dict[str, str], file: str, function: str, what: str, said: str
+) -> bool:
     asked = {"file": file, "function": function, "what": what, "text": said}
-    return all(re.fullmatch(reason[key], value) for key, value in asked.items() if key in reason)
+    return all(
+        re.fullmatch(reason[key], value)
+        for key, value in asked.items()
+        if key in reason
+    )
 
 
 def mixed(source: Path) -> list[str]:
@@ -133,7 +173,9 @@ def mixed(source: Path) -> list[str]:
         f"{path.name}: {statement.strip()}"
         for path in sorted(source.rglob("*.h"))
         if not path.name.startswith("icdgen")
-        for statement in re.split(r"[;{}]", re.sub(r"/\*.*?\*/", "", path.read_text("utf-8"), flags=re.S))
+        for statement in re.split(
+            r"[;{}]", re.sub(r"/\*.*?\*/", "", path.read_text("utf-8"), flags=re.S)
+        )
     )
     return [one for one in statements if "&&" in one and "||" in one]
 
@@ -141,10 +183,20 @@ def mixed(source: Path) -> list[str]:
 def measurements(executed: dict[str, Executed], source: Path) -> list[Measured]:
     """Coverage by file, and the gaps."""
     rows = []
-    for name, one in sorted(executed.items(), key=lambda item: (item[0].startswith("icdgen"), item[0])):
-        taken = [sum(map(bool, part.values())) for part in (one.functions, one.lines, one.branches)]
+    for name, one in sorted(
+        executed.items(), key=lambda item: (item[0].startswith("icdgen"), item[0])
+    ):
+        taken = [
+            sum(map(bool, part.values()))
+            for part in (one.functions, one.lines, one.branches)
+        ]
         sizes = [len(part) for part in (one.functions, one.lines, one.branches)]
-        rows.append((name, *(number for pair in zip(sizes, taken, strict=True) for number in pair)))
+        rows.append(
+            (
+                name,
+                *(number for pair in zip(sizes, taken, strict=True) for number in pair),
+            )
+        )
     columns = ("file", "functions", "called", "lines", "executed", "branches", "taken")
     facts = []
     for kind, some in (
@@ -152,7 +204,9 @@ def measurements(executed: dict[str, Executed], source: Path) -> list[Measured]:
         ("The runtime", [row for row in rows if row[0].startswith("icdgen")]),
     ):
         for at, what in ((1, "functions"), (3, "lines"), (5, "branches")):
-            facts.append((f"{kind}: {what}", share(total(some, at + 1), total(some, at))))
+            facts.append(
+                (f"{kind}: {what}", share(total(some, at + 1), total(some, at)))
+            )
     missing = gaps(executed, source)
     of_gaps = ("file", "line", "function", "not taken", "text", "why")
     return [
@@ -172,8 +226,15 @@ _GAPS = (
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("measured"), help="folder to write to (default: %(default)s)")
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("measured"),
+        help="folder to write to (default: %(default)s)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     if missing := [tool for tool in ("gcc", "gcov") if shutil.which(tool) is None]:
         parser.error(f"not installed: {', '.join(missing)}")

@@ -16,7 +16,10 @@ from tests.conformance.languages import version
 
 @dataclass
 class Measured:
-    """What a command found; ``language`` is that of the code, ``tools`` are asked for their versions."""
+    """What a command found.
+
+    ``language`` is that of the code, ``tools`` are asked for their versions.
+    """
 
     name: str
     title: str

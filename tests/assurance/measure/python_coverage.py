@@ -1,7 +1,9 @@
-"""``python -m tests.assurance.measure.python_coverage [--out FOLDER]``: what the golden vectors execute of the generated Python.
+"""``python -m tests.assurance.measure.python_coverage [--out FOLDER]``: what the golden
+vectors execute of the generated Python.
 
-The testee of the conformance run is asked everything that the vectors of messages and of the protocol demand. Ends with status 1
-if a line of what is made of the ICDs was not executed, if there is a branch in it, or if an answer differs.
+The testee of the conformance run is asked everything that the vectors of messages and
+of the protocol demand. Ends with status 1 if a line of what is made of the ICDs was not
+executed, if there is a branch in it, or if an answer differs.
 """
 
 from __future__ import annotations
@@ -61,8 +63,17 @@ _BRANCHES = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.Try, ast.Mat
 
 def build(source: Path, out: Path) -> list[str]:
     """The command of the testee, watched."""
-    *env, interpreter, _, module = python_language.build(source, out, interpreter=sys.executable)
-    return [*env, interpreter, traced.__file__, str(out / "lines.json"), str(source / "python"), module]
+    *env, interpreter, _, module = python_language.build(
+        source, out, interpreter=sys.executable
+    )
+    return [
+        *env,
+        interpreter,
+        traced.__file__,
+        str(out / "lines.json"),
+        str(source / "python"),
+        module,
+    ]
 
 
 def measure(icd: Icd, folder: Path) -> tuple[list[tuple[str, int, int]], list[str]]:
@@ -76,20 +87,30 @@ def measure(icd: Icd, folder: Path) -> tuple[list[tuple[str, int, int]], list[st
     ):
         wrong += [text for result in results() for text in result.shown]
         built = next(folder.glob("python-coverage-*"))
-        for name, lines in json.loads((built / "out" / "lines.json").read_text("utf-8")).items():
+        for name, lines in json.loads(
+            (built / "out" / "lines.json").read_text("utf-8")
+        ).items():
             seen.setdefault(name, set()).update(lines)
     rows = []
     top = built / "source" / "python"
     own = {str(path) for path in (built / "source" / "python-testee").rglob("*.py")}
     for path in sorted(top.rglob("*.py")):
-        if str(built / "source" / "python-testee" / path.relative_to(top)) in own or path.stem == _ASKED:
+        if (
+            str(built / "source" / "python-testee" / path.relative_to(top)) in own
+            or path.stem == _ASKED
+        ):
             continue
         lines = executable(path.read_text("utf-8"))
         name = path.relative_to(top).as_posix()
         rows.append((name, len(lines), len(lines & seen.get(str(path), set()))))
         if is_made(icd, name):
-            wrong += [f"{name}:{line}: not executed" for line in sorted(lines - seen.get(str(path), set()))]
-            wrong += [f"{name}:{line}: a branch" for line in branches(path.read_text("utf-8"))]
+            wrong += [
+                f"{name}:{line}: not executed"
+                for line in sorted(lines - seen.get(str(path), set()))
+            ]
+            wrong += [
+                f"{name}:{line}: a branch" for line in branches(path.read_text("utf-8"))
+            ]
     return rows, wrong
 
 
@@ -104,9 +125,18 @@ def by_id(icd: Icd, built: Path) -> list[messages.Result]:
     ]
     package = next(top.glob("*/_base.py")).parent.name
     (top / f"{_ASKED}.py").write_text(
-        _BY_ID.format(asked=asked, nodes=[node.name for node in icd.nodes], package=package), "utf-8"
+        _BY_ID.format(
+            asked=asked, nodes=[node.name for node in icd.nodes], package=package
+        ),
+        "utf-8",
     )
-    command = [sys.executable, traced.__file__, str(built / "out" / "lines.json"), str(top), _ASKED]
+    command = [
+        sys.executable,
+        traced.__file__,
+        str(built / "out" / "lines.json"),
+        str(top),
+        _ASKED,
+    ]
     execute("env", f"PYTHONPATH={top}", "PYTHONDONTWRITEBYTECODE=1", *command)
     return []
 
@@ -120,7 +150,11 @@ def executable(text: str) -> set[int]:
         found |= traced.lines_of(code)
         codes += [one for one in code.co_consts if hasattr(one, "co_lines")]
     for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == _TYPES_ONLY:
+        if (
+            isinstance(node, ast.If)
+            and isinstance(node.test, ast.Name)
+            and node.test.id == _TYPES_ONLY
+        ):
             found -= set(range(node.lineno + 1, (node.end_lineno or node.lineno) + 1))
     return found
 
@@ -128,7 +162,11 @@ def executable(text: str) -> set[int]:
 def branches(text: str) -> list[int]:
     """The lines in which one of several ways is taken."""
     found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, _BRANCHES))
-    return sorted(one.lineno for one in found if not (isinstance(one, ast.If) and _TYPES_ONLY in ast.unparse(one.test)))
+    return sorted(
+        one.lineno
+        for one in found
+        if not (isinstance(one, ast.If) and _TYPES_ONLY in ast.unparse(one.test))
+    )
 
 
 def is_made(icd: Icd, name: str) -> bool:
@@ -147,13 +185,30 @@ def measured(icd: Icd, rows: list[tuple[str, int, int]]) -> Measured:
     ]
     columns = ("file", "lines", "executed")
     title = "Coverage of the generated Python"
-    return Measured("coverage-python", title, _SAYS, "python", COMMAND, (), columns, [*made, *runtime], facts)
+    return Measured(
+        "coverage-python",
+        title,
+        _SAYS,
+        "python",
+        COMMAND,
+        (),
+        columns,
+        [*made, *runtime],
+        facts,
+    )
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("measured"), help="folder to write to (default: %(default)s)")
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("measured"),
+        help="folder to write to (default: %(default)s)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     icd = icd_of(options.icds)
     with tempfile.TemporaryDirectory() as name:

@@ -1,8 +1,11 @@
-"""``python -m tests.assurance.measure.rust_coverage [--out FOLDER]``: what the golden vectors execute of the generated Rust.
+"""``python -m tests.assurance.measure.rust_coverage [--out FOLDER]``: what the golden
+vectors execute of the generated Rust.
 
-The testee of the conformance run, instrumented by rustc, is asked everything that the vectors of messages and of the protocol
-demand, and a program asks what only Rust has. Ends with status 1 if a line of what is made of the ICDs was not executed, or if an
-answer differs. The tools that read what rustc counts come from a crate: ``cargo install llvm_profparser``.
+The testee of the conformance run, instrumented by rustc, is asked everything that the
+vectors of messages and of the protocol demand, and a program asks what only Rust has.
+Ends with status 1 if a line of what is made of the ICDs was not executed, or if an
+answer differs. The tools that read what rustc counts come from a crate: ``cargo install
+llvm_profparser``.
 """
 
 from __future__ import annotations
@@ -46,7 +49,10 @@ Lines = dict[str, Counter[int]]  # by file: how often each line was executed
 
 
 def can_count() -> bool:
-    """Whether rustc has what instrumented programs are linked with; that of Debian 12 has not."""
+    """Whether rustc has what instrumented programs are linked with.
+
+    That of Debian 12 has not.
+    """
     with tempfile.TemporaryDirectory() as folder:
         (empty := Path(folder) / "empty.rs").write_text("fn main() {}\n", "utf-8")
         command = ["rustc", *FLAGS, "--out-dir", folder, str(empty)]
@@ -62,7 +68,11 @@ def build(source: Path, out: Path) -> list[str]:
     finally:
         os.environ.pop("RUSTFLAGS")
         os.environ.update({} if before is None else {"RUSTFLAGS": before})
-    return ["env", f"LLVM_PROFILE_FILE={out / 'testee-%p.profraw'}", str(out / "debug" / "testee")]
+    return [
+        "env",
+        f"LLVM_PROFILE_FILE={out / 'testee-%p.profraw'}",
+        str(out / "debug" / "testee"),
+    ]
 
 
 def rest(icd: Icd, source: Path, out: Path) -> Path:
@@ -70,14 +80,28 @@ def rest(icd: Icd, source: Path, out: Path) -> Path:
     program, text = out / "rest", out / "rest.rs"
     text.write_text(rust_rest.source(icd), "utf-8")
     rustc = ("rustc", "--edition", "2021", *FLAGS)
-    execute(*rustc, "--crate-name", CRATE, "--crate-type", "lib", "--out-dir", out, source / "lib.rs")
-    execute(*rustc, "--extern", f"{CRATE}={out / f'lib{CRATE}.rlib'}", "-o", program, text)
+    execute(
+        *rustc,
+        "--crate-name",
+        CRATE,
+        "--crate-type",
+        "lib",
+        "--out-dir",
+        out,
+        source / "lib.rs",
+    )
+    execute(
+        *rustc, "--extern", f"{CRATE}={out / f'lib{CRATE}.rlib'}", "-o", program, text
+    )
     execute(program, env={**os.environ, "LLVM_PROFILE_FILE": str(out / "rest.profraw")})
     return program
 
 
 def measure(icd: Icd, folder: Path) -> tuple[Lines, Path, list[str]]:
-    """How often each line of each file was executed; the folder of the crate's sources; what is wrong."""
+    """How often each line of each file was executed.
+
+    The folder of the crate's sources; what is wrong.
+    """
     language = Language("rust-coverage", rust_language.BACKENDS, (), build)
     results = (
         *messages.run([language], icd, vectors_of(icd), 0, 1, folder),
@@ -86,7 +110,10 @@ def measure(icd: Icd, folder: Path) -> tuple[Lines, Path, list[str]]:
     built = next(folder.glob("rust-coverage-*"))
     out, source = built / "out", built / "source" / "rust" / "src"
     found: Lines = defaultdict(Counter)
-    for program, profiles in ((out / "debug" / "testee", "testee-*.profraw"), (rest(icd, source, out), "rest.profraw")):
+    for program, profiles in (
+        (out / "debug" / "testee", "testee-*.profraw"),
+        (rest(icd, source, out), "rest.profraw"),
+    ):
         collect(found, program, sorted(out.glob(profiles)), source)
     return found, source, [text for result in results for text in result.shown]
 
@@ -98,7 +125,11 @@ def collect(found: Lines, program: Path, profiles: list[Path], source: Path) -> 
     for line in execute("cov", "show", "--object", program, *given).splitlines():
         if line.startswith("/"):
             path = Path(line.strip())
-            name = path.relative_to(source).as_posix() if path.is_relative_to(source) else None
+            name = (
+                path.relative_to(source).as_posix()
+                if path.is_relative_to(source)
+                else None
+            )
         elif name is not None and (match := _LINE.match(line)):
             found[name][int(match[1])] += int(match[2])
 
@@ -112,13 +143,23 @@ def gaps(found: Lines, source: Path) -> Iterator[str]:
     """Lines that are made of the ICDs and were not executed."""
     for name, lines in sorted(found.items()):
         text = (source / name).read_text("utf-8").split("\n")
-        missed = (number for number, count in sorted(lines.items()) if not count and is_made(name))
-        yield from (f"{name}:{number}: not executed: {text[number - 1].strip()}" for number in missed)
+        missed = (
+            number
+            for number, count in sorted(lines.items())
+            if not count and is_made(name)
+        )
+        yield from (
+            f"{name}:{number}: not executed: {text[number - 1].strip()}"
+            for number in missed
+        )
 
 
 def measured(found: Lines) -> Measured:
     """The paper."""
-    rows = [(name, len(lines), sum(map(bool, lines.values()))) for name, lines in sorted(found.items())]
+    rows = [
+        (name, len(lines), sum(map(bool, lines.values())))
+        for name, lines in sorted(found.items())
+    ]
     made = [row for row in rows if is_made(row[0])]
     runtime = [row for row in rows if not is_made(row[0])]
     facts = [
@@ -127,18 +168,41 @@ def measured(found: Lines) -> Measured:
     ]
     columns = ("file", "lines", "executed")
     title = "Coverage of the generated Rust"
-    return Measured("coverage-rust", title, _SAYS, "rust", COMMAND, ("rustc",), columns, [*made, *runtime], facts)
+    return Measured(
+        "coverage-rust",
+        title,
+        _SAYS,
+        "rust",
+        COMMAND,
+        ("rustc",),
+        columns,
+        [*made, *runtime],
+        facts,
+    )
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("measured"), help="folder to write to (default: %(default)s)")
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("measured"),
+        help="folder to write to (default: %(default)s)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
-    if missing := [tool for tool in ("cargo", "rustc", "cov") if shutil.which(tool) is None]:
-        parser.error(f"not installed: {', '.join(missing)} (cov comes with: cargo install llvm_profparser)")
+    if missing := [
+        tool for tool in ("cargo", "rustc", "cov") if shutil.which(tool) is None
+    ]:
+        parser.error(
+            f"not installed: {', '.join(missing)} (cov comes with: cargo install llvm_profparser)"
+        )
     if not can_count():
-        parser.error("rustc was built without the profiler's runtime: install it with rustup")
+        parser.error(
+            "rustc was built without the profiler's runtime: install it with rustup"
+        )
     icd = icd_of(options.icds)
     with tempfile.TemporaryDirectory() as name:
         found, source, wrong = measure(icd, Path(name))

@@ -1,4 +1,7 @@
-"""The program that asks what only Rust has: see ``rest.rs.j2``. Frames and names are the description's."""
+"""The program that asks what only Rust has: see ``rest.rs.j2``.
+
+Frames and names are the description's.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,12 @@ from icdgen.backends.rust.accessors import accessors
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.parts import parts
 from icdgen.backends.rust.text import string
-from icdgen.describe import EnumDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe import (
+    EnumDescription,
+    MessageDescription,
+    NodeDescription,
+    describe,
+)
 from icdgen.icd.model import Icd
 
 HERE = Path(__file__).parent
@@ -20,7 +28,9 @@ HERE = Path(__file__).parent
 
 def source(icd: Icd) -> str:
     """The program."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True
+    )
     nodes = {node.name: _node(node) for node in describe(icd).nodes}
     return environment.get_template("rest.rs.j2").render(nodes=nodes)
 
@@ -28,20 +38,39 @@ def source(icd: Icd) -> str:
 def _node(node: NodeDescription) -> dict[str, Any]:
     return {
         "name": node.name,
-        "enums": [{"type": one.camel_name, "numbers": _values(one)} for one in node.enums],
+        "enums": [
+            {"type": one.camel_name, "numbers": _values(one)} for one in node.enums
+        ],
         "messages": [
-            {"path": _path(one), "frame": ", ".join(["0"] * one.model.length), "lines": list(_lines(one))}
+            {
+                "path": _path(one),
+                "frame": ", ".join(["0"] * one.model.length),
+                "lines": list(_lines(one)),
+            }
             for one in node.messages
         ],
-        "directions": [_direction(node, direction.kind) for direction in node.directions],
+        "directions": [
+            _direction(node, direction.kind) for direction in node.directions
+        ],
     }
 
 
 def _direction(node: NodeDescription, kind: str) -> dict[str, Any]:
     found = next(direction for direction in node.directions if direction.kind == kind)
-    messages = [(_path(one), getattr(one.model, id), one.model.length) for one, id in found.messages]
-    free = {*range(2**node.id_bits)} - {id for _, id, _ in messages} if node.id_bits <= 16 else {0}
-    return {"name": kind.capitalize(), "messages": messages, "unknown": max(free, default=None)}
+    messages = [
+        (_path(one), getattr(one.model, id), one.model.length)
+        for one, id in found.messages
+    ]
+    free = (
+        {*range(2**node.id_bits)} - {id for _, id, _ in messages}
+        if node.id_bits <= 16
+        else {0}
+    )
+    return {
+        "name": kind.capitalize(),
+        "messages": messages,
+        "unknown": max(free, default=None),
+    }
 
 
 def _values(enum: EnumDescription) -> list[tuple[int, str]]:
@@ -50,7 +79,14 @@ def _values(enum: EnumDescription) -> list[tuple[int, str]]:
     named = {}
     for member in enum.members:
         named.setdefault(member.model.value, f"Some({string(member.model.name)})")
-    free = next((value for value in range(low, low + 2**enum.storage.bits) if value not in named), None)
+    free = next(
+        (
+            value
+            for value in range(low, low + 2**enum.storage.bits)
+            if value not in named
+        ),
+        None,
+    )
     return [*named.items(), *([(free, "None")] if free is not None else [])]
 
 
@@ -75,5 +111,7 @@ def _lines(message: MessageDescription) -> Iterator[str]:
             yield f'one.set_{field.physical_name}("").unwrap();'
             yield f'assert_eq!(one.{field.physical_name}(), Some(""));'
     for part in parts(message):
-        kind = part.type.replace("super::", f"icd::{message.node.name}::").replace("crate::", "icd::")
+        kind = part.type.replace("super::", f"icd::{message.node.name}::").replace(
+            "crate::", "icd::"
+        )
         yield f"let _ = <{kind}>::from(&one);"

@@ -1,7 +1,9 @@
-"""``python -m tests.assurance.measure.sizes [--out FOLDER]``: code, stack and RAM of each message, by target, from the compilers.
+"""``python -m tests.assurance.measure.sizes [--out FOLDER]``: code, stack and RAM of
+each message, by target, from the compilers.
 
-One object is compiled a target, in which each encoder and decoder is a function of its own that nothing can be shared with but
-the functions of the support header that the compiler does not inline.
+One object is compiled a target, in which each encoder and decoder is a function of its
+own that nothing can be shared with but the functions of the support header that the
+compiler does not inline.
 """
 
 from __future__ import annotations
@@ -38,7 +40,12 @@ class Target(NamedTuple):
 
 
 TARGETS = (
-    Target("cortex-m4", "Cortex-M4", "arm-none-eabi-", ("-Os", "-mcpu=cortex-m4", "-mthumb")),
+    Target(
+        "cortex-m4",
+        "Cortex-M4",
+        "arm-none-eabi-",
+        ("-Os", "-mcpu=cortex-m4", "-mthumb"),
+    ),
     Target("avr", "AVR (ATmega2560)", "avr-", ("-Os", "-mmcu=atmega2560")),
 )
 
@@ -67,33 +74,73 @@ def measure(icd: Icd, target: Target, folder: Path) -> Measured:
             (message.node.name, message.model.name, message.model.length, data[f"r_{stem}"], decode.code, encode.code,
              decode.stack, encode.stack)
         )  # fmt: skip
-    shared = {name: one for name, one in functions.items() if name[:2] not in ("d_", "e_")}
+    shared = {
+        name: one for name, one in functions.items() if name[:2] not in ("d_", "e_")
+    }
     facts = [
         ("All decoders, bytes of code", f"{total(rows, 4):,}"),
         ("All encoders, bytes of code", f"{total(rows, 5):,}"),
-        ("Called by them, bytes of code", f"{sum(one.code for one in shared.values()):,}"),
+        (
+            "Called by them, bytes of code",
+            f"{sum(one.code for one in shared.values()):,}",
+        ),
         ("Deepest stack of a message", f"{max(max(row[6], row[7]) for row in rows):,}"),
     ]
     if (folder / "icdgen_wire.c").exists():
         wire, _ = compiled(folder, "icdgen_wire.c", target, "-DICDGEN_SHARED=1")
-        facts.append(("Wire layer, bytes of code", f"{sum(one.code for one in wire.values()):,}"))
-        facts.append(("Wire layer, deepest stack of one function", f"{max(one.stack for one in wire.values()):,}"))
-    columns = ("node", "message", "frame", "RAM", "decode", "encode", "stack of decode", "stack of encode")
+        facts.append(
+            ("Wire layer, bytes of code", f"{sum(one.code for one in wire.values()):,}")
+        )
+        facts.append(
+            (
+                "Wire layer, deepest stack of one function",
+                f"{max(one.stack for one in wire.values()):,}",
+            )
+        )
+    columns = (
+        "node",
+        "message",
+        "frame",
+        "RAM",
+        "decode",
+        "encode",
+        "stack of decode",
+        "stack of encode",
+    )
     title = f"Sizes on {target.title}"
     facts.append(("Compiled with", " ".join(target.flags)))
-    return Measured(f"sizes-{target.name}", title, _SAYS, "c", COMMAND, (f"{target.tools}gcc",), columns, rows, facts)
+    return Measured(
+        f"sizes-{target.name}",
+        title,
+        _SAYS,
+        "c",
+        COMMAND,
+        (f"{target.tools}gcc",),
+        columns,
+        rows,
+        facts,
+    )
 
 
-def compiled(folder: Path, source: str, target: Target, *more: str) -> tuple[dict[str, Function], dict[str, int]]:
+def compiled(
+    folder: Path, source: str, target: Target, *more: str
+) -> tuple[dict[str, Function], dict[str, int]]:
     """The functions of an object by name, and the bytes of its data."""
     made = folder / f"{Path(source).stem}.o"
     flags = (*target.flags, "-std=c99", "-ffunction-sections", "-fstack-usage", *more)
-    execute(f"{target.tools}gcc", *flags, f"-I{folder}", "-c", folder / source, "-o", made)
+    execute(
+        f"{target.tools}gcc", *flags, f"-I{folder}", "-c", folder / source, "-o", made
+    )
     stacks: dict[str, int] = {}
     for line in made.with_suffix(".su").read_text("utf-8").splitlines():
         where, bytes_, kind = line.split("\t")
-        assert kind in ("static", "dynamic,bounded"), line  # else its size is known when it runs only
-        name = where.rpartition(":")[2].partition(".")[0]  # without what the compiler calls a copy of it
+        assert kind in (
+            "static",
+            "dynamic,bounded",
+        ), line  # else its size is known when it runs only
+        name = where.rpartition(":")[2].partition(".")[
+            0
+        ]  # without what the compiler calls a copy of it
         stacks[name] = max(int(bytes_), stacks.get(name, 0))
     functions, data = {}, {}
     for line in execute(f"{target.tools}nm", "-S", made).splitlines():
@@ -108,8 +155,15 @@ def compiled(folder: Path, source: str, target: Target, *more: str) -> tuple[dic
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("measured"), help="folder to write to (default: %(default)s)")
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("measured"),
+        help="folder to write to (default: %(default)s)",
+    )
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)"
+    )
     options = parser.parse_args(arguments)
     tools = [f"{target.tools}gcc" for target in TARGETS]
     if missing := [tool for tool in tools if shutil.which(tool) is None]:

@@ -1,6 +1,8 @@
-"""``python traced.py OUT FOLDER MODULE``: runs a module and writes which lines of the sources of a folder were executed.
+"""``python traced.py OUT FOLDER MODULE``: runs a module and writes which lines of the
+sources of a folder were executed.
 
-A function of which every line was seen is not watched any more, so that this costs little.
+A function of which every line was seen is not watched any more, so that this costs
+little.
 """
 
 from __future__ import annotations

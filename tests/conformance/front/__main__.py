@@ -1,6 +1,9 @@
-"""A testee: the front before the program of a language. ``python __main__.py PLAN COMMAND [WORD ...]``.
+"""A testee: the front before the program of a language.
 
-Reads requests from standard input, one JSON object a line, and writes one answer a line.
+``python __main__.py PLAN COMMAND [WORD ...]``.
+
+Reads requests from standard input, one JSON object a line, and writes one answer a
+line.
 """
 
 from __future__ import annotations
@@ -19,7 +22,9 @@ from tests.conformance.front.program import Died, Program
 
 def main() -> int:
     program = Program(sys.argv[2:])
-    front = Front(json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")), program.ask)
+    front = Front(
+        json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")), program.ask
+    )
     try:
         for line in sys.stdin.buffer:
             sys.stdout.write(json.dumps(front.answer(line.rstrip(b"\r\n"))) + "\n")

@@ -13,7 +13,9 @@ DIRECTIONS = {"telecommand": 0, "telemetry": 1}
 
 
 class Front:
-    """Answers requests for a set of ICDs, whose `plan` it is given, by asking a program."""
+    """Answers requests for a set of ICDs, whose `plan` it is given, by asking a
+    program.
+    """
 
     def __init__(self, plan: dict[str, Any], ask: Ask) -> None:
         self.plan, self._ask = plan, ask
@@ -21,7 +23,10 @@ class Front:
         self._routes = [self._routes_of(node["speaks"]) for node in plan["nodes"]]
 
     def answer(self, line: bytes) -> dict[str, Any]:
-        """The answer to a request, whatever it is. Raises `Died` if the program has none."""
+        """The answer to a request, whatever it is.
+
+        Raises `Died` if the program has none.
+        """
         try:
             request = json.loads(line.decode("utf-8"))
             if not isinstance(request, dict):
@@ -51,9 +56,11 @@ class Front:
     def route(
         self, node: int, kind: str, id: int, name: str | None = None
     ) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
-        """Node, direction and id that lead to a message, and what is known of it: None if the ICD has none there.
+        """Node, direction and id that lead to a message, and what is known of it: None
+        if the ICD has none there.
 
-        Of an id that several messages have ``name`` says which is meant; without it the id leads to none of them: see `is_shared`.
+        Of an id that several messages have ``name`` says which is meant; without it the
+        id leads to none of them: see `is_shared`.
         """
         if not 0 <= id < 1 << self.plan["nodes"][node]["id_bits"]:
             raise Refusal("unknown-id")
@@ -66,7 +73,9 @@ class Front:
         if name is not None and not found:
             raise Refusal("unknown-id")
         direction, message = found[0] if found else (DIRECTIONS[kind], None)
-        if message is not None and self.is_shared(node, list(DIRECTIONS)[direction], id):
+        if message is not None and self.is_shared(
+            node, list(DIRECTIONS)[direction], id
+        ):
             return (node, direction, f"{id}:{message['name'].encode().hex()}"), message
         return (node, direction, id), message
 
@@ -74,7 +83,9 @@ class Front:
         """Whether several messages have the id."""
         return len(self._routes[node].get((kind, id), [])) > 1
 
-    def _routes_of(self, speaks: list[int]) -> dict[tuple[str, int], list[tuple[int, dict[str, Any]]]]:
+    def _routes_of(
+        self, speaks: list[int]
+    ) -> dict[tuple[str, int], list[tuple[int, dict[str, Any]]]]:
         found: dict[tuple[str, int], list[tuple[int, dict[str, Any]]]] = {}
         spoken = [self.plan["messages"][place] for place in speaks]
         for message in spoken:
@@ -94,21 +105,33 @@ class Front:
         return found
 
     def _wire(self, op: str, request: dict[str, Any]) -> dict[str, Any]:
-        """The answer about how the messages travel: of the node that is named, else of the last that has a protocol."""
+        """The answer about how the messages travel: of the node that is named, else of
+        the last that has a protocol.
+        """
         if "node" in request:
             place: int | None = self.node(request)
         else:
-            linked = [place for place, node in enumerate(self.plan["nodes"]) if node["link"]]
+            linked = [
+                place for place, node in enumerate(self.plan["nodes"]) if node["link"]
+            ]
             place = linked[-1] if linked else None
         link = self.plan["nodes"][place]["link"] if place is not None else None
         try:
             if link is None:
-                checked = wire.Asking(lambda *words: _nothing(), {"longest": 1 << 16, "around": 0, "framing": None})
+                checked = wire.Asking(
+                    lambda *words: _nothing(),
+                    {"longest": 1 << 16, "around": 0, "framing": None},
+                )
             else:
-                checked = wire.Asking(lambda word, *more: self.ask(word, place, *more), link)
+                checked = wire.Asking(
+                    lambda word, *more: self.ask(word, place, *more), link
+                )
             return {**wire.OPS, **scripts.OPS}[op](checked, request)
         except Refusal as refusal:
-            if refusal.answer["error"] == "range" and op not in ("dos_time", "stream_encode"):
+            if refusal.answer["error"] == "range" and op not in (
+                "dos_time",
+                "stream_encode",
+            ):
                 raise Refusal("range") from None
             raise
 

@@ -27,7 +27,11 @@ def decode(front: Front, request: Request) -> dict[str, Any]:
         raise Refusal("request", detail="`names` is neither true nor false")
     route, message = _message(front, request)
     reply = front.ask("decode", *route, frame.hex())
-    if message is None and "name" in reply.facts and front.is_shared(route[0], request["kind"], request["id"]):
+    if (
+        message is None
+        and "name" in reply.facts
+        and front.is_shared(route[0], request["kind"], request["id"])
+    ):
         return {"message": text_of(reply.facts["name"]), "bytes": reply.facts["bytes"]}
     if message is None:
         raise Refusal("dispatcher", detail="decodes a message that does not exist")
@@ -39,7 +43,9 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
     if not isinstance(raw, dict) or not isinstance(physical, dict):
         raise Refusal("request", detail="`raw` or `physical` is no object")
     route, fields = _known(front, request)
-    settable = {field["name"]: field["settable"] for field in fields if not field["view"]}
+    settable = {
+        field["name"]: field["settable"] for field in fields if not field["view"]
+    }
     for name in (
         *(name for name in raw if name not in settable),
         *(name for name in physical if not settable.get(name)),
@@ -65,7 +71,10 @@ def constants(front: Front, request: Request) -> dict[str, Any]:
     route, fields = _known(front, request)
     reply = front.ask("constants", *route)
     rows = _named(fields, reply)
-    limits = {name: {key: _double(row[key]) for key in LIMITS if key in row} for name, _, row in rows}
+    limits = {
+        name: {key: _double(row[key]) for key in LIMITS if key in row}
+        for name, _, row in rows
+    }
     return {
         "name": text_of(reply.facts["name"]),
         "ids": [int(id) for id in items(reply.facts["ids"])],
@@ -87,12 +96,19 @@ def enum(front: Front, request: Request) -> dict[str, Any]:
     enums = front.plan["nodes"][node]["enums"]
     if name not in enums:
         raise Refusal("unknown-enum")
-    return {"name": text_of(front.ask("enum", node, enums.index(name), value).facts.get("name"))}
+    return {
+        "name": text_of(
+            front.ask("enum", node, enums.index(name), value).facts.get("name")
+        )
+    }
 
 
 def node(front: Front, request: Request) -> dict[str, Any]:
     facts = front.ask("node", front.node(request)).facts
-    return {key: int(facts[key]) if key in facts else None for key in ("node_type", "interface_version")}
+    return {
+        key: int(facts[key]) if key in facts else None
+        for key in ("node_type", "interface_version")
+    }
 
 
 def sweep(front: Front, request: Request) -> dict[str, Any]:
@@ -105,14 +121,22 @@ def sweep(front: Front, request: Request) -> dict[str, Any]:
     if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
         raise Refusal("request", detail="these are too many values, or not integers")
     route, fields = _known(front, request)
-    scaled = ((place, field) for place, field in enumerate(fields) if field["name"] == name and field["type"] != "text")
+    scaled = (
+        (place, field)
+        for place, field in enumerate(fields)
+        if field["name"] == name and field["type"] != "text"
+    )
     place = next((place for place, field in scaled if field["settable"]), None)
     if place is None:
         raise Refusal("unknown-field", field=name)
-    found = items(_asked(front, fields, "sweep", *route, place, *values).facts.get("values", ""))
+    found = items(
+        _asked(front, fields, "sweep", *route, place, *values).facts.get("values", "")
+    )
     return {
         "physical": "".join(map(_double, found[::2])),
-        "failures": sum(back != str(value) for back, value in zip(found[1::2], values, strict=True)),
+        "failures": sum(
+            back != str(value) for back, value in zip(found[1::2], values, strict=True)
+        ),
     }
 
 
@@ -121,7 +145,9 @@ OPS: dict[str, Callable[[Front, Request], dict[str, Any]]] = {
 }
 
 
-def _message(front: Front, request: Request) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
+def _message(
+    front: Front, request: Request
+) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
     text(request, "node")
     kind, id = text(request, "kind"), _integer(request.get("id"))
     if kind not in KINDS:
@@ -130,11 +156,18 @@ def _message(front: Front, request: Request) -> tuple[tuple[int, int, int | str]
     return front.route(front.node(request), kind, id, name)
 
 
-def _known(front: Front, request: Request) -> tuple[tuple[int, int, int | str], list[Field]]:
-    """The route to a message and its fields; where the ICD has none, what the program says of that id."""
+def _known(
+    front: Front, request: Request
+) -> tuple[tuple[int, int, int | str], list[Field]]:
+    """The route to a message and its fields.
+
+    Where the ICD has none, what the program says of that id.
+    """
     route, message = _message(front, request)
     if message is None and front.is_shared(route[0], request["kind"], request["id"]):
-        raise Refusal("request", detail="several messages have the id, and `message` names none")
+        raise Refusal(
+            "request", detail="several messages have the id, and `message` names none"
+        )
     if message is None:
         front.ask("decode", *route, "")
         raise Refusal("dispatcher", detail="decodes a message that does not exist")
@@ -155,12 +188,19 @@ def _sized(value: object, size: int) -> bytes:
 
 
 def _raw(field: Field, given: object) -> int | str:
-    """A raw value of a request as the program is given it; whether it fits, the program says."""
+    """A raw value of a request as the program is given it.
+
+    Whether it fits, the program says.
+    """
     if field["type"] == "float":
         return int.from_bytes(_sized(given, field["bits"] // 8), "big")
     if field["type"] in OCTETS:
         return hex_bytes(given).hex()
-    return int(given) if field["type"] == "bool" and type(given) is bool else _integer(given)
+    return (
+        int(given)
+        if field["type"] == "bool" and type(given) is bool
+        else _integer(given)
+    )
 
 
 def _shown(field: Field, value: str) -> object:
@@ -171,12 +211,20 @@ def _shown(field: Field, value: str) -> object:
         return value
     if field["type"] == "float":
         return f"{int(value):0{field['bits'] // 4}x}"
-    return {"0": False, "1": True}.get(value, value) if field["type"] == "bool" else int(value)
+    return (
+        {"0": False, "1": True}.get(value, value)
+        if field["type"] == "bool"
+        else int(value)
+    )
 
 
 def _physical(field: Field, given: object) -> int | str:
     """A physical value of a request: the bits of a double, or the hex of a text."""
-    return hex_bytes(given).hex() if field["type"] == "text" else int.from_bytes(_sized(given, 8), "big")
+    return (
+        hex_bytes(given).hex()
+        if field["type"] == "text"
+        else int.from_bytes(_sized(given, 8), "big")
+    )
 
 
 def _physical_shown(field: Field, row: Facts) -> str | None:
@@ -191,7 +239,10 @@ def _double(bits: str) -> str:
 
 
 def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
-    """What the program answers; it may tell the field that it refuses by its name or by its place."""
+    """What the program answers.
+
+    It may tell the field that it refuses by its name or by its place.
+    """
     try:
         return front.ask(*words)
     except Refusal as refusal:
@@ -202,18 +253,33 @@ def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
 
 
 def _named(fields: list[Field], reply: Reply) -> list[tuple[str, Field, Facts]]:
-    """What the rows say of the fields, by name: that of the ICD, if the language does not have it."""
+    """What the rows say of the fields, by name: that of the ICD, if the language does
+    not have it.
+    """
     rows = reply.of("field")
-    return [(text_of(row.get("field")) or one["name"], one, row) for one, row in zip(fields, rows, strict=True)]
+    return [
+        (text_of(row.get("field")) or one["name"], one, row)
+        for one, row in zip(fields, rows, strict=True)
+    ]
 
 
-def _described(fields: list[Field], reply: Reply, names: bool = False) -> dict[str, Any]:
+def _described(
+    fields: list[Field], reply: Reply, names: bool = False
+) -> dict[str, Any]:
     rows = _named(fields, reply)
     answer = {
         "raw": {name: _shown(field, row["raw"]) for name, field, row in rows},
-        "physical": {name: _physical_shown(field, row) for name, field, row in rows if field["scaled"]},
+        "physical": {
+            name: _physical_shown(field, row)
+            for name, field, row in rows
+            if field["scaled"]
+        },
         "bytes": reply.facts["bytes"],
     }
     if names:
-        answer["names"] = {name: text_of(row.get("name")) for name, field, row in rows if field["type"] == "enum"}
+        answer["names"] = {
+            name: text_of(row.get("name"))
+            for name, field, row in rows
+            if field["type"] == "enum"
+        }
     return answer

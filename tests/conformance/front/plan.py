@@ -11,17 +11,25 @@ from icdgen.protocol import facts
 
 
 def plan(icd: Icd) -> dict[str, Any]:
-    """The plan of a set of ICDs. Nodes, and the messages and enumerations of each, stand in the order of the description."""
+    """The plan of a set of ICDs.
+
+    Nodes, and the messages and enumerations of each, stand in the order of the
+    description.
+    """
     description = describe(icd)
     every = [message for node in description.nodes for message in node.messages]
-    places = {(one.model.node, one.model.name): place for place, one in enumerate(every)}
+    places = {
+        (one.model.node, one.model.name): place for place, one in enumerate(every)
+    }
     return {
         "messages": [_message(one.model) for one in every],
         "nodes": [
             {
                 "name": node.name,
                 "id_bits": node.id_bits,
-                "speaks": [places[one.model.node, one.model.name] for one in node.all_messages],
+                "speaks": [
+                    places[one.model.node, one.model.name] for one in node.all_messages
+                ],
                 "enums": [enum.model.name for enum in node.enums],
                 "link": _link(icd, node.model) if node.is_linked else None,
             }
@@ -42,12 +50,16 @@ def _message(message: Message) -> dict[str, Any]:
                 "type": field.type,
                 "bits": field.bits,
                 "scaled": field.has_formula or field.type == "text",
-                "settable": ((field.has_formula and field.is_invertible) or field.type == "text")
+                "settable": (
+                    (field.has_formula and field.is_invertible) or field.type == "text"
+                )
                 and not field.is_read_only,
                 "view": field.is_read_only,
                 "conditional": bool(field.conditions),
             }
-            for field in sorted(scalars_in(message.layout), key=lambda field: field.is_read_only)
+            for field in sorted(
+                scalars_in(message.layout), key=lambda field: field.is_read_only
+            )
         ],
     }
 
@@ -56,4 +68,8 @@ def _link(icd: Icd, node: Node) -> dict[str, Any]:
     known = facts.of(icd, node)
     framing, stream = known.framing, known.stream
     around = stream.header_bytes + stream.trailer_bytes if stream else 0
-    return {"longest": known.longest, "around": around, "framing": [framing.escape, framing.end] if framing else None}
+    return {
+        "longest": known.longest,
+        "around": around,
+        "framing": [framing.escape, framing.end] if framing else None,
+    }

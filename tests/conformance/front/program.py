@@ -33,7 +33,9 @@ class Program:
     """A running program."""
 
     def __init__(self, command: Sequence[str]) -> None:
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=1 << 16)
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=1 << 16
+        )
 
     def ask(self, line: str) -> str:
         """The answer to a line. Raises `Died`."""
@@ -57,7 +59,10 @@ class Program:
 
 
 def asked(ask: Ask, *words: object) -> Reply:
-    """What the program answers to these words. Raises `Refusal` if it refuses, `Died` if that is no answer."""
+    """What the program answers to these words.
+
+    Raises `Refusal` if it refuses, `Died` if that is no answer.
+    """
     found = read(ask(" ".join(map(str, words))))
     error, facts = found.rows[0]
     if error == "ok":
@@ -93,7 +98,9 @@ def items(value: str) -> list[str]:
 
 def text_of(value: str | None) -> str | None:
     """A text, which stands in hex as UTF-8."""
-    return None if value is None else bytes.fromhex(value).decode("utf-8", "surrogatepass")
+    return (
+        None if value is None else bytes.fromhex(value).decode("utf-8", "surrogatepass")
+    )
 
 
 def _told(key: str, value: str) -> object:

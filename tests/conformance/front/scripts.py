@@ -1,29 +1,55 @@
-"""Requests that are scripts: what happens at which time, for the client and for the procedures."""
+"""Requests that are scripts: what happens at which time, for the client and for the
+procedures.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
+from icdgen.protocol.request_keys import (
+    Refusal,
+    flag,
+    hex_bytes,
+    mappings,
+    number,
+    octets,
+    text,
+)
 from tests.conformance.front.program import Facts, Reply
 from tests.conformance.front.wire import MOST, Answer, Asking, Request, event, typed
 
 BUSES = ("uart", "i2c", "can")
 MOST_TIMES = 1 << 20
-ABSENT = {"refused": {"code": None, "reason": None, "parameter": None}}  # what an event says where nothing is known
+ABSENT = {
+    "refused": {"code": None, "reason": None, "parameter": None}
+}  # what an event says where nothing is known
 
 
 def client(to: Asking, request: Request) -> Answer:
-    bus, checked, address = _bus(request), flag(request, "crc"), number(request, "address", 0, 255, 0)
+    bus, checked, address = (
+        _bus(request),
+        flag(request, "crc"),
+        number(request, "address", 0, 255, 0),
+    )
     settings = _settings(request)
     start = ("client", bus, int(checked), address, *settings)
     try:
-        words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_row(bus, row))]
+        words = [
+            word
+            for row in mappings(request, "script")
+            for word in (number(row, "at"), *_row(bus, row))
+        ]
     except Refusal:
-        to.ask(*start)  # a bus that the ICD does not describe is refused before its script is looked at
+        to.ask(
+            *start
+        )  # a bus that the ICD does not describe is refused before its script is looked at
         raise
     reply = to.ask(*start, *words)
-    return {"steps": [_client_step(step, rows, to.link["framing"]) for step, rows in _steps(reply)]}
+    return {
+        "steps": [
+            _client_step(step, rows, to.link["framing"]) for step, rows in _steps(reply)
+        ]
+    }
 
 
 def _settings(request: Request) -> list[object]:
@@ -31,13 +57,26 @@ def _settings(request: Request) -> list[object]:
     given = request.get("settings", {})
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")
-    limits = {"reply_timeout": (1, MOST), "retries": (0, 255), "poll_interval": (1, MOST), "poll_timeout": (1, MOST)}
-    return [number(given, key, *limit) if key in given else "" for key, limit in limits.items()]
+    limits = {
+        "reply_timeout": (1, MOST),
+        "retries": (0, 255),
+        "poll_interval": (1, MOST),
+        "poll_timeout": (1, MOST),
+    }
+    return [
+        number(given, key, *limit) if key in given else ""
+        for key, limit in limits.items()
+    ]
 
 
 def _row(bus: str, row: Request) -> tuple[object, ...]:
     if "telecommand" in row:
-        return "telecommand", number(row, "telecommand", 0, 255), int(flag(row, "repeat")), octets(row).hex()
+        return (
+            "telecommand",
+            number(row, "telecommand", 0, 255),
+            int(flag(row, "repeat")),
+            octets(row).hex(),
+        )
     if "telemetry" in row:
         return "telemetry", number(row, "telemetry", 0, 255)
     if "receive" in row:
@@ -55,7 +94,9 @@ def _received(bus: str, given: object) -> tuple[object, ...]:
     return "received", hex_bytes(given).hex()
 
 
-def _client_step(step: Facts, rows: list[tuple[str, Facts]], framing: list[int] | None) -> Answer:
+def _client_step(
+    step: Facts, rows: list[tuple[str, Facts]], framing: list[int] | None
+) -> Answer:
     found: Answer = {"deadline": None, **typed(step), "out": [], "events": []}
     stream = b""
     for kind, row in rows:
@@ -85,7 +126,9 @@ def _messages(stream: bytes, escape: int, end: int) -> Iterator[str]:
 
 
 def stream_client(to: Asking, request: Request) -> Answer:
-    requests, (timeout, retries, *_) = number(request, "requests", 1, 3, 1), _settings(request)
+    requests, (timeout, retries, *_) = number(request, "requests", 1, 3, 1), _settings(
+        request
+    )
     words = [word for row in mappings(request, "script") for word in _stream_row(row)]
     reply = to.ask("stream_client", requests, timeout, retries, *words)
     steps = []
@@ -106,20 +149,42 @@ def _stream_row(row: Request) -> tuple[object, ...]:
     start = (number(row, "at"), int(not flag(row, "untaken")))
     kind = next((kind for kind in ("telecommand", "telemetry") if kind in row), None)
     if flag(row, "cancel"):
-        return (*start, "cancel", kind, number(row, kind)) if kind else (*start, "cancel", "all")
+        return (
+            (*start, "cancel", kind, number(row, kind))
+            if kind
+            else (*start, "cancel", "all")
+        )
     if kind == "telecommand":
         reply = (1, number(row, "reply")) if "reply" in row else (0, "")
-        return *start, kind, number(row, kind), int(flag(row, "repeat")), *reply, octets(row).hex()
+        return (
+            *start,
+            kind,
+            number(row, kind),
+            int(flag(row, "repeat")),
+            *reply,
+            octets(row).hex(),
+        )
     if kind:
         return *start, kind, number(row, kind)
-    return (*start, "received", hex_bytes(row["receive"]).hex()) if "receive" in row else (*start, "tick")
+    return (
+        (*start, "received", hex_bytes(row["receive"]).hex())
+        if "receive" in row
+        else (*start, "tick")
+    )
 
 
 def file(to: Asking, request: Request) -> Answer:
     what, start = _procedure(request)
-    words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_outcome(row.get("event")))]
+    words = [
+        word
+        for row in mappings(request, "script")
+        for word in (number(row, "at"), *_outcome(row.get("event")))
+    ]
     reply = to.ask("file", what, *start, *words)
-    answer: Answer = {"steps": [_file_step(step) for step in reply.of("step")], **typed(reply.facts)}
+    answer: Answer = {
+        "steps": [_file_step(step) for step in reply.of("step")],
+        **typed(reply.facts),
+    }
     if what == "download":
         answer["blocks"] = [typed(row) for row in reply.of("block")]
     elif what == "list":
@@ -138,14 +203,21 @@ def _procedure(request: Request) -> tuple[str, list[object]]:
     if what in ("program_copy", "program_information"):
         return what, [number(request, "program", 0, 255)]
     if what == "upload":
-        times, destination = number(request, "times", 1, MOST_TIMES, 1), number(request, "destination", 0, 255)
+        times, destination = number(request, "times", 1, MOST_TIMES, 1), number(
+            request, "destination", 0, 255
+        )
         return what, [destination, block, (octets(request) * times).hex()]
     if what not in ("erase", "download"):
         raise Refusal("request", detail="there is no such procedure")
     entry = [number(request, "type", 0, 255), number(request, "counter", 0, 255)]
     if what == "erase":
         return what, [*entry, int(flag(request, "all"))]
-    return what, [_bus(request), *entry, number(request, "size") if "size" in request else "", block]
+    return what, [
+        _bus(request),
+        *entry,
+        number(request, "size") if "size" in request else "",
+        block,
+    ]
 
 
 def _outcome(given: object) -> tuple[object, ...]:
@@ -165,7 +237,11 @@ def _outcome(given: object) -> tuple[object, ...]:
 
 def _file_step(step: Facts) -> Answer:
     found = {"deadline": None, "result": None, **typed(step)}
-    asked: Answer = {key: found.pop(key) for key in ("telecommand", "telemetry", "bytes", "repeat") if key in found}
+    asked: Answer = {
+        key: found.pop(key)
+        for key in ("telecommand", "telemetry", "bytes", "repeat")
+        if key in found
+    }
     if "repeat" in asked:
         asked["repeat"] = bool(asked["repeat"])
     return {**found, "request": asked or None}
@@ -189,4 +265,8 @@ def _steps(reply: Reply) -> list[tuple[Facts, list[tuple[str, Facts]]]]:
     return found
 
 
-OPS: dict[str, Callable[[Asking, Request], Answer]] = {"client": client, "stream_client": stream_client, "file": file}
+OPS: dict[str, Callable[[Asking, Request], Answer]] = {
+    "client": client,
+    "stream_client": stream_client,
+    "file": file,
+}

@@ -6,7 +6,16 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN
-from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, rows, text
+from icdgen.protocol.request_keys import (
+    Refusal,
+    flag,
+    hex_bytes,
+    mappings,
+    number,
+    octets,
+    rows,
+    text,
+)
 from icdgen.protocol.sections import CAN_KINDS
 from tests.conformance.front.program import Facts, Reply, items
 
@@ -29,8 +38,13 @@ class Asking(NamedTuple):
 
 
 def typed(facts: Facts) -> Answer:
-    """What a row says, as JSON: hex and words as text, the others as numbers, null where a number is missing."""
-    return {key: value if key in TEXTS else int(value) if value else None for key, value in facts.items()}
+    """What a row says, as JSON: hex and words as text, the others as numbers, null
+    where a number is missing.
+    """
+    return {
+        key: value if key in TEXTS else int(value) if value else None
+        for key, value in facts.items()
+    }
 
 
 def event(kind: str, facts: Facts) -> Answer:
@@ -56,7 +70,9 @@ def uart_decode(to: Asking, request: Request) -> Answer:
 
 def uart_events(to: Asking, request: Request) -> Answer:
     longest = to.link["longest"]
-    limit, chunks = number(request, "limit", 1, longest, longest), rows(request, "chunks")
+    limit, chunks = number(request, "limit", 1, longest, longest), rows(
+        request, "chunks"
+    )
     reply = to.ask("uart_events", limit, *(hex_bytes(chunk).hex() for chunk in chunks))
     return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
 
@@ -66,7 +82,11 @@ def can_split(to: Asking, request: Request) -> Answer:
     if kind not in CAN_KINDS:
         raise Refusal("request", detail="there is no such kind")
     ids = [number(request, key, 0, 255) for key in ("id", "source", "destination")]
-    return {"packets": [typed(row) for row in to.ask("can_split", kind, *ids, data).of("packet")]}
+    return {
+        "packets": [
+            typed(row) for row in to.ask("can_split", kind, *ids, data).of("packet")
+        ]
+    }
 
 
 def can_join(to: Asking, request: Request) -> Answer:
@@ -78,21 +98,44 @@ def can_join(to: Asking, request: Request) -> Answer:
         data = octets(row)
         if len(data) > CAN_BYTES:
             raise Refusal("request", detail="a packet has too many bytes")
-        packets += (number(row, "at", default=0), number(row, "id", 0, (1 << 29) - 1), data.hex())
-    return {"events": [event(*row) for row in to.ask("can_join", address, senders, end, *packets).rows]}
+        packets += (
+            number(row, "at", default=0),
+            number(row, "id", 0, (1 << 29) - 1),
+            data.hex(),
+        )
+    return {
+        "events": [
+            event(*row)
+            for row in to.ask("can_join", address, senders, end, *packets).rows
+        ]
+    }
 
 
 def i2c_request(to: Asking, request: Request) -> Answer:
-    kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
+    kind, id, checked = (
+        text(request, "kind"),
+        number(request, "id", 0, 255),
+        flag(request, "crc"),
+    )
     if kind == "telemetry":
-        return {"write": bytes([id]).hex(), **typed(to.ask("i2c_read", id, int(checked)).facts)}
+        return {
+            "write": bytes([id]).hex(),
+            **typed(to.ask("i2c_read", id, int(checked)).facts),
+        }
     if kind != "telecommand":
         raise Refusal("request", detail="there is no such kind")
-    return {**typed(to.ask("i2c_write", id, int(checked), octets(request).hex()).facts), "read": 0}
+    return {
+        **typed(to.ask("i2c_write", id, int(checked), octets(request).hex()).facts),
+        "read": 0,
+    }
 
 
 def i2c_reply(to: Asking, request: Request) -> Answer:
-    id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
+    id, data, checked = (
+        number(request, "id", 0, 255),
+        octets(request),
+        flag(request, "crc"),
+    )
     return typed(to.ask("i2c_reply", id, int(checked), data.hex()).facts)
 
 
@@ -100,7 +143,10 @@ def log_decode(to: Asking, request: Request) -> Answer:
     """Whole, byte by byte and in pieces of seven bytes it must be the same."""
     data = octets(request)
     replies = [
-        to.ask("log_decode", *(data[at : at + size].hex() for at in range(0, len(data), size)))
+        to.ask(
+            "log_decode",
+            *(data[at : at + size].hex() for at in range(0, len(data), size)),
+        )
         for size in (len(data) or 1, 1, 7)
     ]
     reply = replies[0]
@@ -119,7 +165,12 @@ def log_encode(to: Asking, request: Request) -> Answer:
     words: list[object] = []
     for entry in mappings(request, "entries"):
         frames = _hex_rows(entry, "frames")
-        words += (number(entry, "seconds"), number(entry, "milliseconds", 0, 65535), len(frames), *frames)
+        words += (
+            number(entry, "seconds"),
+            number(entry, "milliseconds", 0, 65535),
+            len(frames),
+            *frames,
+        )
     return _joined(to.ask("log_encode", octets(request, "mask").hex(), *words))
 
 
@@ -130,14 +181,20 @@ def log_message_decode(to: Asking, request: Request) -> Answer:
 
 def log_message_encode(to: Asking, request: Request) -> Answer:
     frames = _hex_rows(request, "frames")
-    return typed(to.ask("log_message_encode", octets(request, "mask").hex(), len(frames), *frames).facts)
+    return typed(
+        to.ask(
+            "log_message_encode", octets(request, "mask").hex(), len(frames), *frames
+        ).facts
+    )
 
 
 def dos_time(to: Asking, request: Request) -> Answer:
     if "value" in request:
         facts = typed(to.ask("dos_time_unpack", number(request, "value")).facts)
         return {**facts, "valid": bool(facts["valid"])}
-    return typed(to.ask("dos_time_pack", *(number(request, key, 0, 9999) for key in DATE)).facts)
+    return typed(
+        to.ask("dos_time_pack", *(number(request, key, 0, 9999) for key in DATE)).facts
+    )
 
 
 def hole_map(to: Asking, request: Request) -> Answer:
@@ -147,14 +204,19 @@ def hole_map(to: Asking, request: Request) -> Answer:
     received = rows(request, "received")
     if any(type(one) is not int for one in received):
         raise Refusal("request", detail="`received` holds numbers")
-    numbers = (one if 0 <= one <= MOST else MOST for one in received)  # which no block has
+    numbers = (
+        one if 0 <= one <= MOST else MOST for one in received
+    )  # which no block has
     return _map(to.ask("hole_map", packets, *numbers))
 
 
 def _map(reply: Reply) -> Answer:
     found: Answer = {"missing": [int(one) for one in items(reply.facts["missing"])]}
     if "bytes" in reply.facts:
-        found |= {"bytes": reply.facts["bytes"], "messages": items(reply.facts["messages"])}
+        found |= {
+            "bytes": reply.facts["bytes"],
+            "messages": items(reply.facts["messages"]),
+        }
     return found
 
 
@@ -182,17 +244,28 @@ def link_data(to: Asking, request: Request) -> Answer:
 
 def stream_encode(to: Asking, request: Request) -> Answer:
     direction = _direction(request)
-    id, data, values = number(request, "id"), octets(request).hex(), request.get("values", {})
+    id, data, values = (
+        number(request, "id"),
+        octets(request).hex(),
+        request.get("values", {}),
+    )
     if not isinstance(values, dict) or not set(values) <= set(GIVEN):
-        raise Refusal("request", detail="`values` are those of fields that the sender chooses, by role")
+        raise Refusal(
+            "request",
+            detail="`values` are those of fields that the sender chooses, by role",
+        )
     chosen = [number(values, role) if role in values else "" for role in GIVEN]
     return typed(to.ask("stream_encode", direction, id, data, *chosen).facts)
 
 
 def stream_events(to: Asking, request: Request) -> Answer:
     direction, longest = _direction(request), to.link["longest"]
-    limit, chunks = number(request, "limit", to.link["around"], longest, longest), rows(request, "chunks")
-    reply = to.ask("stream_events", direction, limit, *(hex_bytes(chunk).hex() for chunk in chunks))
+    limit, chunks = number(request, "limit", to.link["around"], longest, longest), rows(
+        request, "chunks"
+    )
+    reply = to.ask(
+        "stream_events", direction, limit, *(hex_bytes(chunk).hex() for chunk in chunks)
+    )
     return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
 
 

@@ -1,7 +1,9 @@
-"""The languages that the conformance run drives: one module each, which offers ``LANGUAGES``.
+"""The languages that the conformance run drives: one module each, which offers
+``LANGUAGES``.
 
-A further language brings a module here and a testee in ``testees/``; nothing else is touched.
-One of another package brings an entry point of the group ``icdgen.conformance`` that leads to such a list.
+A further language brings a module here and a testee in ``testees/``; nothing else is
+touched. One of another package brings an entry point of the group
+``icdgen.conformance`` that leads to such a list.
 """
 
 from __future__ import annotations
@@ -23,8 +25,12 @@ TESTEE, SELFTEST, REFERENCE = "testee", "selftest", "reference"
 
 @dataclass(frozen=True)
 class Language:
-    """How to get at one language's code. ``build`` is given the folder that holds one folder of generated files for each
-    backend and an empty folder to work in; it returns the command line that starts the testee (or the self-test)."""
+    """How to get at one language's code.
+
+    ``build`` is given the folder that holds one folder of generated files for each
+    backend and an empty folder to work in; it returns the command line that starts the
+    testee (or the self-test).
+    """
 
     name: str
     backends: tuple[str, ...]
@@ -33,26 +39,39 @@ class Language:
     ]  # programs that must be there; with a space in it, the command that says the version, as "go version"
     build: Callable[[Path, Path], list[str]]
     kind: str = TESTEE
-    front: bool = True  # whether the program is asked by way of the front; else it answers requests in JSON
+    front: bool = (
+        # Whether the program is asked by way of the front; else it answers requests in
+        # JSON.
+        True
+    )
 
     def missing(self) -> list[str]:
-        """The programs that are not there, or are a version manager's word that they are not."""
+        """The programs that are not there, or are a version manager's word that they
+        are not.
+        """
         return [tool.split()[0] for tool in self.tools if version(tool) is None]
 
 
 @cache
 def version(tool: str) -> str | None:
-    """Where the tool lies and what it says of its version; None if it is not there or does not work."""
+    """Where the tool lies and what it says of its version.
+
+    None if it is not there or does not work.
+    """
     program, *words = tool.split()
     path = shutil.which(program)
     if path is None:
         return None
-    done = subprocess.run([path, *(words or ["--version"])], capture_output=True, text=True)
+    done = subprocess.run(
+        [path, *(words or ["--version"])], capture_output=True, text=True
+    )
     return path + done.stdout if done.returncode == 0 else None
 
 
 def all_languages() -> dict[str, Language]:
-    """Every language by name, in the order of their modules, then those of other packages."""
+    """Every language by name, in the order of their modules, then those of other
+    packages.
+    """
     found: dict[str, Language] = {}
     for info in sorted(iter_modules(__path__), key=lambda i: i.name):
         for language in import_module(f"{__name__}.{info.name}").LANGUAGES:

@@ -8,24 +8,43 @@ from pathlib import Path
 from tests.conformance.build import execute
 from tests.conformance.languages import Language
 
-WARNINGS = (
-    "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wcast-align -Wstrict-prototypes -Werror".split()
-)
+WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wcast-align -Wstrict-prototypes -Werror".split()
 BACKENDS = ("c", "c-testee")
 
 
 def build(
-    source: Path, out: Path, compiler: str, flags: tuple[str, ...] = (), start: tuple[str, ...] = ()
+    source: Path,
+    out: Path,
+    compiler: str,
+    flags: tuple[str, ...] = (),
+    start: tuple[str, ...] = (),
 ) -> list[str]:
-    """Compiles the testee as one translation unit a node; with many small nodes as one altogether."""
+    """Compiles the testee as one translation unit a node.
+
+    With many small nodes as one altogether.
+    """
     testee = source / "c-testee"
     files = sorted(testee.rglob("*.c"))
     if len(files) > 20:
         whole = out / "testee_all.c"
-        whole.write_text("".join(f'#include "{file.relative_to(testee)}"\n' for file in files))
+        whole.write_text(
+            "".join(f'#include "{file.relative_to(testee)}"\n' for file in files)
+        )
         files = [whole]
     program = out / "testee"
-    execute(compiler, "-std=c99", *WARNINGS, *flags, "-I", source / "c", "-I", testee, *files, "-o", program)
+    execute(
+        compiler,
+        "-std=c99",
+        *WARNINGS,
+        *flags,
+        "-I",
+        source / "c",
+        "-I",
+        testee,
+        *files,
+        "-o",
+        program,
+    )
     return [*start, str(program)]
 
 

@@ -1,4 +1,6 @@
-"""Python: with the interpreter that runs the tests, and with the oldest that is supported, where it is there."""
+"""Python: with the interpreter that runs the tests, and with the oldest that is
+supported, where it is there.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ BACKENDS = ("python", "python-testee")
 
 
 def build(source: Path, out: Path, interpreter: str) -> list[str]:
-    """Nothing is built: the package is run from its source, with the testee laid over it."""
+    """Nothing is built: the package is run from its source, with the testee laid over
+    it.
+    """
     shutil.copytree(source / "python-testee", source / "python", dirs_exist_ok=True)
     package = next((source / "python").glob("*/_testee.py")).parent
     return [
@@ -28,5 +32,7 @@ def build(source: Path, out: Path, interpreter: str) -> list[str]:
 
 LANGUAGES = [
     Language("python", BACKENDS, (), partial(build, interpreter=sys.executable)),
-    Language("python3.9", BACKENDS, ("python3.9",), partial(build, interpreter="python3.9")),
+    Language(
+        "python3.9", BACKENDS, ("python3.9",), partial(build, interpreter="python3.9")
+    ),
 ]

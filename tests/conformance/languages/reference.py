@@ -1,4 +1,6 @@
-"""The reference codec itself behind the protocol: shows that the run and the vectors agree with it."""
+"""The reference codec itself behind the protocol: shows that the run and the vectors
+agree with it.
+"""
 
 from __future__ import annotations
 

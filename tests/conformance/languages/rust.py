@@ -1,4 +1,6 @@
-"""Rust: optimised, and with the checks of a debug build, where an overflow of integers is a panic."""
+"""Rust: optimised, and with the checks of a debug build, where an overflow of integers
+is a panic.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +14,23 @@ BACKENDS = ("rust", "rust-testee")
 
 
 def build(source: Path, out: Path, profile: str) -> list[str]:
-    """Builds the testee, a package beside the crate. Nothing but the crate is compiled, but cargo wants to know the versions
-    of what is optional, so the network may be needed once."""
+    """Builds the testee, a package beside the crate.
+
+    Nothing but the crate is compiled, but cargo wants to know the versions of what is
+    optional, so the network may be needed once.
+    """
     manifest = source / "rust-testee" / "Cargo.toml"
-    command = ["cargo", "build", "--quiet", "--profile", profile, "--manifest-path", manifest, "--target-dir", out]
+    command = [
+        "cargo",
+        "build",
+        "--quiet",
+        "--profile",
+        profile,
+        "--manifest-path",
+        manifest,
+        "--target-dir",
+        out,
+    ]
     try:
         execute(*command, "--offline")
     except BuildError:

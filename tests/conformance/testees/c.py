@@ -25,7 +25,9 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
-MESSAGES = frozenset({"testee.h", "testee_line.h", "testee_line.c", "testee_messages.c"})  # the others need a protocol
+MESSAGES = frozenset(
+    {"testee.h", "testee_line.h", "testee_line.c", "testee_messages.c"}
+)  # the others need a protocol
 TYPES = {"bool": "TESTEE_BOOL", "bytes": "TESTEE_BYTES", "text": "TESTEE_BYTES"}
 
 
@@ -42,7 +44,9 @@ class FieldRow(NamedTuple):
     type: str
     name: str  # in the names of functions
     member: str
-    holder: str  # where its message, or the struct in which it stands, is in the message
+    holder: (
+        str  # where its message, or the struct in which it stands, is in the message
+    )
     element: str  # the index of an element of an array, and a comma
     size: int
     name_of: str
@@ -104,22 +108,38 @@ class CTesteeBackend:
     runtime = RUNTIME / name
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Files that are the same for every ICD, the list of nodes, and one file a node."""
+        """Files that are the same for every ICD, the list of nodes, and one file a
+        node.
+        """
         description = describe(icd)
-        yield from with_short_names(self._files(description, render), symbols(description, C_NAMES))
+        yield from with_short_names(
+            self._files(description, render), symbols(description, C_NAMES)
+        )
 
-    def _files(self, description: Description, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
+    def _files(
+        self, description: Description, render: Renderer
+    ) -> Iterator[tuple[PurePosixPath, str]]:
         """The files with the names of the plan, of which the C backend shortens some."""
-        linked = {place: node.name for place, node in enumerate(description.nodes) if node.is_linked}
+        linked = {
+            place: node.name
+            for place, node in enumerate(description.nodes)
+            if node.is_linked
+        }
         for name in render.runtime_files():
             if linked or name in MESSAGES:
                 yield PurePosixPath(name), render.source(name)
         nodes = [node.name for node in description.nodes]
-        yield PurePosixPath("testee_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes, linked=linked)
-        yield PurePosixPath("testee_ops.c"), render("ops.c.j2", origin=origin(), linked=bool(linked))
+        yield PurePosixPath("testee_nodes.c"), render(
+            "nodes.c.j2", origin=origin(), nodes=nodes, linked=linked
+        )
+        yield PurePosixPath("testee_ops.c"), render(
+            "ops.c.j2", origin=origin(), linked=bool(linked)
+        )
         for node in description.nodes:
             values = _Rows(node).all()
-            yield PurePosixPath(f"nodes/{node.name}.c"), render("node.c.j2", origin=origin(node.model), **values)
+            yield PurePosixPath(f"nodes/{node.name}.c"), render(
+                "node.c.j2", origin=origin(node.model), **values
+            )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None of its own: all are made from those of the ``c`` backend."""
@@ -142,25 +162,45 @@ class _Rows:
             if f.enum is not None
         }
         dispatchers = [
-            self.dispatcher("telecommand", [(m, m.telecommand_id_name) for m in node.telecommands]),
-            self.dispatcher("telemetry", [(m, m.telemetry_id_name) for m in node.telemetry]),
+            self.dispatcher(
+                "telecommand", [(m, m.telecommand_id_name) for m in node.telecommands]
+            ),
+            self.dispatcher(
+                "telemetry", [(m, m.telemetry_id_name) for m in node.telemetry]
+            ),
         ]
         return {
             "node": node.name,
             "id_type": f"uint{node.id_bits}_t",
             "messages": [self.message(message) for message in node.messages],
-            "included": [names.stem(one) for one in node.all_messages if one not in node.messages],
+            "included": [
+                names.stem(one) for one in node.all_messages if one not in node.messages
+            ],
             "enums": [_enum(enum) for enum in dict.fromkeys(node.enums) | used],
             "own_enums": [_enum(enum) for enum in node.enums],
             "dispatchers": [one for one in dispatchers if one.routes],
-            "node_type": f"{upper}_NODE_TYPE" if node.model.node_type is not None else -1,
-            "interface_version": f"{upper}_INTERFACE_VERSION" if node.model.interface_version is not None else -1,
+            "node_type": (
+                f"{upper}_NODE_TYPE" if node.model.node_type is not None else -1
+            ),
+            "interface_version": (
+                f"{upper}_INTERFACE_VERSION"
+                if node.model.interface_version is not None
+                else -1
+            ),
         }
 
-    def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
-        name, is_shared = f"{self.node.name}_{direction}", self.node.shares_ids(direction)
+    def dispatcher(
+        self, direction: str, messages: list[tuple[MessageDescription, str]]
+    ) -> Dispatcher:
+        name, is_shared = f"{self.node.name}_{direction}", self.node.shares_ids(
+            direction
+        )
         routes = [
-            Route(names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one))
+            Route(
+                names.constant(one, id),
+                names.enumerator_of(name, one) if is_shared else "0u",
+                names.stem(one),
+            )
             for one, id in messages
         ]
         is_open = any(one.last_part is not None for one, _ in messages)
@@ -173,23 +213,41 @@ class _Rows:
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
             is_open=message.last_part is not None,
-            fields=[self.field(field) for field in (*message.fields, *message.read_only_members)],
+            fields=[
+                self.field(field)
+                for field in (*message.fields, *message.read_only_members)
+            ],
         )
 
     def field(self, one: FieldDescription) -> FieldRow:
         owner = one.declaration.message
         field, stem = one.model, names.stem(owner)
-        macros = [(constant.key, names.constant(owner, constant.name)) for constant in one.constants]
+        macros = [
+            (constant.key, names.constant(owner, constant.name))
+            for constant in one.constants
+        ]
         return FieldRow(
-            type="TESTEE_SIGNED" if field.is_signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
+            type=(
+                "TESTEE_SIGNED"
+                if field.is_signed
+                else TYPES.get(field.type, "TESTEE_UNSIGNED")
+            ),
             name=one.name,
             member=one.member,
             holder=one.holder,
             element=f"{field.index}u, " if field.index is not None else "",
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
-            name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
+            name_of=(
+                f"{self.node.name}_{names.stem(one.enum)}_testee_name"
+                if one.enum is not None
+                else ""
+            ),
             get=f"{stem}_{one.physical_name}" if one.is_scaled else "",
-            set=f"{stem}_set_{one.physical_name}" if one.is_scaled and one.is_settable else "",
+            set=(
+                f"{stem}_set_{one.physical_name}"
+                if one.is_scaled and one.is_settable
+                else ""
+            ),
             get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
             set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
             has=names.has(one.message, one.name) if field.conditions else "",
@@ -197,13 +255,19 @@ class _Rows:
             c_type=type_of(one) if field.is_read_only else "",
             special=[name for key, name in macros if key == "special"],
             float_bits=field.bits if field.type == "float" else 0,
-            limits=[Limit(key, name) for key, name in macros if key not in ("const", "special")],
+            limits=[
+                Limit(key, name)
+                for key, name in macros
+                if key not in ("const", "special")
+            ],
         )
 
 
 def _enum(enum: EnumDescription) -> EnumRow:
     bits, signed = enum.storage
     outside = (
-        f"(int64_t)value < INT{bits}_MIN || (int64_t)value > INT{bits}_MAX" if signed else f"value > UINT{bits}_MAX"
+        f"(int64_t)value < INT{bits}_MIN || (int64_t)value > INT{bits}_MAX"
+        if signed
+        else f"value > UINT{bits}_MAX"
     )
     return EnumRow(names.stem(enum), signed, outside)

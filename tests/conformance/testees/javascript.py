@@ -31,7 +31,9 @@ class JsTesteeBackend:
         for name in ("codec.js", "frames.js"):
             yield PurePosixPath(name), Renderer("html")(name)
         yield PurePosixPath("testee.js"), render("testee.js")
-        yield PurePosixPath("nodes.json"), json.dumps(_plans(icd), separators=(",", ":")) + "\n"
+        yield PurePosixPath("nodes.json"), json.dumps(
+            _plans(icd), separators=(",", ":")
+        ) + "\n"
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None: JSON strings may hold any name."""
@@ -39,16 +41,24 @@ class JsTesteeBackend:
 
 
 def _plans(icd: Icd) -> dict[str, object]:
-    """The plans of all messages, and for each node its enumerations and the messages by id, of telecommands and of telemetry."""
+    """The plans of all messages, and for each node its enumerations and the messages by
+    id, of telecommands and of telemetry.
+    """
     places = {(one.node, one.name): place for place, one in enumerate(_messages(icd))}
     nodes = []
     for node in icd.nodes:
         known = ids_of(icd, node)
         nodes.append(
             {
-                "facts": {"node_type": node.node_type, "interface_version": node.interface_version},
+                "facts": {
+                    "node_type": node.node_type,
+                    "interface_version": node.interface_version,
+                },
                 "enums": [enum_plan(enum) for enum in node.enums],
-                "ways": [numbers_of(known.telecommand, places), numbers_of(known.telemetry, places)],
+                "ways": [
+                    numbers_of(known.telecommand, places),
+                    numbers_of(known.telemetry, places),
+                ],
             }
         )
     declaring = {node.name: node for node in icd.nodes}
@@ -57,13 +67,27 @@ def _plans(icd: Icd) -> dict[str, object]:
         plan: dict = message_plan(message, declaring[message.node])
         for field, row in zip(message.fields, plan["fields"], strict=True):
             row |= {"enum": enum_plan(field.enum)} if field.enum else {}
-        order = sorted(range(len(plan["fields"])), key=lambda place: "view" in plan["fields"][place])  # views come last
+        order = sorted(
+            range(len(plan["fields"])),
+            key=lambda place: "view" in plan["fields"][place],
+        )  # views come last
         for row in plan["fields"]:
-            row |= {"when": [[order.index(place), values] for place, values in row["when"]]} if "when" in row else {}
+            row |= (
+                {
+                    "when": [
+                        [order.index(place), values] for place, values in row["when"]
+                    ]
+                }
+                if "when" in row
+                else {}
+            )
             if "derived" in row:
                 row["derived"][0] = [order.index(place) for place in row["derived"][0]]
         inner = plan.get("inner", ())
-        for one in (*inner, *(nested for part in inner for nested in part.get("nested", ()))):
+        for one in (
+            *inner,
+            *(nested for part in inner for nested in part.get("nested", ())),
+        ):
             one["counter"] = order.index(one["counter"])
         plan["fields"] = [plan["fields"][place] for place in order]
         plans.append(plan | {"ids": list(message.ids)})

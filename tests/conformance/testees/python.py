@@ -1,4 +1,6 @@
-"""The Python testee: modules that lie within the generated package, to answer questions about it."""
+"""The Python testee: modules that lie within the generated package, to answer questions
+about it.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
-"""The Rust testee: a program that answers the requests of the conformance run about the generated crate.
+"""The Rust testee: a program that answers the requests of the conformance run about the
+generated crate.
 
-It is a package of its own, so that the crate stays free of it; the crate must lie beside it in a folder called ``rust``.
+It is a package of its own, so that the crate stays free of it; the crate must lie
+beside it in a folder called ``rust``.
 """
 
 from __future__ import annotations
@@ -15,7 +17,12 @@ from icdgen.backends.origin import origin
 from icdgen.backends.rust import CRATE, names
 from icdgen.backends.rust.links import longest
 from icdgen.backends.rust.names import field_name
-from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe import (
+    FieldDescription,
+    MessageDescription,
+    NodeDescription,
+    describe,
+)
 from icdgen.describe.links import links_of
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
@@ -73,7 +80,9 @@ class NodeEntry:
             "telecommand": [(m, m.telecommand_id_name) for m in node.telecommands],
             "telemetry": [(m, m.telemetry_id_name) for m in node.telemetry],
         }
-        self.routes = [[self._route(*route) for route in routes] for routes in ways.values()]
+        self.routes = [
+            [self._route(*route) for route in routes] for routes in ways.values()
+        ]
         self.enums = [
             EnumEntry(
                 f"{crate}::{node.name}::enums::{enum.camel_name}",
@@ -81,14 +90,26 @@ class NodeEntry:
             )
             for enum in node.enums
         ]
-        self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, routes in ways.items() if routes]
-        self.dispatchers = [f"Some({way})" if routes else "None" for way, routes in ways.items()]
+        self.sums = [
+            Dispatcher(way, way.capitalize(), f"u{id_bits}")
+            for way, routes in ways.items()
+            if routes
+        ]
+        self.dispatchers = [
+            f"Some({way})" if routes else "None" for way, routes in ways.items()
+        ]
         self.node_type = self._constant("NODE_TYPE", node.model.node_type)
-        self.interface_version = self._constant("INTERFACE_VERSION", node.model.interface_version)
+        self.interface_version = self._constant(
+            "INTERFACE_VERSION", node.model.interface_version
+        )
         self.messages = [self._message(message) for message in node.messages]
 
     def _constant(self, name: str, value: int | None) -> str:
-        return "None" if value is None else f"Some({self.crate}::{self.name}::{name} as u64)"
+        return (
+            "None"
+            if value is None
+            else f"Some({self.crate}::{self.name}::{name} as u64)"
+        )
 
     def _path(self, message: MessageDescription) -> str:
         return f"{self.crate}::{message.node.name}::{message.camel_name}"
@@ -100,7 +121,9 @@ class NodeEntry:
     def _message(self, message: MessageDescription) -> MessageEntry:
         ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
         return MessageEntry(
-            self._path(message), ids, [_field(field) for field in (*message.fields, *message.read_only_members)]
+            self._path(message),
+            ids,
+            [_field(field) for field in (*message.fields, *message.read_only_members)],
         )
 
 
@@ -113,27 +136,47 @@ def _field(field: FieldDescription) -> FieldEntry:
         set = f"|m, text| {within}.set_{field.physical_name}({f'{which}, ' if which else ''}text)"
         text = f"Some(Text {{ get: {get}, set: {set} }})"
     if field.is_scaled:
-        get, set = f"{within}.{field.physical_name}", f"{within}.set_{field.physical_name}"
+        get, set = (
+            f"{within}.{field.physical_name}",
+            f"{within}.set_{field.physical_name}",
+        )
         index = field.model.index
         if field.model.conditions:
             get, set = f"|m| {get}().unwrap_or_default()", f"|m, value| {set}(value)"
         elif index is None:
             get, set = f"|m| {get}()", f"|m, value| {set}(value)"
         else:
-            get, set = f"|m| {get}({index}).unwrap_or_default()", f"|m, value| {set}({index}, value)"
+            get, set = (
+                f"|m| {get}({index}).unwrap_or_default()",
+                f"|m, value| {set}({index}, value)",
+            )
         set = set if field.is_settable else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     owner = field.declaration.message
-    type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{owner.camel_name}"
-    known = [(one.key, f"{type}::{one.name.upper()}") for one in field.constants if one.key != "const"]
+    type = (
+        "Self"
+        if owner is field.message
+        else f"{CRATE}::{owner.node.name}::{owner.camel_name}"
+    )
+    known = [
+        (one.key, f"{type}::{one.name.upper()}")
+        for one in field.constants
+        if one.key != "const"
+    ]
     if field.model.special:
         bits = ".to_bits()" if field.model.type == "float" else ""
         special = f"|| vec![{', '.join(f'i128::from({name}{bits})' for key, name in known if key == 'special')}]"
     if field.bounds:
-        values = ", ".join(f'("{key}", {name} as f64)' for key, name in known if key != "special")
+        values = ", ".join(
+            f'("{key}", {name} as f64)' for key, name in known if key != "special"
+        )
         limits = f"|| vec![{values}]"
     name = field_name(field)
-    value = f"View(|m| Box::new(m.{name}()))" if field.model.is_read_only else f"Member(|m| &mut m.{name})"
+    value = (
+        f"View(|m| Box::new(m.{name}()))"
+        if field.model.is_read_only
+        else f"Member(|m| &mut m.{name})"
+    )
     return FieldEntry(value, scale, text, special, limits)
 
 
@@ -151,7 +194,9 @@ class RustTesteeBackend:
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         known = links_of(description)
-        yield PurePosixPath("src/main.rs"), render("main.rs.j2", wired=bool(known), **common)
+        yield PurePosixPath("src/main.rs"), render(
+            "main.rs.j2", wired=bool(known), **common
+        )
         for file in render.runtime_files():
             if known or PurePosixPath(file).stem not in WIRE:
                 yield PurePosixPath(file), render.source(file)
@@ -165,7 +210,9 @@ class RustTesteeBackend:
         )
         for node in description.nodes:
             entry = NodeEntry(CRATE, node, description.id_bits)
-            yield PurePosixPath(f"src/nodes/{node.name}.rs"), render("node.rs.j2", node=entry, **common)
+            yield PurePosixPath(f"src/nodes/{node.name}.rs"), render(
+                "node.rs.j2", node=entry, **common
+            )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None of its own: it only uses the crate's names."""

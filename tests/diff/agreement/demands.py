@@ -1,4 +1,6 @@
-"""What the vectors of an old ICD demand of the code of a new one, on the wire and altogether."""
+"""What the vectors of an old ICD demand of the code of a new one, on the wire and
+altogether.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,14 @@ from collections.abc import Iterator
 
 from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import MessagePair
-from tests.conformance.cases import DIRECTIONS, Case, MessageCases, enum_cases, member_names, node_itself
+from tests.conformance.cases import (
+    DIRECTIONS,
+    Case,
+    MessageCases,
+    enum_cases,
+    member_names,
+    node_itself,
+)
 
 EVERYTHING = ...
 
@@ -21,9 +30,19 @@ def altogether(data: dict) -> Iterator[Case]:
     yield from ids(data, ())
 
 
-def on_the_wire(data: dict, comparison: Comparison, others: tuple[int, ...]) -> Iterator[Case]:
-    """The cases that concern bytes and raw values only, in the names of the new ICD. ``others``: ids of the new ICD."""
-    pairs = {p.old.name: p for node in comparison.match.nodes for p in node.messages if p.before is not None}
+def on_the_wire(
+    data: dict, comparison: Comparison, others: tuple[int, ...]
+) -> Iterator[Case]:
+    """The cases that concern bytes and raw values only, in the names of the new ICD.
+
+    ``others``: ids of the new ICD.
+    """
+    pairs = {
+        p.old.name: p
+        for node in comparison.match.nodes
+        for p in node.messages
+        if p.before is not None
+    }
     enums = member_names({data["node"]: data})
     for message in data["messages"]:
         pair = pairs[message["name"]]
@@ -40,22 +59,38 @@ def on_the_wire(data: dict, comparison: Comparison, others: tuple[int, ...]) -> 
 def ids(data: dict, others: tuple[int, ...]) -> Iterator[Case]:
     """Ids that are known lead to a message, others to none."""
     known = {direction: data["ids"][direction] for direction in DIRECTIONS}
-    numbers = sorted({int(number) for rows in known.values() for number in rows} | {0, 255, *others})
+    numbers = sorted(
+        {int(number) for rows in known.values() for number in rows} | {0, 255, *others}
+    )
     for direction in DIRECTIONS:
         for number in numbers:
             if str(number) not in known[direction]:
-                request = {"op": "decode", "node": data["node"], "kind": direction, "id": number, "bytes": ""}
-                yield Case(f"{direction} {number}", request, {"ok": False, "error": "unknown-id"})
+                request = {
+                    "op": "decode",
+                    "node": data["node"],
+                    "kind": direction,
+                    "id": number,
+                    "bytes": "",
+                }
+                yield Case(
+                    f"{direction} {number}",
+                    request,
+                    {"ok": False, "error": "unknown-id"},
+                )
 
 
 def _renamed(case: Case, pair: MessagePair) -> Case:
     names = {p.old.name: p.new.name for p in pair.common}
     request = dict(case.request)
     if "raw" in request:
-        request["raw"] = {names.get(name, name): value for name, value in request["raw"].items()}
+        request["raw"] = {
+            names.get(name, name): value for name, value in request["raw"].items()
+        }
     answer = dict(case.answer)
     if "raw" in answer:
-        answer["raw"] = {names.get(name, name): value for name, value in answer["raw"].items()}
+        answer["raw"] = {
+            names.get(name, name): value for name, value in answer["raw"].items()
+        }
         for part in pair.parts:  # views that came or went are no bytes
             if part.before is None and part.new.is_read_only:
                 answer["raw"][part.new.name] = EVERYTHING
@@ -70,4 +105,10 @@ def plain(answer: dict) -> dict:
     raw = answer.get("raw")
     if not isinstance(raw, dict):
         return answer
-    return {**answer, "raw": {key: int(value) if isinstance(value, bool) else value for key, value in raw.items()}}
+    return {
+        **answer,
+        "raw": {
+            key: int(value) if isinstance(value, bool) else value
+            for key, value in raw.items()
+        },
+    }

@@ -1,4 +1,6 @@
-"""Runs the vectors of the old ICDs on code generated from the new ones, and holds the outcome against the diff."""
+"""Runs the vectors of the old ICDs on code generated from the new ones, and holds the
+outcome against the diff.
+"""
 
 from __future__ import annotations
 
@@ -26,17 +28,24 @@ STEPS = (4, 40, 10**9)  # so many demands are put before the answers are looked 
 
 @dataclass
 class Score:
-    """How many edits the diff called a change of the wire, of how many a vector failed, and where the two disagree."""
+    """How many edits the diff called a change of the wire, of how many a vector failed,
+    and where the two disagree.
+    """
 
     wire: int = 0
     no_wire: int = 0
-    nothing: int = 0  # no wire, meaning or source: all vectors pass, whatever they look at
+    nothing: int = (
+        0  # no wire, meaning or source: all vectors pass, whatever they look at
+    )
     by_edit: Counter = field(default_factory=Counter)
     wrong: list[str] = field(default_factory=list)
 
 
 def measure(cases: list[Case], language: Language, folder: Path) -> Score:
-    """Builds all new ICDs at once and asks each what the old one's vectors demand. Raises `BuildError`."""
+    """Builds all new ICDs at once and asks each what the old one's vectors demand.
+
+    Raises `BuildError`.
+    """
     score = Score()
     testee = Testee(build(language, Icd(tuple(case.node for case in cases)), folder))
     for case in cases:
@@ -57,12 +66,18 @@ def _judge(case: Case, testee: Testee, score: Score) -> None:
     if WIRE in layers:
         score.wire += 1
         if failure is None:
-            score.wrong.append(f"{about}: a change of the wire, and every vector passes")
+            score.wrong.append(
+                f"{about}: a change of the wire, and every vector passes"
+            )
         return
     score.no_wire += 1
     if failure is not None:
-        score.wrong.append(f"{about}: no change of the wire, and a vector fails: {failure}")
-    respelled = any(change.code == "DIF406" for change in comparison.changes)  # vectors speak in the manual's names
+        score.wrong.append(
+            f"{about}: no change of the wire, and a vector fails: {failure}"
+        )
+    respelled = any(
+        change.code == "DIF406" for change in comparison.changes
+    )  # vectors speak in the manual's names
     if not layers & {MEANING, SOURCE} and not respelled:
         score.nothing += 1
         failure = _first_failure(testee, altogether(data), wire=False)

@@ -1,4 +1,6 @@
-"""Small ICDs cut out of the shipped ones, one edit each: so hundreds of edits are nodes of one build."""
+"""Small ICDs cut out of the shipped ones, one edit each: so hundreds of edits are nodes
+of one build.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,10 @@ TRIES = 40  # pieces that are tried for an edit before another edit is taken
 
 @dataclass
 class Case:
-    """An edit of a small ICD. Both sides have the same node name, by which the build is asked."""
+    """An edit of a small ICD.
+
+    Both sides have the same node name, by which the build is asked.
+    """
 
     name: str
     edit: str
@@ -43,12 +48,20 @@ def cases(icd: Icd, count: int, seed: int) -> list[Case]:
 
 
 def _attempts(
-    icd: Icd, kind: str, name: str, messages: list[tuple[Node, Message]], rng: random.Random
+    icd: Icd,
+    kind: str,
+    name: str,
+    messages: list[tuple[Node, Message]],
+    rng: random.Random,
 ) -> Iterator[Case]:
     while True:
         node, message = rng.choice(messages)
         beside = [m for m in node.messages if m is not message]
-        both = (message, rng.choice(beside)) if kind == "swap_ids" and beside else (message,)
+        both = (
+            (message, rng.choice(beside))
+            if kind == "swap_ids" and beside
+            else (message,)
+        )
         old = piece(icd, node, both, name)
         done = EDITS[kind](old, rng)
         if done is not None:

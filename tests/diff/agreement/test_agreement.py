@@ -1,4 +1,7 @@
-"""The generated code agrees with the diff, on a sample; ``python -m tests.diff.agreement`` tries 500 edits."""
+"""The generated code agrees with the diff, on a sample.
+
+``python -m tests.diff.agreement`` tries 500 edits.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,9 @@ def icd():
     return icd_of()
 
 
-def test_vectors_fail_where_the_diff_says_wire_and_pass_where_it_does_not(icd, tmp_path):
+def test_vectors_fail_where_the_diff_says_wire_and_pass_where_it_does_not(
+    icd, tmp_path
+):
     score = measure(cases(icd, 90, seed=7), LANGUAGES["python"], tmp_path)
     assert score.wrong == []
     assert set(score.by_edit) == set(EDITS) - set(BEYOND)
@@ -27,17 +32,34 @@ def test_vectors_fail_where_the_diff_says_wire_and_pass_where_it_does_not(icd, t
 
 @pytest.mark.parametrize("hidden", ["wire", "others"])
 def test_a_diff_that_lies_is_found_out(icd, tmp_path, monkeypatch, hidden):
-    """A diff that does not see changes of the wire, and one that takes every change for one of the wire."""
-    wire = next(c for case in cases(icd, 41, seed=1) for c in compare(case.old, case.new).changes if c.layer == "wire")
+    """A diff that does not see changes of the wire, and one that takes every change for
+    one of the wire.
+    """
+    wire = next(
+        c
+        for case in cases(icd, 41, seed=1)
+        for c in compare(case.old, case.new).changes
+        if c.layer == "wire"
+    )
 
     def lying(old, new):
         found = compare(old, new)
-        found.changes = [c for c in found.changes if c.layer != "wire"] if hidden == "wire" else [wire]
+        found.changes = (
+            [c for c in found.changes if c.layer != "wire"]
+            if hidden == "wire"
+            else [wire]
+        )
         return found
 
     monkeypatch.setattr(measuring, "compare", lying)
     chosen = cases(icd, 41, seed=3)
     score = measure(chosen, LANGUAGES["python"], tmp_path)
-    real = sum(any(c.layer == "wire" for c in compare(case.old, case.new).changes) for case in chosen)
-    assert len({text.split(":")[0] for text in score.wrong}) >= (real if hidden == "wire" else len(chosen) - real) - 3
+    real = sum(
+        any(c.layer == "wire" for c in compare(case.old, case.new).changes)
+        for case in chosen
+    )
+    assert (
+        len({text.split(":")[0] for text in score.wrong})
+        >= (real if hidden == "wire" else len(chosen) - real) - 3
+    )
     assert len(score.wrong) >= 15

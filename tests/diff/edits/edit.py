@@ -15,7 +15,10 @@ from icdgen.naming import words
 
 @dataclass(frozen=True)
 class Edited:
-    """``must`` are found, ``may`` possibly, and nothing else. ``at`` names the message or enumeration."""
+    """``must`` are found, ``may`` possibly, and nothing else.
+
+    ``at`` names the message or enumeration.
+    """
 
     icd: Icd
     must: frozenset[str]
@@ -26,7 +29,9 @@ class Edited:
 Edit = Callable[[Icd, random.Random], "Edited | None"]
 EDITS: dict[str, Edit] = {}
 TEXT: list[str] = []  # edits of words only
-BEYOND: list[str] = []  # edits of what no message of the generated code shows: protocol facts, the log mask
+BEYOND: list[str] = (
+    []
+)  # edits of what no message of the generated code shows: protocol facts, the log mask
 STRANGE = "Zorkmid flux 7"
 
 
@@ -63,14 +68,23 @@ def with_layout(icd: Icd, node: Node, message: Message, layout: Layout) -> Icd:
     return with_message(icd, node, message, replace(message, layout=layout))
 
 
-def with_fields(icd: Icd, node: Node, message: Message, fields: list[Scalar], **more: object) -> Icd:
-    """Puts other scalars in the place of those of a message, all other nodes stay; ``more`` is of the layout."""
+def with_fields(
+    icd: Icd, node: Node, message: Message, fields: list[Scalar], **more: object
+) -> Icd:
+    """Puts other scalars in the place of those of a message, all other nodes stay.
+
+    ``more`` is of the layout.
+    """
     others = [one for one in message.layout.fixed if not isinstance(one, Scalar)]
-    return with_layout(icd, node, message, replace(message.layout, fixed=(*fields, *others), **more))
+    return with_layout(
+        icd, node, message, replace(message.layout, fixed=(*fields, *others), **more)
+    )
 
 
 def with_field(icd: Icd, node: Node, message: Message, old: Scalar, new: Scalar) -> Icd:
-    return with_layout(icd, node, message, layout_copies.with_node(message.layout, old, new))
+    return with_layout(
+        icd, node, message, layout_copies.with_node(message.layout, old, new)
+    )
 
 
 def with_enum(icd: Icd, old: Enum, new: Enum) -> Icd:
@@ -109,11 +123,21 @@ def scalars(message: Message) -> list[Scalar]:
     return [one for one in message.layout.fixed if isinstance(one, Scalar)]
 
 
-def fields_of(icd: Icd, wanted: Callable[[Scalar], bool] = lambda f: True) -> list[tuple[Node, Message, Scalar]]:
-    return [(n, m, f) for n in icd.nodes for m in n.messages for f in scalars(m) if wanted(f)]
+def fields_of(
+    icd: Icd, wanted: Callable[[Scalar], bool] = lambda f: True
+) -> list[tuple[Node, Message, Scalar]]:
+    return [
+        (n, m, f)
+        for n in icd.nodes
+        for m in n.messages
+        for f in scalars(m)
+        if wanted(f)
+    ]
 
 
-def messages_of(icd: Icd, wanted: Callable[[Message], bool] = lambda m: True) -> list[tuple[Node, Message]]:
+def messages_of(
+    icd: Icd, wanted: Callable[[Message], bool] = lambda m: True
+) -> list[tuple[Node, Message]]:
     return [(n, m) for n in icd.nodes for m in n.messages if wanted(m)]
 
 
@@ -123,11 +147,18 @@ def members_of(icd: Icd) -> list[tuple[Enum, int]]:
 
 def is_plain(field: Scalar) -> bool:
     """A number without anything that depends on its range."""
-    return field.type in ("uint", "int") and field.const is None and not field.special and not field.limits
+    return (
+        field.type in ("uint", "int")
+        and field.const is None
+        and not field.special
+        and not field.limits
+    )
 
 
 def is_free(message: Message, name: str) -> bool:
-    return all(words(f.name) != words(name) and f.name != name for f in message.layout.nodes)
+    return all(
+        words(f.name) != words(name) and f.name != name for f in message.layout.nodes
+    )
 
 
 def free_id(icd: Icd) -> int | None:
@@ -138,17 +169,23 @@ def free_id(icd: Icd) -> int | None:
 # Edits of one thing, chosen at random
 
 
-def on_field(wanted: Callable[[Scalar], bool] = lambda f: True, **kind: bool) -> Callable[[Callable], Edit]:
+def on_field(
+    wanted: Callable[[Scalar], bool] = lambda f: True, **kind: bool
+) -> Callable[[Callable], Edit]:
     """Registers ``function(icd, rng, node, message, field)``."""
     return _on(lambda icd: fields_of(icd, wanted), kind)
 
 
-def on_message(wanted: Callable[[Message], bool] = lambda m: True, **kind: bool) -> Callable[[Callable], Edit]:
+def on_message(
+    wanted: Callable[[Message], bool] = lambda m: True, **kind: bool
+) -> Callable[[Callable], Edit]:
     """Registers ``function(icd, rng, node, message)``."""
     return _on(lambda icd: messages_of(icd, wanted), kind)
 
 
-def _on(found: Callable[[Icd], list[tuple]], kind: dict[str, bool]) -> Callable[[Callable], Edit]:
+def _on(
+    found: Callable[[Icd], list[tuple]], kind: dict[str, bool]
+) -> Callable[[Callable], Edit]:
     def register(function: Callable) -> Edit:
         @wraps(function)
         def made(icd: Icd, rng: random.Random) -> Edited | None:

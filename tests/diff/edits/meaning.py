@@ -31,7 +31,9 @@ def _scaled(icd, rng, new: Callable[[Scale], Scale], code: str):
     if one is None:
         return None
     node, message, field = one
-    edited = with_field(icd, node, message, field, replace(field, scale=new(field.scale), formula=""))
+    edited = with_field(
+        icd, node, message, field, replace(field, scale=new(field.scale), formula="")
+    )
     return done(edited, message.name, code, may=("DIF308",))
 
 
@@ -54,25 +56,49 @@ def turn_factor(icd, rng):
 def change_unit(icd, rng, node, message, field):
     unit = STANDARD[rng.choice([s for s in STANDARD if s != field.unit.symbol])]
     may = ("DIF308",) if field.scale is not None or field.limits else ()
-    return done(with_field(icd, node, message, field, replace(field, unit=unit)), message.name, "DIF202", may=may)
+    return done(
+        with_field(icd, node, message, field, replace(field, unit=unit)),
+        message.name,
+        "DIF202",
+        may=may,
+    )
 
 
 @on_field(lambda f: f.const is not None)
 def change_const(icd, rng, node, message, field):
-    return done(with_field(icd, node, message, field, replace(field, const=field.const ^ 1)), message.name, "DIF209")
+    return done(
+        with_field(icd, node, message, field, replace(field, const=field.const ^ 1)),
+        message.name,
+        "DIF209",
+    )
 
 
 @on_field(lambda f: f.type in ("uint", "int"))
 def change_limits(icd, rng, node, message, field):
     old = field.limits or Limits()
-    new = replace(field, limits=replace(old, min=(old.min if old.min is not None else Fraction(0)) + 1))
-    return done(with_field(icd, node, message, field, new), message.name, "DIF211", may=("DIF308",))
+    new = replace(
+        field,
+        limits=replace(old, min=(old.min if old.min is not None else Fraction(0)) + 1),
+    )
+    return done(
+        with_field(icd, node, message, field, new),
+        message.name,
+        "DIF211",
+        may=("DIF308",),
+    )
 
 
 @on_field(lambda f: f.type == "uint" and all(s.value != f.raw_max for s in f.special))
 def add_special(icd, rng, node, message, field):
-    new = replace(field, special=(*field.special, Special(field.raw_max, "quite special")))
-    return done(with_field(icd, node, message, field, new), message.name, "DIF210", may=("DIF308",))
+    new = replace(
+        field, special=(*field.special, Special(field.raw_max, "quite special"))
+    )
+    return done(
+        with_field(icd, node, message, field, new),
+        message.name,
+        "DIF210",
+        may=("DIF308",),
+    )
 
 
 @on_message(lambda m: m.kind == TELECOMMAND)
@@ -84,12 +110,23 @@ def change_answer(icd, rng, node, message):
 @edit()
 def change_node_type(icd, rng):
     node = rng.choice(icd.nodes)
-    return done(with_node(icd, node, replace(node, node_type=(node.node_type or 0) + 1)), "", "DIF215")
+    return done(
+        with_node(icd, node, replace(node, node_type=(node.node_type or 0) + 1)),
+        "",
+        "DIF215",
+    )
 
 
 @edit()
 def change_member_sense(icd, rng):
-    one = pick(rng, [(e, i) for e, i in members_of(icd) if all(m.name != STRANGE for m in e.members)])
+    one = pick(
+        rng,
+        [
+            (e, i)
+            for e, i in members_of(icd)
+            if all(m.name != STRANGE for m in e.members)
+        ],
+    )
     if one is None:
         return None
     enum, index = one
@@ -99,10 +136,20 @@ def change_member_sense(icd, rng):
 
 @edit()
 def renumber_member(icd, rng):
-    users = {id(f.enum): f.bits for _, _, f in reversed(fields_of(icd, lambda f: f.enum is not None))}
+    users = {
+        id(f.enum): f.bits
+        for _, _, f in reversed(fields_of(icd, lambda f: f.enum is not None))
+    }
     found = []
     for enum, index in members_of(icd):
-        free = next((v for v in range(1 << users.get(id(enum), 0)) if all(m.value != v for m in enum.members)), None)
+        free = next(
+            (
+                v
+                for v in range(1 << users.get(id(enum), 0))
+                if all(m.value != v for m in enum.members)
+            ),
+            None,
+        )
         twins = [m.name for m in enum.members].count(enum.members[index].name)
         if free is not None and twins == 1:
             found.append((enum, index, free))
@@ -120,4 +167,9 @@ def remove_member(icd, rng):
         return None
     enum, index = one
     members = tuple(m for i, m in enumerate(enum.members) if i != index)
-    return done(with_enum(icd, enum, replace(enum, members=members)), enum.name, "DIF207", "DIF306")
+    return done(
+        with_enum(icd, enum, replace(enum, members=members)),
+        enum.name,
+        "DIF207",
+        "DIF306",
+    )

@@ -24,12 +24,16 @@ from tests.diff.edits.edit import (
 
 @edit()
 def rename_field(icd, rng):
-    one = pick(rng, [(n, m, f) for n, m, f in fields_of(icd) if is_free(m, f"{f.name} Value")])
+    one = pick(
+        rng, [(n, m, f) for n, m, f in fields_of(icd) if is_free(m, f"{f.name} Value")]
+    )
     if one is None:
         return None
     node, message, field = one
     new = replace(
-        field, name=f"{field.name} Value", identifier=f"{field.identifier} Value" if field.identifier else None
+        field,
+        name=f"{field.name} Value",
+        identifier=f"{field.identifier} Value" if field.identifier else None,
     )
     return done(with_field(icd, node, message, field, new), message.name, "DIF302")
 
@@ -41,7 +45,9 @@ def rename_field_to_another_sense(icd, rng):
         return None
     node, message, field = one
     new = replace(field, name=STRANGE, identifier=None)
-    return done(with_field(icd, node, message, field, new), message.name, "DIF213", "DIF302")
+    return done(
+        with_field(icd, node, message, field, new), message.name, "DIF213", "DIF302"
+    )
 
 
 @edit()
@@ -52,7 +58,11 @@ def rename_message(icd, rng):
         return None
     node, message = one
     name = f"{message.name} Frame"
-    new = replace(message, name=name, identifier=f"{message.identifier} Frame" if message.identifier else None)
+    new = replace(
+        message,
+        name=name,
+        identifier=f"{message.identifier} Frame" if message.identifier else None,
+    )
     return done(with_message(icd, node, message, new), name, "DIF301")
 
 
@@ -62,7 +72,9 @@ def rename_enum(icd, rng):
     if enum is None:
         return None
     name = f"{enum.name}Kind"
-    return done(with_enum(icd, enum, replace(enum, name=name, identifier=None)), name, "DIF303")
+    return done(
+        with_enum(icd, enum, replace(enum, name=name, identifier=None)), name, "DIF303"
+    )
 
 
 @edit()
@@ -72,7 +84,11 @@ def mend_member(icd, rng):
     for enum, index in members_of(icd):
         member = enum.members[index]
         name = member.name[:4] + member.name[3:]
-        if member.identifier is None and same_sense(name, member.name) and words(name) != words(member.name):
+        if (
+            member.identifier is None
+            and same_sense(name, member.name)
+            and words(name) != words(member.name)
+        ):
             if all(m.name != name for m in enum.members):
                 found.append((enum, index, name))
     one = pick(rng, found)

@@ -39,7 +39,11 @@ def change_message_words(icd, rng, node, message):
             ("hazard", f"{message.hazard} More.".strip(), "DIF401"),
         ]
     )
-    return done(with_message(icd, node, message, replace(message, **{key: value})), message.name, code)
+    return done(
+        with_message(icd, node, message, replace(message, **{key: value})),
+        message.name,
+        code,
+    )
 
 
 @edit(text=True)
@@ -47,13 +51,19 @@ def respell_field(icd, rng):
     found = []
     for node, message, field in fields_of(icd):
         name = field.name.replace(" ", " - ")
-        if name != field.name and words(name, node.vocabulary) == words(field.name, node.vocabulary):
+        if name != field.name and words(name, node.vocabulary) == words(
+            field.name, node.vocabulary
+        ):
             found.append((node, message, field, name))
     one = pick(rng, found)
     if one is None:
         return None
     node, message, field, name = one
-    return done(with_field(icd, node, message, field, replace(field, name=name)), message.name, "DIF406")
+    return done(
+        with_field(icd, node, message, field, replace(field, name=name)),
+        message.name,
+        "DIF406",
+    )
 
 
 @edit(text=True)
@@ -73,23 +83,44 @@ def change_enum_words(icd, rng):
 def note_an_erratum(icd, rng, node, message, field):
     number = sum(e.id.startswith("NEW-") for e in node.errata)
     erratum = Erratum(f"NEW-{number:03}", "A note", "Why.", "Evidence.", "open")
-    edited = with_field(icd, node, message, field, replace(field, errata=(*field.errata, erratum)))
+    edited = with_field(
+        icd, node, message, field, replace(field, errata=(*field.errata, erratum))
+    )
     home = next(n for n in edited.nodes if n.name == node.name)
-    return done(with_node(edited, home, replace(home, errata=(*home.errata, erratum))), "", "DIF403")
+    return done(
+        with_node(edited, home, replace(home, errata=(*home.errata, erratum))),
+        "",
+        "DIF403",
+    )
 
 
 @edit(text=True)
 def shuffle(icd, rng):
     """Order is no change at all."""
     node = rng.choice(icd.nodes)
-    layouts = [replace(m.layout, fixed=tuple(rng.sample(m.layout.fixed, len(m.layout.fixed)))) for m in node.messages]
-    messages = [replace(m, layout=one) for m, one in zip(node.messages, layouts, strict=True)]
+    layouts = [
+        replace(m.layout, fixed=tuple(rng.sample(m.layout.fixed, len(m.layout.fixed))))
+        for m in node.messages
+    ]
+    messages = [
+        replace(m, layout=one) for m, one in zip(node.messages, layouts, strict=True)
+    ]
     enums = rng.sample(node.enums, len(node.enums))
     rng.shuffle(messages)
-    return done(with_node(icd, node, replace(node, messages=tuple(messages), enums=tuple(enums))), "")
+    return done(
+        with_node(
+            icd, node, replace(node, messages=tuple(messages), enums=tuple(enums))
+        ),
+        "",
+    )
 
 
 @on_field(lambda f: f.scale is not None, text=True)
 def respell_formula(icd, rng, node, message, field):
     """Nor is another spelling of the same formula."""
-    return done(with_field(icd, node, message, field, replace(field, formula=f"({field.formula})")), "")
+    return done(
+        with_field(
+            icd, node, message, field, replace(field, formula=f"({field.formula})")
+        ),
+        "",
+    )

@@ -38,7 +38,11 @@ def move_field(icd, rng):
     if one is None:
         return None
     node, message, field, gap = one
-    return done(with_field(icd, node, message, field, replace(field, at=gap.at)), message.name, "DIF107")
+    return done(
+        with_field(icd, node, message, field, replace(field, at=gap.at)),
+        message.name,
+        "DIF107",
+    )
 
 
 @edit()
@@ -61,15 +65,21 @@ def swap_fields(icd, rng):
 @edit()
 def insert_field(icd, rng):
     found = [
-        (n, m, f) for n, m, f in fields_of(icd, lambda f: f.at % 8 == 0) if is_free(m, "Inserted") and _cut_at(m, f.at)
+        (n, m, f)
+        for n, m, f in fields_of(icd, lambda f: f.at % 8 == 0)
+        if is_free(m, "Inserted") and _cut_at(m, f.at)
     ]
     one = pick(rng, found)
     if one is None:
         return None
     node, message, field = one
     new = Scalar(name="Inserted", at=field.at, bits=8, type="uint")
-    fields = [replace(f, at=f.at + 8) if f.at >= field.at else f for f in scalars(message)]
-    edited = with_fields(icd, node, message, [*fields, new], length=message.layout.length + 1)
+    fields = [
+        replace(f, at=f.at + 8) if f.at >= field.at else f for f in scalars(message)
+    ]
+    edited = with_fields(
+        icd, node, message, [*fields, new], length=message.layout.length + 1
+    )
     return done(edited, message.name, "DIF106", "DIF108", "DIF311")
 
 
@@ -81,13 +91,17 @@ def _cut_at(message: Message, bit: int) -> bool:
 @on_message(lambda m: is_free(m, "Appended"))
 def append_field(icd, rng, node, message):
     new = Scalar(name="Appended", at=message.layout.length * 8, bits=16, type="int")
-    edited = with_fields(icd, node, message, [*scalars(message), new], length=message.layout.length + 2)
+    edited = with_fields(
+        icd, node, message, [*scalars(message), new], length=message.layout.length + 2
+    )
     return done(edited, message.name, "DIF106", "DIF311")
 
 
 @on_field()
 def drop_field(icd, rng, node, message, field):
-    edited = with_fields(icd, node, message, [f for f in scalars(message) if f is not field])
+    edited = with_fields(
+        icd, node, message, [f for f in scalars(message) if f is not field]
+    )
     return done(edited, message.name, "DIF113", "DIF306")
 
 
@@ -100,7 +114,9 @@ def take_field_out(icd, rng):
     node, message, field = one
     rest = [f for f in scalars(message) if f is not field]
     fields = [replace(f, at=f.at - field.bits) if f.at > field.at else f for f in rest]
-    edited = with_fields(icd, node, message, fields, length=message.layout.length - field.bits // 8)
+    edited = with_fields(
+        icd, node, message, fields, length=message.layout.length - field.bits // 8
+    )
     behind = [f for f in rest if f.at > field.at]
     must = ("DIF106", "DIF306", *(("DIF108",) if behind else ()))
     return done(edited, message.name, *must, may=() if behind else ("DIF113",))
@@ -108,13 +124,22 @@ def take_field_out(icd, rng):
 
 @edit()
 def fill_gap(icd, rng):
-    found = [(n, m, g) for n, m in messages_of(icd, lambda m: is_free(m, "Filler")) for g in gaps(m, n)]
+    found = [
+        (n, m, g)
+        for n, m in messages_of(icd, lambda m: is_free(m, "Filler"))
+        for g in gaps(m, n)
+    ]
     one = pick(rng, found)
     if one is None:
         return None
     node, message, gap = one
     new = Scalar(name="Filler", at=gap.at, bits=min(gap.bits, 8), type="uint")
-    return done(with_fields(icd, node, message, [*scalars(message), new]), message.name, "DIF114", "DIF311")
+    return done(
+        with_fields(icd, node, message, [*scalars(message), new]),
+        message.name,
+        "DIF114",
+        "DIF311",
+    )
 
 
 @on_field(lambda f: is_plain(f) and f.bits > 1)
@@ -146,14 +171,26 @@ def narrow_field(icd, rng, node, message, field):
 @on_field(is_plain)
 def change_sign(icd, rng, node, message, field):
     new = replace(field, type="int" if field.type == "uint" else "uint")
-    return done(with_field(icd, node, message, field, new), message.name, "DIF111", "DIF307", may=("DIF308",))
+    return done(
+        with_field(icd, node, message, field, new),
+        message.name,
+        "DIF111",
+        "DIF307",
+        may=("DIF308",),
+    )
 
 
 @on_field(lambda f: is_plain(f) and f.scale is None and f.at % 8 == f.bits % 8 == 0)
 def make_bytes(icd, rng, node, message, field):
     new = replace(field, type="bytes", unit=None)
     may = ("DIF202", "DIF308") if field.unit else ()
-    return done(with_field(icd, node, message, field, new), message.name, "DIF111", "DIF307", may=may)
+    return done(
+        with_field(icd, node, message, field, new),
+        message.name,
+        "DIF111",
+        "DIF307",
+        may=may,
+    )
 
 
 @on_message()
@@ -169,7 +206,11 @@ def change_id(icd, rng):
         return None
     node, message = one
     key = "set_id" if message.kind == CONFIGURATION else "id"
-    return done(with_message(icd, node, message, replace(message, **{key: number})), message.name, "DIF103")
+    return done(
+        with_message(icd, node, message, replace(message, **{key: number})),
+        message.name,
+        "DIF103",
+    )
 
 
 @edit()
@@ -183,8 +224,12 @@ def swap_ids(icd, rng):
         return None
     node, a, b = one
     ids = {id(a): b.id, id(b): a.id}
-    messages = tuple(replace(m, id=ids[id(m)]) if id(m) in ids else m for m in node.messages)
-    return done(with_node(icd, node, replace(node, messages=messages)), "", "DIF103", "DIF104")
+    messages = tuple(
+        replace(m, id=ids[id(m)]) if id(m) in ids else m for m in node.messages
+    )
+    return done(
+        with_node(icd, node, replace(node, messages=messages)), "", "DIF103", "DIF104"
+    )
 
 
 @on_message()
@@ -200,18 +245,29 @@ def add_message(icd, rng):
     layout = Layout("Added", 1, (Scalar(name="Level", bits=8, type="uint"),))
     kind = rng.choice([TELECOMMAND, "telemetry"])
     new = Message("Added", kind, layout, number, node=one.name)
-    return done(with_node(icd, one, replace(one, messages=(*one.messages, new))), "Added", "DIF102", "DIF311")
+    return done(
+        with_node(icd, one, replace(one, messages=(*one.messages, new))),
+        "Added",
+        "DIF102",
+        "DIF311",
+    )
 
 
 @on_message(lambda m: m.kind == CONFIGURATION)
 def change_kind(icd, rng, node, message):
-    new = replace(message, kind=TELECOMMAND, id=message.set_id, set_id=None, get_id=None)
+    new = replace(
+        message, kind=TELECOMMAND, id=message.set_id, set_id=None, get_id=None
+    )
     return done(with_message(icd, node, message, new), message.name, "DIF105")
 
 
 @edit()
 def turn_byte_order(icd, rng):
-    found = [n for n in icd.nodes if any(not f.is_bytes and f.bits > 8 for m in n.messages for f in scalars(m))]
+    found = [
+        n
+        for n in icd.nodes
+        if any(not f.is_bytes and f.bits > 8 for m in n.messages for f in scalars(m))
+    ]
     node = pick(rng, found)
     if node is None:
         return None
@@ -222,7 +278,10 @@ def turn_byte_order(icd, rng):
 @edit()
 def turn_field(icd, rng):
     found = fields_of(icd, lambda f: f.type in ("uint", "int", "float") and f.bits > 8)
-    one = pick(rng, [(n, m, f) for n, m, f in found if not f.orders.within(m.layout.orders).byte])
+    one = pick(
+        rng,
+        [(n, m, f) for n, m, f in found if not f.orders.within(m.layout.orders).byte],
+    )
     if one is None:
         return None
     node, message, field = one
@@ -241,7 +300,13 @@ def change_fact(icd, rng):
     if one is None:
         return None
     node, key, part, value = one
-    new = {**node.protocol, key: {**node.protocol[key], part: not value if isinstance(value, bool) else value + 1}}
+    new = {
+        **node.protocol,
+        key: {
+            **node.protocol[key],
+            part: not value if isinstance(value, bool) else value + 1,
+        },
+    }
     return done(with_node(icd, node, replace(node, protocol=new)), "", "DIF120")
 
 

@@ -1,4 +1,6 @@
-"""``python -m tests.diff.release FOLDER``: writes the reconstructed older release, made from today's ICDs."""
+"""``python -m tests.diff.release FOLDER``: writes the reconstructed older release, made
+from today's ICDs.
+"""
 
 from __future__ import annotations
 
@@ -43,14 +45,20 @@ def make(folder: Path) -> Path:
         for index, message in enumerate(messages):
             name = _first_name(message)
             if name in known["lengths"] and "\n    length: " in message:
-                messages[index] = _older(message, known["lengths"][name], known["removed"].get(name, []))
+                messages[index] = _older(
+                    message, known["lengths"][name], known["removed"].get(name, [])
+                )
                 if _described(messages[index]) < known["lengths"][name]:
                     longer.setdefault(path.stem, []).append(name)
-        (folder / path.name).write_text(f"# {_MARK}\n{head}{''.join(messages)}", encoding="utf-8")
+        (folder / path.name).write_text(
+            f"# {_MARK}\n{head}{''.join(messages)}", encoding="utf-8"
+        )
     for path in sorted((SHIPPED / "errata").glob("*.yaml")):
         overlay = yaml.safe_load(path.read_text(encoding="utf-8"))
         for number, name in enumerate(longer.get(path.stem, ()), 1):
-            overlay.setdefault("entries", []).extend(yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name)))
+            overlay.setdefault("entries", []).extend(
+                yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name))
+            )
         _write(folder / "errata" / path.name, overlay)
     _settle(folder)
     return folder
@@ -71,7 +79,7 @@ def _older(message: str, length: int, removed: list[str]) -> str:
             if _first_name(line) in removed:
                 gone += int(re.search(r"bits: ([0-9]+)", line)[1])
                 continue
-            line = _AT.sub(lambda m: f"{m[1]}{int(m[2]) - gone}", line)  # noqa: B023  (used at once)
+            line = _AT.sub(lambda m: f"{m[1]}{int(m[2]) - gone}", line)  # noqa: B023
         lines.append(line)
     return re.sub(r"(?m)^    length: [0-9]+", f"    length: {length}", "".join(lines))
 
@@ -83,13 +91,17 @@ def _described(message: str) -> int:
 
 
 def _settle(folder: Path) -> None:
-    """Takes out of the overlays what no longer applies, until nothing is left to take out."""
+    """Takes out of the overlays what no longer applies, until nothing is left to take
+    out.
+    """
     for _ in range(20):
         loaded = load([folder])
         for fault in loaded.findings:
             if fault.code == "ICD045":  # a frame that the log holds in another length
                 _accept(folder, fault, loaded.texts)
-        faults = [f for f in loaded.findings if f.code in ("ICD080", "ICD081", "ICD084")]
+        faults = [
+            f for f in loaded.findings if f.code in ("ICD080", "ICD081", "ICD084")
+        ]
         if not faults:
             return
         for path in sorted((folder / "errata").glob("*.yaml")):
@@ -102,22 +114,37 @@ def _settle(folder: Path) -> None:
 def _accept(folder: Path, fault: Finding, texts: dict[str, str]) -> None:
     line = texts[fault.place.file].splitlines()[fault.place.line - 1]
     bit = int(re.search(r"bit: ([0-9]+)", line)[1])
-    entry = yaml.safe_load(_LONGER.format(id=f"OLD-{900 + bit}", name=_first_name(line)))[0]
-    entry |= {"where": {"loggable": bit}, "accept": ["ICD045"], "title": "The log holds the frame in another length"}
+    entry = yaml.safe_load(
+        _LONGER.format(id=f"OLD-{900 + bit}", name=_first_name(line))
+    )[0]
+    entry |= {
+        "where": {"loggable": bit},
+        "accept": ["ICD045"],
+        "title": "The log holds the frame in another length",
+    }
     path = folder / "errata" / Path(fault.place.file).name
     with path.open("a", encoding="utf-8") as file:
         file.write(yaml.safe_dump([entry], sort_keys=False))
 
 
 def _mend(path: Path, lines: set[int]) -> None:
-    """Leaves the entries with faults out; only those places where there are others, and counts `places` anew."""
+    """Leaves the entries with faults out.
+
+    Only those places where there are others, and counts `places` anew.
+    """
     texts = re.split(r"(?m)^(?=- |[a-z])", path.read_text(encoding="utf-8"))
     line, kept = 1, []
     for text in texts:
         end = line + text.count("\n")
         hits = {one - line for one in lines if line <= one < end}
         if hits and "\n  places: " in text:
-            kept.append(re.sub(r"(?m)^  places: ([0-9]+)$", lambda m: f"  places: {int(m[1]) - 1}", text))
+            kept.append(
+                re.sub(
+                    r"(?m)^  places: ([0-9]+)$",
+                    lambda m: f"  places: {int(m[1]) - 1}",
+                    text,
+                )
+            )
         elif hits:
             kept.append(_without_places(text, hits))
         else:
@@ -127,8 +154,13 @@ def _mend(path: Path, lines: set[int]) -> None:
 
 
 def _without_places(entry: str, hits: set[int]) -> str:
-    """The entry without the places in these lines of it; nothing if none is left, or the fault is no place's."""
-    parts = re.split(r"(?m)^(?=  (?:- |[a-z]))", entry)  # keys of the entry, and items of a list of places
+    """The entry without the places in these lines of it.
+
+    Nothing if none is left, or the fault is no place's.
+    """
+    parts = re.split(
+        r"(?m)^(?=  (?:- |[a-z]))", entry
+    )  # keys of the entry, and items of a list of places
     at, key, left, kept, found = 0, "", 0, [], set()
     for part in parts:
         is_place = key == "where" and part.startswith("  - ")
@@ -145,6 +177,10 @@ def _without_places(entry: str, hits: set[int]) -> str:
 
 def _write(path: Path, overlay: dict) -> None:
     entries = overlay.pop("entries", [])
-    dump = lambda value: yaml.safe_dump(value, sort_keys=False, allow_unicode=True, width=10_000)  # noqa: E731
-    end = f"entries:\n{dump(entries)}" if entries else ""  # last: places of logs are added behind them
+    dump = lambda value: yaml.safe_dump(  # noqa: E731
+        value, sort_keys=False, allow_unicode=True, width=10_000
+    )
+    end = (
+        f"entries:\n{dump(entries)}" if entries else ""
+    )  # last: places of logs are added behind them
     path.write_text(f"# {_MARK}\n{dump(overlay)}{end}", encoding="utf-8")

@@ -1,1 +1,3 @@
-"""Manuals drawn from ICDs, in layouts that differ in everything that a page can differ in."""
+"""Manuals drawn from ICDs, in layouts that differ in everything that a page can differ
+in.
+"""

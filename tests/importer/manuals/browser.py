@@ -9,7 +9,13 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from tests.importer.manuals.content import FIELD_TITLES, Manual, MessageTable, PlainTable, Prose
+from tests.importer.manuals.content import (
+    FIELD_TITLES,
+    Manual,
+    MessageTable,
+    PlainTable,
+    Prose,
+)
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,12 @@ _BORDERS = {
 def program() -> str | None:
     """The browser, if there is one."""
     return next(
-        (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+        (
+            found
+            for name in ("chromium", "chromium-browser", "google-chrome")
+            if (found := shutil.which(name))
+        ),
+        None,
     )
 
 
@@ -91,7 +102,9 @@ def _part(part: object, look: Look) -> str:
         return f"<{tag}>{escape(part.text)}</{tag}>"
     assert isinstance(part, MessageTable | PlainTable)
     caption = f'<p class="caption">{escape(f"Table {part.number}{look.mark}{part.title}")}</p>'
-    table = _message(part, look) if isinstance(part, MessageTable) else _plain(part, look)
+    table = (
+        _message(part, look) if isinstance(part, MessageTable) else _plain(part, look)
+    )
     return table + caption if look.caption_below else caption + table
 
 
@@ -107,11 +120,18 @@ def _message(part: MessageTable, look: Look) -> str:
         f"<tr><th>Description</th><td colspan=5>{escape(part.description)}</td></tr>"
     )
     if not part.rows:
-        return f"<table>{_columns((12, 10, 9, 24, 11, 34))}<tbody>{head}</tbody></table>"
+        return (
+            f"<table>{_columns((12, 10, 9, 24, 11, 34))}<tbody>{head}</tbody></table>"
+        )
     titles = "".join(f"<th>{_title(text, look)}</th>" for text in ["", *FIELD_TITLES])
-    rows = "".join("<tr><td></td>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in part.rows)
+    rows = "".join(
+        "<tr><td></td>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
+        for row in part.rows
+    )
     inner = f"<thead><tr>{titles}</tr></thead><tbody>{rows}</tbody>"
-    if look.repeat:  # only the headings repeat, so what stands above them is a table of its own
+    if (
+        look.repeat
+    ):  # only the headings repeat, so what stands above them is a table of its own
         above = f'<table style="margin: 0">{_columns((12, 10, 9, 24, 11, 34))}<tbody>{head}</tbody></table>'
         return f"{above}<table>{_columns((12, 10, 9, 24, 11, 34))}{inner}</table>"
     body = f"<tbody>{head}<tr>{titles}</tr>{rows}</tbody>"
@@ -120,7 +140,9 @@ def _message(part: MessageTable, look: Look) -> str:
 
 def _plain(part: PlainTable, look: Look) -> str:
     count = len(part.titles)
-    widths = {2: (40, 60), 3: (25, 35, 40), 4: (10, 30, 45, 15), 5: (9, 9, 27, 40, 15)}[count]
+    widths = {2: (40, 60), 3: (25, 35, 40), 4: (10, 30, 45, 15), 5: (9, 9, 27, 40, 15)}[
+        count
+    ]
     if part.kind == "loggable":
         widths = (45, 20, 35)
     titles = "".join(f"<th>{_title(text, look)}</th>" for text in part.titles)
@@ -129,9 +151,15 @@ def _plain(part: PlainTable, look: Look) -> str:
         if len(row) == 1:
             rows += f"<tr><th colspan={count}>{escape(row[0])}</th></tr>"
         else:
-            rows += "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
+            rows += (
+                "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
+            )
     return f"<table>{_columns(widths)}<thead><tr>{titles}</tr></thead><tbody>{rows}</tbody></table>"
 
 
 def _columns(widths: tuple[int, ...]) -> str:
-    return "<colgroup>" + "".join(f'<col style="width: {w}%">' for w in widths) + "</colgroup>"
+    return (
+        "<colgroup>"
+        + "".join(f'<col style="width: {w}%">' for w in widths)
+        + "</colgroup>"
+    )

@@ -1,4 +1,6 @@
-"""An ICD as the parts of a manual: captions, rows and prose, before anybody decides how they look."""
+"""An ICD as the parts of a manual: captions, rows and prose, before anybody decides how
+they look.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +12,23 @@ import yaml
 from tests.conftest import ROOT
 
 FIELD_TITLES = ["Offset (bits)", "Length (bits)", "Name", "Data Type", "Description"]
-_TYPES = {"uint": "UINT", "int": "INT", "bool": "BOOL", "enum": "ENUM", "bytes": "ARRAY"}
-_CAPTIONS = {"telecommand": "Command Format", "telemetry": "Telemetry Format", "configuration": "Message Format"}
-_LISTS = {"telecommand": "Telecommands", "telemetry": "Telemetry Frames", "configuration": "Configuration Messages"}
+_TYPES = {
+    "uint": "UINT",
+    "int": "INT",
+    "bool": "BOOL",
+    "enum": "ENUM",
+    "bytes": "ARRAY",
+}
+_CAPTIONS = {
+    "telecommand": "Command Format",
+    "telemetry": "Telemetry Format",
+    "configuration": "Message Format",
+}
+_LISTS = {
+    "telecommand": "Telecommands",
+    "telemetry": "Telemetry Frames",
+    "configuration": "Configuration Messages",
+}
 
 
 @dataclass
@@ -58,7 +74,9 @@ def shipped(*names: str, most: int | None = None, skip: int = 0) -> dict[str, di
     """The vendor layer of shipped nodes; ``most`` messages of each, after ``skip``."""
     made = {}
     for name in names:
-        tree = yaml.safe_load(Path(ROOT, "icd", f"{name}.yaml").read_text(encoding="utf-8"))
+        tree = yaml.safe_load(
+            Path(ROOT, "icd", f"{name}.yaml").read_text(encoding="utf-8")
+        )
         tree["messages"] = tree["messages"][skip : skip + most if most else None]
         made[name] = tree
     known = {e["name"] for tree in made.values() for e in tree.get("enums", [])}
@@ -74,7 +92,9 @@ def shipped(*names: str, most: int | None = None, skip: int = 0) -> dict[str, di
     return made
 
 
-def manual(trees: dict[str, dict], titles: dict[str, str], noise: bool = True) -> Manual:
+def manual(
+    trees: dict[str, dict], titles: dict[str, str], noise: bool = True
+) -> Manual:
     """The manual of these nodes. ``titles``: what it calls each node."""
     made = Manual("Reference Manual", trees=trees)
     number = 1
@@ -85,7 +105,9 @@ def manual(trees: dict[str, dict], titles: dict[str, str], noise: bool = True) -
     return made
 
 
-def _node(made: Manual, tree: dict, title: str, section: int, number: int, noise: bool) -> int:
+def _node(
+    made: Manual, tree: dict, title: str, section: int, number: int, noise: bool
+) -> int:
     enums = {enum["name"]: enum for enum in tree.get("enums", [])}
     everywhere = {e["name"]: e for t in made.trees.values() for e in t.get("enums", [])}
     tables: dict[str, int] = {}
@@ -113,11 +135,18 @@ def _node(made: Manual, tree: dict, title: str, section: int, number: int, noise
         if what == "list":
             made.parts.append(_list(tree, item, title, tables))
         elif what == "message":
-            made.parts.append(_message(item, tables[f"message {item['name']}"], by_name))
+            made.parts.append(
+                _message(item, tables[f"message {item['name']}"], by_name)
+            )
         else:
             made.parts.append(_enum(item, tables[f"enum {item['name']}"]))
         if noise and position % 5 == 3:
-            made.parts += _chatter(position, tables.get(f"{what} {item if isinstance(item, str) else item['name']}", 1))
+            made.parts += _chatter(
+                position,
+                tables.get(
+                    f"{what} {item if isinstance(item, str) else item['name']}", 1
+                ),
+            )
     tree["enums"] = sorted(tree.get("enums", []), key=lambda e: e["source"]["table"])
     tree["messages"] = sorted(tree["messages"], key=lambda m: m["source"]["table"])
     if not tree["enums"]:
@@ -156,9 +185,17 @@ def _message(message: dict, number: int, enum_tables: dict[str, int]) -> Message
         ids = ("Set ID/Get ID", f"{message['set_id']}/{message['get_id']}")
     else:
         ids = ("ID", str(message["id"]))
-    length = "Frame Length (bytes)" if kind == "telemetry" else "Parameters Length (bytes)"
+    length = (
+        "Frame Length (bytes)" if kind == "telemetry" else "Parameters Length (bytes)"
+    )
     rows = [
-        [str(f["at"]), str(f["bits"]), f["name"], _type(f), _description(f, enum_tables)]
+        [
+            str(f["at"]),
+            str(f["bits"]),
+            f["name"],
+            _type(f),
+            _description(f, enum_tables),
+        ]
         for f in message.get("fields", [])
     ]
     return MessageTable(
@@ -182,11 +219,17 @@ def _description(field: dict, enum_tables: dict[str, int]) -> str:
         text += f". Should equal 0x{field['const']:X}"
     formula = field.get("formula")
     if formula and formula.startswith("raw ="):
-        expression = formula.removeprefix("raw =").strip().replace("value", "(formatted value)")
+        expression = (
+            formula.removeprefix("raw =").strip().replace("value", "(formatted value)")
+        )
         text += f". Raw parameter value is obtained using the formula: (raw parameter) = {expression}"
         text += f" (formatted value is in [{unit}] units)" if unit else ""
     elif formula:
-        announced = "Raw parameter value" if field.get("formula_for") == "raw" else "Formatted value"
+        announced = (
+            "Raw parameter value"
+            if field.get("formula_for") == "raw"
+            else "Formatted value"
+        )
         of = f"(formatted value) [{unit}]" if unit else "(formatted value)"
         text += f". {announced} is obtained using the formula: {of} = {formula.replace('raw', 'RAWVAL')}"
     elif unit:
@@ -196,33 +239,60 @@ def _description(field: dict, enum_tables: dict[str, int]) -> str:
 
 def _list(tree: dict, kind: str, title: str, tables: dict[str, int]) -> PlainTable:
     two = kind == "configuration"
-    titles = (["Set ID", "Get ID"] if two else ["ID"]) + ["Name", "Description", "Length (bytes)"]
+    titles = (["Set ID", "Get ID"] if two else ["ID"]) + [
+        "Name",
+        "Description",
+        "Length (bytes)",
+    ]
     rows: list[list[str]] = []
     group = None
-    for message in sorted((m for m in tree["messages"] if m["kind"] == kind), key=lambda m: m.get("group", "")):
+    for message in sorted(
+        (m for m in tree["messages"] if m["kind"] == kind),
+        key=lambda m: m.get("group", ""),
+    ):
         if message.get("group") != group:
             group = message.get("group")
             rows.append([group or ""])
-        ids = [str(message["set_id"]), str(message["get_id"])] if two else [str(message["id"])]
+        ids = (
+            [str(message["set_id"]), str(message["get_id"])]
+            if two
+            else [str(message["id"])]
+        )
         name = message["name"]
         about = f"{name} - Table {tables[f'message {name}']}: {name} {_CAPTIONS[kind]}"
         rows.append([*ids, name, about, str(message["length"])])
-    return PlainTable(tables[f"list {kind}"], f"List of {title} {_LISTS[kind]}", "list", titles, rows)
+    return PlainTable(
+        tables[f"list {kind}"], f"List of {title} {_LISTS[kind]}", "list", titles, rows
+    )
 
 
 def _enum(enum: dict, number: int) -> PlainTable:
-    rows = [[str(m["value"]), m["name"], f"{m['name']} is chosen"] for m in enum["members"]]
+    rows = [
+        [str(m["value"]), m["name"], f"{m['name']} is chosen"] for m in enum["members"]
+    ]
     return PlainTable(
-        number, f"{enum['name']} Enumeration Values", "enumeration", ["Numeric Value", "Name", "Description"], rows
+        number,
+        f"{enum['name']} Enumeration Values",
+        "enumeration",
+        ["Numeric Value", "Name", "Description"],
+        rows,
     )
 
 
 def _log(loggable: list[dict], number: int) -> PlainTable:
     size = max(row["bit"] for row in loggable) // 8 + 1
     rows = [
-        [(1 << row["bit"]).to_bytes(size, "little").hex(" ").upper(), str(row["id"]), row.get("name", "")]
+        [
+            (1 << row["bit"]).to_bytes(size, "little").hex(" ").upper(),
+            str(row["id"]),
+            row.get("name", ""),
+        ]
         for row in loggable
     ]
     return PlainTable(
-        number, "Loggable Telemetry Frames", "loggable", ["Mask", "Telemetry ID", "Telemetry Frame"], rows
+        number,
+        "Loggable Telemetry Frames",
+        "loggable",
+        ["Mask", "Telemetry ID", "Telemetry Frame"],
+        rows,
     )

@@ -10,7 +10,13 @@ import reportlab
 from fpdf import FPDF, FontFace
 from fpdf.enums import TableBordersLayout, TableCellFillMode
 
-from tests.importer.manuals.content import FIELD_TITLES, Manual, MessageTable, PlainTable, Prose
+from tests.importer.manuals.content import (
+    FIELD_TITLES,
+    Manual,
+    MessageTable,
+    PlainTable,
+    Prose,
+)
 
 _FONTS = Path(os.path.dirname(reportlab.__file__), "fonts")
 
@@ -28,7 +34,9 @@ class Look:
     caption_below: bool = False
     mark: str = ": "
     caption_style: str = "B"
-    caption_slant: float = 0  # degrees that the letters lean, for want of an italic font
+    caption_slant: float = (
+        0  # degrees that the letters lean, for want of an italic font
+    )
     figures: str = "LEFT"
     two_lines: bool = False
     padding: float = 1.0
@@ -68,7 +76,12 @@ class _Artist:
         pdf.heading = manual.title
         pdf.family = look.font
         if look.font == "Vera":
-            for style, name in (("", "Vera"), ("B", "VeraBd"), ("I", "VeraIt"), ("BI", "VeraBI")):
+            for style, name in (
+                ("", "Vera"),
+                ("B", "VeraBd"),
+                ("I", "VeraIt"),
+                ("BI", "VeraBI"),
+            ):
                 pdf.add_font("Vera", style, _FONTS / f"{name}.ttf")
         pdf.set_auto_page_break(True, 20)
         pdf.add_page()
@@ -100,7 +113,13 @@ class _Artist:
     def caption(self, part) -> None:
         self.font(self.look.caption_style)
         with self.pdf.skew(ax=self.look.caption_slant, x=self.pdf.x, y=self.pdf.y):
-            self.pdf.multi_cell(0, 5, f"Table {part.number}{self.look.mark}{part.title}", new_x="LMARGIN", new_y="NEXT")
+            self.pdf.multi_cell(
+                0,
+                5,
+                f"Table {part.number}{self.look.mark}{part.title}",
+                new_x="LMARGIN",
+                new_y="NEXT",
+            )
         self.pdf.ln(1)
 
     def prose(self, part: Prose) -> None:
@@ -112,13 +131,23 @@ class _Artist:
         else:
             self.font("", 1)
         self.pdf.multi_cell(
-            0, 5, part.text, new_x="LMARGIN", new_y="NEXT", border=1 if part.style == "code" else 0, align="L"
+            0,
+            5,
+            part.text,
+            new_x="LMARGIN",
+            new_y="NEXT",
+            border=1 if part.style == "code" else 0,
+            align="L",
         )
         self.pdf.ln(3)
 
     def table(self, widths: tuple[float, ...], head: bool):
         look = self.look
-        fill = FontFace(emphasis="BOLD", fill_color=look.head_fill) if look.head_fill else FontFace(emphasis="BOLD")
+        fill = (
+            FontFace(emphasis="BOLD", fill_color=look.head_fill)
+            if look.head_fill
+            else FontFace(emphasis="BOLD")
+        )
         return self.pdf.table(
             col_widths=widths,
             borders_layout=getattr(TableBordersLayout, look.borders),
@@ -127,7 +156,9 @@ class _Artist:
             num_heading_rows=1,
             repeat_headings=1 if look.repeat and head else 0,
             cell_fill_color=(238, 242, 250) if look.stripes else None,
-            cell_fill_mode=TableCellFillMode.ROWS if look.stripes else TableCellFillMode.NONE,
+            cell_fill_mode=(
+                TableCellFillMode.ROWS if look.stripes else TableCellFillMode.NONE
+            ),
             line_height=self.look.size * 0.3528 * look.line,
             padding=look.padding,
             text_align="LEFT",
@@ -169,12 +200,20 @@ class _Artist:
 
     def fields(self, table, part: MessageTable, label: bool) -> None:
         look = self.look
-        fill = FontFace(emphasis="BOLD", fill_color=look.head_fill) if look.head_fill else FontFace(emphasis="BOLD")
+        fill = (
+            FontFace(emphasis="BOLD", fill_color=look.head_fill)
+            if look.head_fill
+            else FontFace(emphasis="BOLD")
+        )
         row = table.row()
         if label:
             row.cell(part.label, style=fill)
         for index, text in enumerate(FIELD_TITLES):
-            row.cell(self.title(text), style=fill, align=look.figures if index < 2 else "LEFT")
+            row.cell(
+                self.title(text),
+                style=fill,
+                align=look.figures if index < 2 else "LEFT",
+            )
         for cells in part.rows:
             row = table.row()
             if label:
@@ -185,7 +224,12 @@ class _Artist:
     def plain(self, part: PlainTable) -> None:
         self.font()
         count = len(part.titles)
-        widths = {2: (40, 60), 3: (25, 35, 40), 4: (10, 30, 45, 15), 5: (9, 9, 27, 40, 15)}[count]
+        widths = {
+            2: (40, 60),
+            3: (25, 35, 40),
+            4: (10, 30, 45, 15),
+            5: (9, 9, 27, 40, 15),
+        }[count]
         if part.kind == "loggable":
             widths = (45, 20, 35)
         with self.table(widths, True) as table:

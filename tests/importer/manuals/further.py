@@ -1,4 +1,6 @@
-"""Further layouts, for large manuals: what page breaks do to tables depends on engine, rules, captions and headings."""
+"""Further layouts, for large manuals: what page breaks do to tables depends on engine,
+rules, captions and headings.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A layout set by an office suite: a document with heading styles, ruled tables whose headings repeat, ids in the headings."""
+"""A layout set by an office suite: a document with heading styles, ruled tables whose
+headings repeat, ids in the headings.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,15 @@ import tempfile
 from html import escape
 from pathlib import Path
 
-from tests.importer.manuals.wild import BY_HEADING, MESSAGES, PROSE, Wild, rule, size, unit
+from tests.importer.manuals.wild import (
+    BY_HEADING,
+    MESSAGES,
+    PROSE,
+    Wild,
+    rule,
+    size,
+    unit,
+)
 
 HEADS = ["Byte Offset", "Bytes", "Parameter", "Type", "Unit", "Scale"]
 
@@ -50,7 +60,11 @@ def _document() -> str:
     )  # fmt: skip
     body = _heading(1, "Telemetry") + _paragraph(PROSE)
     for message in MESSAGES:
-        body += _heading(2, f"{message['name']} (0x{message['id']:02X})") + _paragraph(PROSE) + _table(message)
+        body += (
+            _heading(2, f"{message['name']} (0x{message['id']:02X})")
+            + _paragraph(PROSE)
+            + _table(message)
+        )
         body += _paragraph("")
     return (
         f'<?xml version="1.0" encoding="UTF-8"?><office:document {spaces} office:version="1.3" '

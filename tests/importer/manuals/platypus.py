@@ -12,11 +12,30 @@ from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.pdfbase import pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
-from reportlab.platypus import KeepTogether, Paragraph, Preformatted, SimpleDocTemplate, Spacer, Table, TableStyle
+from reportlab.platypus import (
+    KeepTogether,
+    Paragraph,
+    Preformatted,
+    SimpleDocTemplate,
+    Spacer,
+    Table,
+    TableStyle,
+)
 
-from tests.importer.manuals.content import FIELD_TITLES, Manual, MessageTable, PlainTable, Prose
+from tests.importer.manuals.content import (
+    FIELD_TITLES,
+    Manual,
+    MessageTable,
+    PlainTable,
+    Prose,
+)
 
-_ALIGN = {"left": TA_LEFT, "right": TA_RIGHT, "center": TA_CENTER, "justify": TA_JUSTIFY}
+_ALIGN = {
+    "left": TA_LEFT,
+    "right": TA_RIGHT,
+    "center": TA_CENTER,
+    "justify": TA_JUSTIFY,
+}
 
 
 @dataclass(frozen=True)
@@ -65,7 +84,12 @@ def draw(manual: Manual, path: Path, look: Look) -> None:
     def furniture(canvas, doc) -> None:
         canvas.setFont(look.font, 8)
         canvas.drawString(look.margin, look.page[1] - 36, f"{manual.title}, edition 4")
-        canvas.line(look.margin, look.page[1] - 40, look.page[0] - look.margin, look.page[1] - 40)
+        canvas.line(
+            look.margin,
+            look.page[1] - 40,
+            look.page[0] - look.margin,
+            look.page[1] - 40,
+        )
         canvas.drawRightString(look.page[0] - look.margin, 34, f"Page {doc.page}")
 
     document.build(story, onFirstPage=furniture, onLaterPages=furniture)
@@ -75,40 +99,82 @@ class _Artist:
     def __init__(self, look: Look) -> None:
         self.look = look
         self.width = look.page[0] - 2 * look.margin
-        base = {"fontName": look.font, "fontSize": look.size, "leading": look.size * 1.22}
+        base = {
+            "fontName": look.font,
+            "fontSize": look.size,
+            "leading": look.size * 1.22,
+        }
         self.body = ParagraphStyle(
-            "body", **base | {"fontSize": look.size + 1, "leading": (look.size + 1) * 1.25}, spaceAfter=6
+            "body",
+            **base | {"fontSize": look.size + 1, "leading": (look.size + 1) * 1.25},
+            spaceAfter=6,
         )
         self.cell = ParagraphStyle("cell", **base, alignment=_ALIGN[look.text])
         self.figure = ParagraphStyle("figure", **base, alignment=_ALIGN[look.figures])
-        self.title = ParagraphStyle("title", **base | {"fontName": look.bold}, alignment=_ALIGN["left"])
-        self.figure_title = ParagraphStyle("figure title", parent=self.title, alignment=_ALIGN[look.figures])
-        font = {"slanted": look.slanted, "bold": look.bold, "plain": look.font}[look.caption_font]
+        self.title = ParagraphStyle(
+            "title", **base | {"fontName": look.bold}, alignment=_ALIGN["left"]
+        )
+        self.figure_title = ParagraphStyle(
+            "figure title", parent=self.title, alignment=_ALIGN[look.figures]
+        )
+        font = {"slanted": look.slanted, "bold": look.bold, "plain": look.font}[
+            look.caption_font
+        ]
         self.caption = ParagraphStyle(
             "caption", **base | {"fontName": font}, spaceBefore=8, spaceAfter=4,
             alignment=TA_CENTER if look.caption_center else TA_LEFT,
         )  # fmt: skip
         self.heading = ParagraphStyle(
-            "heading", fontName=look.bold, fontSize=look.size + 5, leading=look.size + 9, spaceBefore=10, spaceAfter=6
+            "heading",
+            fontName=look.bold,
+            fontSize=look.size + 5,
+            leading=look.size + 9,
+            spaceBefore=10,
+            spaceAfter=6,
         )
 
     def part(self, part) -> list:
         if isinstance(part, Prose):
             return self.prose(part)
-        table = self.message(part) if isinstance(part, MessageTable) else self.plain(part)
-        caption = Paragraph(self.markup(f"{self.look.word} {part.number}{self.look.mark}{part.title}"), self.caption)
+        table = (
+            self.message(part) if isinstance(part, MessageTable) else self.plain(part)
+        )
+        caption = Paragraph(
+            self.markup(f"{self.look.word} {part.number}{self.look.mark}{part.title}"),
+            self.caption,
+        )
         small = len(part.rows) < 12
         if self.look.caption_below:
-            return [*table, caption, Spacer(1, 8)] if not small else [KeepTogether([*table, caption]), Spacer(1, 8)]
+            return (
+                [*table, caption, Spacer(1, 8)]
+                if not small
+                else [KeepTogether([*table, caption]), Spacer(1, 8)]
+            )
         caption.keepWithNext = True
         return [caption, *table, Spacer(1, 10)]
 
     def prose(self, part: Prose) -> list:
         if part.style == "code":
-            box = Table([[Preformatted(part.text, ParagraphStyle("code", fontName="Courier", fontSize=8, leading=10))]])
+            box = Table(
+                [
+                    [
+                        Preformatted(
+                            part.text,
+                            ParagraphStyle(
+                                "code", fontName="Courier", fontSize=8, leading=10
+                            ),
+                        )
+                    ]
+                ]
+            )
             box.setStyle(TableStyle([("BOX", (0, 0), (-1, -1), 0.5, colors.grey)]))
             return [box, Spacer(1, 6)]
-        return [Paragraph(self.markup(part.text), self.heading if part.style == "heading" else self.body)]
+        return [
+            Paragraph(
+                self.markup(part.text),
+                self.heading if part.style == "heading" else self.body,
+            )
+        ]
 
     def markup(self, text: str) -> str:
         if self.look.ligatures:
@@ -116,7 +182,10 @@ class _Artist:
         return escape(text)
 
     def cells(self, texts: list[str], figures: set[int]) -> list:
-        return [Paragraph(self.markup(t), self.figure if i in figures else self.cell) for i, t in enumerate(texts)]
+        return [
+            Paragraph(self.markup(t), self.figure if i in figures else self.cell)
+            for i, t in enumerate(texts)
+        ]
 
     def titles(self, texts: list[str], figures: set[int]) -> list:
         made = []
@@ -124,7 +193,9 @@ class _Artist:
             words = self.markup(text)
             if self.look.two_lines and " " in text:
                 words = words.replace(" ", "<br/>", 1)
-            made.append(Paragraph(words, self.figure_title if index in figures else self.title))
+            made.append(
+                Paragraph(words, self.figure_title if index in figures else self.title)
+            )
         return made
 
     def message(self, part: MessageTable) -> list:
@@ -133,7 +204,13 @@ class _Artist:
         rows, style = [], []
         if look.stacked:
             for label, value in part.pairs:
-                rows.append([Paragraph(label, self.title), Paragraph(value, self.cell), *[""] * 4])
+                rows.append(
+                    [
+                        Paragraph(label, self.title),
+                        Paragraph(value, self.cell),
+                        *[""] * 4,
+                    ]
+                )
                 style.append(("SPAN", (1, len(rows) - 1), (-1, len(rows) - 1)))
         else:
             (first, one), (second, two) = part.pairs
@@ -141,41 +218,70 @@ class _Artist:
                          Paragraph(two, self.cell), ""])  # fmt: skip
             style += [("SPAN", (2, 0), (3, 0)), ("SPAN", (4, 0), (5, 0))]
         rows.append(
-            [Paragraph("Description", self.title), Paragraph(self.markup(part.description), self.cell), *[""] * 4]
+            [
+                Paragraph("Description", self.title),
+                Paragraph(self.markup(part.description), self.cell),
+                *[""] * 4,
+            ]
         )
         style.append(("SPAN", (1, len(rows) - 1), (-1, len(rows) - 1)))
         head = len(rows)
         if part.rows:
             label = "" if look.middle else part.label
-            rows.append([Paragraph(label, self.title), *self.titles(FIELD_TITLES, {0, 1})])
+            rows.append(
+                [Paragraph(label, self.title), *self.titles(FIELD_TITLES, {0, 1})]
+            )
             middle = len(part.rows) // 2
             for index, row in enumerate(part.rows):
-                side = Paragraph(part.label, self.title) if look.middle and index == middle else ""
+                side = (
+                    Paragraph(part.label, self.title)
+                    if look.middle and index == middle
+                    else ""
+                )
                 rows.append([side, *self.cells(row, {0, 1})])
             if look.rules == "grid":
                 style.append(
-                    ("LINEBELOW", (0, head), (0, -2), 0.1, colors.white) if False else ("NOSPLIT", (0, 0), (0, 0))
+                    ("LINEBELOW", (0, head), (0, -2), 0.1, colors.white)
+                    if False
+                    else ("NOSPLIT", (0, 0), (0, 0))
                 )
         table = Table(rows, colWidths=widths, repeatRows=0)
-        table.setStyle(TableStyle([*self.rules(rows, head if part.rows else None, body_from=1), *style]))
+        table.setStyle(
+            TableStyle(
+                [*self.rules(rows, head if part.rows else None, body_from=1), *style]
+            )
+        )
         return [table]
 
     def plain(self, part: PlainTable) -> list:
         count = len(part.titles)
-        widths = {2: [0.4, 0.6], 3: [0.25, 0.35, 0.4], 4: [0.1, 0.3, 0.45, 0.15], 5: [0.09, 0.09, 0.27, 0.4, 0.15]}[
-            count
-        ]
+        widths = {
+            2: [0.4, 0.6],
+            3: [0.25, 0.35, 0.4],
+            4: [0.1, 0.3, 0.45, 0.15],
+            5: [0.09, 0.09, 0.27, 0.4, 0.15],
+        }[count]
         if part.kind == "loggable":
             widths = [0.45, 0.2, 0.35]
-        figures = {i for i, t in enumerate(part.titles) if "ID" in t or "Value" in t or "Length" in t}
+        figures = {
+            i
+            for i, t in enumerate(part.titles)
+            if "ID" in t or "Value" in t or "Length" in t
+        }
         rows, style = [self.titles(part.titles, figures)], []
         for row in part.rows:
             if len(row) == 1:
-                rows.append([Paragraph(self.markup(row[0]), self.title), *[""] * (count - 1)])
+                rows.append(
+                    [Paragraph(self.markup(row[0]), self.title), *[""] * (count - 1)]
+                )
                 style.append(("SPAN", (0, len(rows) - 1), (-1, len(rows) - 1)))
             else:
                 rows.append(self.cells(row, figures))
-        table = Table(rows, colWidths=[w * self.width for w in widths], repeatRows=1 if self.look.repeat else 0)
+        table = Table(
+            rows,
+            colWidths=[w * self.width for w in widths],
+            repeatRows=1 if self.look.repeat else 0,
+        )
         table.setStyle(TableStyle([*self.rules(rows, 0), *style]))
         return [table]
 
@@ -183,7 +289,10 @@ class _Artist:
         look = self.look
         made: list[tuple] = [
             ("VALIGN", (0, 0), (-1, -1), "MIDDLE" if look.middle else "TOP"),
-            *[(f"{side}PADDING", (0, 0), (-1, -1), look.padding) for side in ("LEFT", "RIGHT", "TOP", "BOTTOM")],
+            *[
+                (f"{side}PADDING", (0, 0), (-1, -1), look.padding)
+                for side in ("LEFT", "RIGHT", "TOP", "BOTTOM")
+            ],
         ]
         if look.rules == "grid":
             made.append(("GRID", (0, 0), (-1, -1), 0.5, colors.black))
@@ -197,7 +306,9 @@ class _Artist:
                 made.append(("LINEBELOW", (0, head), (-1, head), 0.8, colors.black))
                 made.append(("LINEABOVE", (0, head), (-1, head), 0.8, colors.black))
         if look.head_fill and head is not None:
-            made.append(("BACKGROUND", (0, head), (-1, head), colors.HexColor("#d9d9d9")))
+            made.append(
+                ("BACKGROUND", (0, head), (-1, head), colors.HexColor("#d9d9d9"))
+            )
         if look.stripes:
             made += [
                 ("BACKGROUND", (0, i), (-1, i), colors.HexColor("#f0f4ff"))

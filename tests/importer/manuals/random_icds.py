@@ -1,4 +1,6 @@
-"""Random ICDs such as a manual prints: names of several words, gaps, long tables, every type and kind of formula."""
+"""Random ICDs such as a manual prints: names of several words, gaps, long tables, every
+type and kind of formula.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,11 @@ def name(draw, taken: set[str], lead: str = "") -> str:
     """A name that nothing else in its scope has. It begins and ends with a word."""
     middle = draw(st.lists(st.sampled_from(_WORDS), min_size=0, max_size=4))
     text = " ".join(
-        [lead or draw(st.sampled_from(_WORDS[:6])), *middle, draw(st.sampled_from(("Value", "State", "Gain", "Level")))]
+        [
+            lead or draw(st.sampled_from(_WORDS[:6])),
+            *middle,
+            draw(st.sampled_from(("Value", "State", "Gain", "Level"))),
+        ]
     )
     while text in taken:
         text += f" {len(taken)}"
@@ -39,11 +45,15 @@ def trees(draw) -> dict:
     enums = []
     for number in range(draw(st.integers(1, 3))):
         taken: set[str] = set()
-        values = draw(st.lists(st.integers(0, 255), min_size=1, max_size=30, unique=True))
+        values = draw(
+            st.lists(st.integers(0, 255), min_size=1, max_size=30, unique=True)
+        )
         enums.append(
             {
                 "name": f"Choice{number}Type",
-                "members": [{"value": v, "name": draw(name(taken))} for v in sorted(values)],
+                "members": [
+                    {"value": v, "name": draw(name(taken))} for v in sorted(values)
+                ],
             }
         )
     messages, taken = [], set()
@@ -55,12 +65,21 @@ def trees(draw) -> dict:
         else:
             message["id"] = number + 1 if kind == "telecommand" else number + 131
         fields = draw(_fields(enums))
-        message["length"] = max((f["at"] + f["bits"] + 7) // 8 for f in fields) if fields else 0
-        message["group"] = draw(st.sampled_from(("General", "Attitude and Orbit", "Power")))
+        message["length"] = (
+            max((f["at"] + f["bits"] + 7) // 8 for f in fields) if fields else 0
+        )
+        message["group"] = draw(
+            st.sampled_from(("General", "Attitude and Orbit", "Power"))
+        )
         if fields:
             message["fields"] = fields
         messages.append(message)
-    return {"icdgen": 1, "node": {"name": "device"}, "enums": enums, "messages": messages}
+    return {
+        "icdgen": 1,
+        "node": {"name": "device"},
+        "enums": enums,
+        "messages": messages,
+    }
 
 
 @st.composite
@@ -69,7 +88,9 @@ def _fields(draw, enums: list[dict]) -> list[dict]:
     for _ in range(draw(st.sampled_from((0, 1, 2, 3, 5, 8, 60)))):
         at += draw(st.sampled_from((0, 0, 0, 0, 3, 8)))
         one = draw(_field(enums))
-        fields.append({"at": at, "bits": one.pop("bits"), "name": draw(name(taken)), **one})
+        fields.append(
+            {"at": at, "bits": one.pop("bits"), "name": draw(name(taken)), **one}
+        )
         at += fields[-1]["bits"]
     return fields
 
@@ -80,10 +101,17 @@ def _field(draw, enums: list[dict]) -> dict:
     if kind == "bool":
         return {"bits": 1, "type": kind}
     if kind == "enum":
-        return {"bits": draw(st.sampled_from((4, 8))), "type": kind, "enum": draw(st.sampled_from(enums))["name"]}
+        return {
+            "bits": draw(st.sampled_from((4, 8))),
+            "type": kind,
+            "enum": draw(st.sampled_from(enums))["name"],
+        }
     if kind == "bytes":
         return {"bits": 8 * draw(st.integers(1, 20)), "type": kind}
-    made: dict = {"bits": draw(st.sampled_from((32, 64) if kind == "float" else (8, 12, 16, 32))), "type": kind}
+    made: dict = {
+        "bits": draw(st.sampled_from((32, 64) if kind == "float" else (8, 12, 16, 32))),
+        "type": kind,
+    }
     if draw(st.booleans()):
         made["unit"] = draw(st.sampled_from(_UNITS))
     if kind != "float" and draw(st.booleans()):

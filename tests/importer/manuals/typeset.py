@@ -1,11 +1,22 @@
-"""Layouts that were drawn when the importer was done with the others: two by Typst, one by a browser."""
+"""Layouts that were drawn when the importer was done with the others: two by Typst, one
+by a browser.
+"""
 
 from __future__ import annotations
 
 import tempfile
 from pathlib import Path
 
-from tests.importer.manuals.wild import MESSAGES, PROSE, REGISTERS, Wild, registers_rule, rule, unit, web
+from tests.importer.manuals.wild import (
+    MESSAGES,
+    PROSE,
+    REGISTERS,
+    Wild,
+    registers_rule,
+    rule,
+    unit,
+    web,
+)
 
 
 def typst(path: Path, text: str) -> None:
@@ -27,7 +38,16 @@ def _rows(message: dict) -> list[list[str]]:
     for one in message["fields"]:
         kind = {"uint": "uint", "int": "int"}[one["type"]] + str(one["bits"])
         factor = one.get("formula", "raw*1").removeprefix("raw*")
-        made.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], kind, unit(one), factor])
+        made.append(
+            [
+                str(one["at"] // 8),
+                str(one["bits"] // 8),
+                one["name"],
+                kind,
+                unit(one),
+                factor,
+            ]
+        )
     return made
 
 
@@ -35,7 +55,9 @@ HEADS = ["Offset (bytes)", "Size (bytes)", "Signal", "Type", "Unit", "Scale"]
 
 
 def article(path: Path) -> None:
-    """Like an article: numbered sections, three rules a table, captions below, ids in the prose."""
+    """Like an article: numbered sections, three rules a table, captions below, ids in
+    the prose.
+    """
     text = '#set page("a4", numbering: "1")\n#set text(size: 10pt)\n#set heading(numbering: "1.1")\n#set par(justify: true)\n'
     text += f"= Introduction\n{PROSE}\n= Telemetry\n"
     for message in MESSAGES:
@@ -50,7 +72,9 @@ def article(path: Path) -> None:
 def two_columns(path: Path) -> None:
     """Two columns of text on a page, ruled tables, captions with the id above them."""
     text = '#set page("us-letter", columns: 2, margin: 1.4cm)\n#set text(size: 8pt)\n#show figure.caption: strong\n'
-    text += "#set figure.caption(position: top)\n#set table(stroke: 0.5pt, inset: 3pt)\n"
+    text += (
+        "#set figure.caption(position: top)\n#set table(stroke: 0.5pt, inset: 3pt)\n"
+    )
     text += f"= Telemetry\n{' '.join([PROSE] * 6)}\n\n"
     for message in MESSAGES:
         text += f"{' '.join([PROSE] * 9)}\n\n"
@@ -62,20 +86,26 @@ def two_columns(path: Path) -> None:
 
 
 def sheet(path: Path) -> None:
-    """A data sheet of registers: access in the heading, reset values, bits counted down, reserved ones printed."""
+    """A data sheet of registers: access in the heading, reset values, bits counted
+    down, reserved ones printed.
+    """
     body = "<h1>Registers</h1>"
     for message in REGISTERS:
         access = "R/W" if message["kind"] == "configuration" else "read-only"
         address = message.get("id", message.get("set_id"))
         rows, bit = "", 7
         while bit >= 0:
-            one = next((f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit), None)
+            one = next(
+                (f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit), None
+            )
             low = one["at"] if one else bit
             where = f"{bit}" if low == bit else f"{bit}:{low}"
             rows += f"<tr><td>{where}<td>{one['name'] if one else 'Reserved'}<td>0<td>See the text above</tr>"
             bit = low - 1
         body += f"<h2>Register {message['name']} (address 0x{address:02X}, {access})</h2><p>{PROSE}</p>"
-        body += f"<table><tr><th>Bits<th>Field<th>Reset<th>Description</tr>{rows}</table>"
+        body += (
+            f"<table><tr><th>Bits<th>Field<th>Reset<th>Description</tr>{rows}</table>"
+        )
     web(
         path,
         "body {font: 10pt sans-serif} table {border-collapse: collapse; width: 100%} th {background: #333; color: #fff; "

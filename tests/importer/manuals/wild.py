@@ -1,4 +1,6 @@
-"""Documents of the kind that vendors of sensors and modems publish, each with the ICD that it prints and the profile it needs."""
+"""Documents of the kind that vendors of sensors and modems publish, each with the ICD
+that it prints and the profile it needs.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +63,10 @@ class Wild:
 
 def size(one: dict) -> str:
     """The type and its width as sheets print them."""
-    return {"uint": {8: "U8", 16: "U16", 32: "U32"}, "int": {8: "S8", 16: "S16", 32: "S32"}}[one["type"]][one["bits"]]
+    return {
+        "uint": {8: "U8", 16: "U16", 32: "U32"},
+        "int": {8: "S8", 16: "S16", 32: "S32"},
+    }[one["type"]][one["bits"]]
 
 
 def unit(one: dict) -> str:
@@ -74,22 +79,37 @@ def _scaled(one: dict) -> str:
     return f"{factor} {unit(one).strip('-')}".strip() or "-"
 
 
-def platypus(path: Path, page: tuple[float, float], story: list, rules: str = "grid") -> None:
+def platypus(
+    path: Path, page: tuple[float, float], story: list, rules: str = "grid"
+) -> None:
     style = getSampleStyleSheet()
     small = style["BodyText"].clone("small", fontSize=8, leading=10)
     made: list = []
     for one in story:
         if isinstance(one, str):
             heading = one.startswith("# ")
-            made.append(Paragraph(escape(one.removeprefix("# ")), style["Heading2"] if heading else style["BodyText"]))
+            made.append(
+                Paragraph(
+                    escape(one.removeprefix("# ")),
+                    style["Heading2"] if heading else style["BodyText"],
+                )
+            )
             continue
         rows, spans, widths = one
-        table = Table([[Paragraph(escape(cell), small) for cell in row] for row in rows], colWidths=widths)
+        table = Table(
+            [[Paragraph(escape(cell), small) for cell in row] for row in rows],
+            colWidths=widths,
+        )
         grid = [("GRID", (0, 0), (-1, -1), 0.5, colors.black)]
-        ends = [("LINEABOVE", (0, 0), (-1, 1), 0.8, colors.black), ("LINEBELOW", (0, -1), (-1, -1), 0.8, colors.black)]
+        ends = [
+            ("LINEABOVE", (0, 0), (-1, 1), 0.8, colors.black),
+            ("LINEBELOW", (0, -1), (-1, -1), 0.8, colors.black),
+        ]
         table.setStyle(TableStyle([*(grid if rules == "grid" else ends), *spans]))
         made += [table, Spacer(1, 10)]
-    SimpleDocTemplate(str(path), pagesize=page, title="Motor controller", invariant=1).build(made)
+    SimpleDocTemplate(
+        str(path), pagesize=page, title="Motor controller", invariant=1
+    ).build(made)
 
 
 def web(path: Path, style: str, body: str) -> None:
@@ -101,13 +121,24 @@ def web(path: Path, style: str, body: str) -> None:
 
 
 def sections(path: Path) -> None:
-    """Ids in section headings, offsets and sizes in bytes, a factor in a column of its own."""
+    """Ids in section headings, offsets and sizes in bytes, a factor in a column of its
+    own.
+    """
     story: list = ["# 4 Telemetry", PROSE]
     for index, message in enumerate(MESSAGES, 1):
         rows = [["Offset", "Size", "Field", "Type", "Unit", "Scale"]]
         for one in message["fields"]:
             factor = one.get("formula", "raw*1").removeprefix("raw*")
-            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], size(one), unit(one), factor])
+            rows.append(
+                [
+                    str(one["at"] // 8),
+                    str(one["bits"] // 8),
+                    one["name"],
+                    size(one),
+                    unit(one),
+                    factor,
+                ]
+            )
         story += [
             f"# 4.{index} {message['name']} (0x{message['id']:02X})",
             PROSE,
@@ -121,7 +152,8 @@ def prose(path: Path) -> None:
     body = "<h1>Housekeeping</h1>"
     for message in MESSAGES:
         rows = "".join(
-            f"<tr><td>{one['name']}<td>{one['type']}{one['bits']}_t<td>{_scaled(one)}</tr>" for one in message["fields"]
+            f"<tr><td>{one['name']}<td>{one['type']}{one['bits']}_t<td>{_scaled(one)}</tr>"
+            for one in message["fields"]
         )
         body += f"<h2>{message['name']}</h2><p>Message ID: {message['id']}. {PROSE}</p>"
         body += f"<table><tr><th>Field<th>Type<th>Unit</tr>{rows}</table>"
@@ -147,7 +179,10 @@ def registers(path: Path) -> None:
             row.cell("R/W" if message["kind"] == "configuration" else "R")
             bit = 7
             while bit >= 0:
-                one = next((f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit), None)
+                one = next(
+                    (f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit),
+                    None,
+                )
                 row.cell(one["name"] if one else "-", colspan=one["bits"] if one else 1)
                 bit -= one["bits"] if one else 1
     pdf.output(str(path))
@@ -160,7 +195,13 @@ def bit_tables(path: Path) -> None:
         rows = [["Bits", "Name", "Description"]]
         for one in sorted(message["fields"], key=lambda f: -f["at"]):
             high = one["at"] + one["bits"] - 1
-            rows.append([str(high) if one["bits"] == 1 else f"{high}:{one['at']}", one["name"], "see the text"])
+            rows.append(
+                [
+                    str(high) if one["bits"] == 1 else f"{high}:{one['at']}",
+                    one["name"],
+                    "see the text",
+                ]
+            )
         access = "R/W" if message["kind"] == "configuration" else "read-only"
         story += [
             f"# {message['name']} (0x{message.get('id', message.get('set_id')):02X}), {access}",
@@ -191,11 +232,29 @@ def two_heads(path: Path) -> None:
     """A heading over two columns, the byte and the bit in it."""
     story: list = ["# Telemetry", PROSE]
     for message in MESSAGES:
-        rows = [["Position", "", "Length (bits)", "Name", "Type", "Unit"], ["Byte", "Bit", "", "", "", ""]]
+        rows = [
+            ["Position", "", "Length (bits)", "Name", "Type", "Unit"],
+            ["Byte", "Bit", "", "", "", ""],
+        ]
         for one in message["fields"]:
-            rows.append([str(one["at"] // 8), "0", str(one["bits"]), one["name"], size(one), _scaled(one)])
-        spans = [("SPAN", (0, 0), (1, 0)), *(("SPAN", (i, 0), (i, 1)) for i in range(2, 6))]
-        story += [f"# {message['name']} (0x{message['id']:02X})", (rows, spans, [40, 40, 70, 110, 60, 70])]
+            rows.append(
+                [
+                    str(one["at"] // 8),
+                    "0",
+                    str(one["bits"]),
+                    one["name"],
+                    size(one),
+                    _scaled(one),
+                ]
+            )
+        spans = [
+            ("SPAN", (0, 0), (1, 0)),
+            *(("SPAN", (i, 0), (i, 1)) for i in range(2, 6)),
+        ]
+        story += [
+            f"# {message['name']} (0x{message['id']:02X})",
+            (rows, spans, [40, 40, 70, 110, 60, 70]),
+        ]
     platypus(path, A4, story)
 
 
@@ -205,7 +264,12 @@ WORDS = "types: {unsigned: {type: uint}, signed: {type: int}}\n"
 
 def rule(head: str, message: str, columns: str, *more: str) -> str:
     """A profile with one rule for tables of messages."""
-    lines = [f"tables: {{head: {head}}}", f"message: {{{message}, kind: telemetry}}", f"columns: {{{columns}}}", *more]
+    lines = [
+        f"tables: {{head: {head}}}",
+        f"message: {{{message}, kind: telemetry}}",
+        f"columns: {{{columns}}}",
+        *more,
+    ]
     return f"{NODE}rules:\n  - " + "\n    ".join(lines) + "\n"
 
 
@@ -252,14 +316,28 @@ def bare(path: Path) -> None:
     pdf.cell(0, 10, "Telemetry", new_x="LMARGIN", new_y="NEXT")
     for message in MESSAGES:
         pdf.set_font("Times", "B", 12)
-        pdf.cell(0, 9, f"{message['name']} - 0x{message['id']:02X}", new_x="LMARGIN", new_y="NEXT")
+        pdf.cell(
+            0,
+            9,
+            f"{message['name']} - 0x{message['id']:02X}",
+            new_x="LMARGIN",
+            new_y="NEXT",
+        )
         pdf.set_font("Times", size=10)
         pdf.multi_cell(0, 5, PROSE, new_x="LMARGIN", new_y="NEXT")
         pdf.ln(2)
         with pdf.table(borders_layout="NONE", col_widths=(15, 15, 30, 20, 20)) as table:
             table.row(["Start Byte", "Bytes", "Signal", "Data Type", "Scaling"])
             for one in message["fields"]:
-                table.row([str(one["at"] // 8), str(one["bits"] // 8), one["name"], size(one), _scaled(one)])
+                table.row(
+                    [
+                        str(one["at"] // 8),
+                        str(one["bits"] // 8),
+                        one["name"],
+                        size(one),
+                        _scaled(one),
+                    ]
+                )
         pdf.ln(4)
     pdf.output(str(path))
 
@@ -268,10 +346,20 @@ def frames(path: Path) -> None:
     """Frames of eight bytes as columns, a table for each."""
     body = "<h1>Telemetry</h1>"
     for message in FRAMES:
-        cells = "".join(f"<td colspan={one['bits'] // 8}>{one['name']}</td>" for one in message["fields"])
+        cells = "".join(
+            f"<td colspan={one['bits'] // 8}>{one['name']}</td>"
+            for one in message["fields"]
+        )
         body += f"<h2>{message['name']} (0x{message['id']:02X})</h2><p>{PROSE}</p><table><tr>"
-        body += "".join(f"<th>Byte{n}</th>" for n in range(8)) + f"</tr><tr>{cells}</tr></table>"
-    web(path, "table {border-collapse: collapse; width: 100%} td, th {border: 1px solid #333; padding: 4px}", body)
+        body += (
+            "".join(f"<th>Byte{n}</th>" for n in range(8))
+            + f"</tr><tr>{cells}</tr></table>"
+        )
+    web(
+        path,
+        "table {border-collapse: collapse; width: 100%} td, th {border: 1px solid #333; padding: 4px}",
+        body,
+    )
 
 
 def lined(path: Path) -> None:
@@ -282,7 +370,15 @@ def lined(path: Path) -> None:
         for one in message["fields"]:
             count = one["bits"] // 8
             words = f"{count} byte{'s' if count > 1 else ''}"
-            rows.append([str(one["at"] // 8), words, one["name"], TYPES[one["type"]], _scaled(one)])
+            rows.append(
+                [
+                    str(one["at"] // 8),
+                    words,
+                    one["name"],
+                    TYPES[one["type"]],
+                    _scaled(one),
+                ]
+            )
         story += [
             f"# 3.{index} {message['name']}",
             f"Telemetry ID {message['id']}. {PROSE}",
@@ -292,20 +388,52 @@ def lined(path: Path) -> None:
 
 
 def beside(path: Path) -> None:
-    """Two tables side by side, of different heights, their headings in one line above them."""
+    """Two tables side by side, of different heights, their headings in one line above
+    them.
+    """
     style = getSampleStyleSheet()
 
     def cell(message: dict) -> list:
         rows = [["Offset", "Size", "Field", "Type", "Unit"]]
         for one in message["fields"]:
-            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], size(one), _scaled(one)])
-        table = Table(rows, colWidths=[38, 32, 58, 36, 64], style=[("GRID", (0, 0), (-1, -1), 0.5, colors.black)])
-        return [Paragraph(f"<b>{message['name']} (0x{message['id']:02X})</b>", style["BodyText"]), table]
+            rows.append(
+                [
+                    str(one["at"] // 8),
+                    str(one["bits"] // 8),
+                    one["name"],
+                    size(one),
+                    _scaled(one),
+                ]
+            )
+        table = Table(
+            rows,
+            colWidths=[38, 32, 58, 36, 64],
+            style=[("GRID", (0, 0), (-1, -1), 0.5, colors.black)],
+        )
+        return [
+            Paragraph(
+                f"<b>{message['name']} (0x{message['id']:02X})</b>", style["BodyText"]
+            ),
+            table,
+        ]
 
     first, second, third = (cell(message) for message in MESSAGES)
-    rows = [Table([[first, second]], colWidths=[250, 250], style=[("VALIGN", (0, 0), (-1, -1), "TOP")]), *third]
-    story = [Paragraph("4 Telemetry", style["Heading2"]), Paragraph(PROSE, style["BodyText"]), *rows]
-    SimpleDocTemplate(str(path), pagesize=A4, leftMargin=45, rightMargin=45, invariant=1).build(story)
+    rows = [
+        Table(
+            [[first, second]],
+            colWidths=[250, 250],
+            style=[("VALIGN", (0, 0), (-1, -1), "TOP")],
+        ),
+        *third,
+    ]
+    story = [
+        Paragraph("4 Telemetry", style["Heading2"]),
+        Paragraph(PROSE, style["BodyText"]),
+        *rows,
+    ]
+    SimpleDocTemplate(
+        str(path), pagesize=A4, leftMargin=45, rightMargin=45, invariant=1
+    ).build(story)
 
 
 def byte_lines(path: Path) -> None:
@@ -316,7 +444,13 @@ def byte_lines(path: Path) -> None:
     pdf.cell(0, 12, "Telemetry", new_x="LMARGIN", new_y="NEXT")
     for message in FRAMES:
         pdf.set_font("Helvetica", "B", 11)
-        pdf.cell(0, 10, f"{message['name']} (0x{message['id']:02X})", new_x="LMARGIN", new_y="NEXT")
+        pdf.cell(
+            0,
+            10,
+            f"{message['name']} (0x{message['id']:02X})",
+            new_x="LMARGIN",
+            new_y="NEXT",
+        )
         pdf.set_font("Helvetica", size=9)
         for one in message["fields"]:
             first, last = one["at"] // 8, (one["at"] + one["bits"]) // 8 - 1

@@ -1,4 +1,6 @@
-"""A PDF drawn from headings, paragraphs and tables, in the ways in which vendors set theirs."""
+"""A PDF drawn from headings, paragraphs and tables, in the ways in which vendors set
+theirs.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +10,21 @@ from pathlib import Path
 from reportlab.lib import colors
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import getSampleStyleSheet
-from reportlab.platypus import PageBreak, Paragraph, SimpleDocTemplate, Spacer, Table, TableStyle
+from reportlab.platypus import (
+    PageBreak,
+    Paragraph,
+    SimpleDocTemplate,
+    Spacer,
+    Table,
+    TableStyle,
+)
 
 STYLES = getSampleStyleSheet()
 GRID = ("GRID", (0, 0), (-1, -1), 0.5, colors.black)
-ACROSS = [("LINEABOVE", (0, 0), (-1, 0), 1, colors.black), ("LINEBELOW", (0, 0), (-1, -1), 0.5, colors.black)]
+ACROSS = [
+    ("LINEABOVE", (0, 0), (-1, 0), 1, colors.black),
+    ("LINEBELOW", (0, 0), (-1, -1), 0.5, colors.black),
+]
 
 
 def heading(text: str, level: int = 1) -> Paragraph:
@@ -25,17 +37,37 @@ def text(words: str) -> Paragraph:
     return Paragraph(words, STYLES["BodyText"])
 
 
-def table(rows: Sequence[Sequence[str]], spans: Sequence[tuple] = (), widths: Sequence[float] | None = None) -> Table:
-    """A ruled table; ``spans``: (first column, first row, last column, last row) of merged cells."""
-    style = [GRID, ("VALIGN", (0, 0), (-1, -1), "MIDDLE"), ("FONTSIZE", (0, 0), (-1, -1), 8)]
+def table(
+    rows: Sequence[Sequence[str]],
+    spans: Sequence[tuple] = (),
+    widths: Sequence[float] | None = None,
+) -> Table:
+    """A ruled table.
+
+    ``spans``: (first column, first row, last column, last row) of merged cells.
+    """
+    style = [
+        GRID,
+        ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
+        ("FONTSIZE", (0, 0), (-1, -1), 8),
+    ]
     style += [("SPAN", span[:2], span[2:]) for span in spans]
-    return Table([list(row) for row in rows], colWidths=widths, repeatRows=0, style=TableStyle(style))
+    return Table(
+        [list(row) for row in rows],
+        colWidths=widths,
+        repeatRows=0,
+        style=TableStyle(style),
+    )
 
 
-def open_table(rows: Sequence[Sequence[str]], widths: Sequence[float] | None = None) -> Table:
+def open_table(
+    rows: Sequence[Sequence[str]], widths: Sequence[float] | None = None
+) -> Table:
     """A table with horizontal rules only."""
     return Table(
-        [list(row) for row in rows], colWidths=widths, style=TableStyle([*ACROSS, ("FONTSIZE", (0, 0), (-1, -1), 8)])
+        [list(row) for row in rows],
+        colWidths=widths,
+        style=TableStyle([*ACROSS, ("FONTSIZE", (0, 0), (-1, -1), 8)]),
     )
 
 

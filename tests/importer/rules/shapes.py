@@ -1,7 +1,8 @@
-"""Documents in the shapes of real ones, each with a profile of at most 15 lines and what it must give.
+"""Documents in the shapes of real ones, each with a profile of at most 15 lines and
+what it must give.
 
-Names, numbers and texts are invented; the shapes are those of data sheets and protocol descriptions of battery management, sensors,
-receivers and motor controllers.
+Names, numbers and texts are invented; the shapes are those of data sheets and protocol
+descriptions of battery management, sensors, receivers and motor controllers.
 """
 
 from __future__ import annotations
@@ -18,12 +19,16 @@ BIG = NODE.replace("little", "big")
 
 @dataclass
 class Shape:
-    """``messages``: name -> id, length, and the fields as (at, bits, name) with further keys that the ICD must have."""
+    """``messages``: name -> id, length, and the fields as (at, bits, name) with further
+    keys that the ICD must have.
+    """
 
     draw: Callable[[Path], Path]
     profile: str
     messages: dict[str, tuple[int, int, list[tuple]]]
-    facts: dict[tuple[str, str], dict] = field(default_factory=dict)  # message and field -> keys of the ICD
+    facts: dict[tuple[str, str], dict] = field(
+        default_factory=dict
+    )  # message and field -> keys of the ICD
     enums: dict[str, dict[int, str]] = field(default_factory=dict)
 
 
@@ -57,10 +62,23 @@ def _sentence() -> list:
     return [
         heading("3.1 Motor state", 2),
         text("The host asks for this frame with the command 0x31 and waits 10 ms."),
-        table([["Byte", "Name", "Type"], ["0", "Mode", "uint8"], ["1-2", "Speed", "uint16"], ["3", "Load", "uint8"]]),
+        table(
+            [
+                ["Byte", "Name", "Type"],
+                ["0", "Mode", "uint8"],
+                ["1-2", "Speed", "uint16"],
+                ["3", "Load", "uint8"],
+            ]
+        ),
         heading("3.2 Supply", 2),
         text("The host asks for this frame with the command 0x32 and waits 20 ms."),
-        table([["Byte", "Name", "Type"], ["0-1", "Voltage", "uint16"], ["2-3", "Current", "int16"]]),
+        table(
+            [
+                ["Byte", "Name", "Type"],
+                ["0-1", "Voltage", "uint16"],
+                ["2-3", "Current", "int16"],
+            ]
+        ),
     ]
 
 
@@ -73,8 +91,26 @@ def _sentence() -> list:
     each: {type: uint}
 """,
     messages={
-        "Power": (0x101, 8, [(0, 16, "Voltage"), (16, 16, "Current"), (32, 8, "Load"), (40, 24, "Energy")]),
-        "Drive": (0x102, 8, [(0, 32, "Position"), (32, 16, "Torque"), (48, 8, "Gear"), (56, 8, "Faults")]),
+        "Power": (
+            0x101,
+            8,
+            [
+                (0, 16, "Voltage"),
+                (16, 16, "Current"),
+                (32, 8, "Load"),
+                (40, 24, "Energy"),
+            ],
+        ),
+        "Drive": (
+            0x102,
+            8,
+            [
+                (0, 32, "Position"),
+                (32, 16, "Torque"),
+                (48, 8, "Gear"),
+                (56, 8, "Faults"),
+            ],
+        ),
     },
 )
 def _columns() -> list:
@@ -99,7 +135,11 @@ def _columns() -> list:
     glue: [NAME]
 """,
     messages={
-        "CTRL1": (0x04, 1, [(0, 3, "GAIN"), (3, 1, "EN"), (4, 2, "MODE"), (7, 1, "SHUT")]),
+        "CTRL1": (
+            0x04,
+            1,
+            [(0, 3, "GAIN"), (3, 1, "EN"), (4, 2, "MODE"), (7, 1, "SHUT")],
+        ),
         "BALANCE": (0x05, 1, [(0, 5, "CELL")]),
     },
 )
@@ -120,7 +160,17 @@ def _registers() -> list:
         table(
             [
                 ["BIT", "7", "6", "5", "4", "3", "2", "1", "0"],
-                ["NAME", "RSVD", "RSVD", "RSVD", "CELL5", "CELL4", "CELL3", "CELL2", "CELL1"],
+                [
+                    "NAME",
+                    "RSVD",
+                    "RSVD",
+                    "RSVD",
+                    "CELL5",
+                    "CELL4",
+                    "CELL3",
+                    "CELL2",
+                    "CELL1",
+                ],
                 ["RESET", *"00000000"],
                 ["ACCESS", *["RW"] * 8],
             ],
@@ -238,16 +288,39 @@ def _levels() -> list:
     ignore: [Num]
 """,
     messages={
-        "STATE": (0x2F4, 8, [(0, 16, "Voltage"), (16, 16, "Current"), (32, 8, "Temperature"), (40, 24, "Energy")])
+        "STATE": (
+            0x2F4,
+            8,
+            [
+                (0, 16, "Voltage"),
+                (16, 16, "Current"),
+                (32, 8, "Temperature"),
+                (40, 24, "Energy"),
+            ],
+        )
     },
     facts={
-        ("STATE", "Current"): {"formula": "raw*0.1 - 400", "unit": "A", "min": -400, "max": 400},
+        ("STATE", "Current"): {
+            "formula": "raw*0.1 - 400",
+            "unit": "A",
+            "min": -400,
+            "max": 400,
+        },
         ("STATE", "Temperature"): {"formula": "raw - 50", "unit": "C"},
     },
 )
 def _offsets() -> list:
     rows = [
-        ["Num", "Parameter", "Starting position", "Bit length", "Range", "Resolution", "Offset", "Unit"],
+        [
+            "Num",
+            "Parameter",
+            "Starting position",
+            "Bit length",
+            "Range",
+            "Resolution",
+            "Offset",
+            "Unit",
+        ],
         ["1", "Voltage", "0", "16", "0~1000", "0.1", "0", "V"],
         ["2", "Current", "16", "16", "-400~400", "0.1", "-400", "A"],
         ["3", "Temperature", "32", "8", "-50~200", "1", "-50", "C"],
@@ -258,7 +331,8 @@ def _offsets() -> list:
 
 @shape(
     "repeated groups",
-    profile=NODE + r"""  - tables: {head: Offset (bytes) | Size (bytes) | Format | Units | Name}
+    profile=NODE
+    + r"""  - tables: {head: Offset (bytes) | Size (bytes) | Format | Units | Name}
     message: {caption: '^{message:\w+} {id} message', kind: telemetry}
     columns:
       Offset (bytes): ['^{stride}N \+ {byte}$', byte]
@@ -269,8 +343,13 @@ def _offsets() -> list:
     skip: Total Payload Length
     set: [{where: {group: .}, rest: 'yes', up_to: 20}]
 """,
-    messages={"OBS": (0x4A, 5, [(0, 32, "tow"), (32, 8, "flags"), (40, 32 + 8 + 16, "obs")])},
-    facts={("OBS", "tow"): {"unit": "ms"}, ("OBS", "obs"): {"count": "rest", "up_to": 20, "struct": "OBS obs"}},
+    messages={
+        "OBS": (0x4A, 5, [(0, 32, "tow"), (32, 8, "flags"), (40, 32 + 8 + 16, "obs")])
+    },
+    facts={
+        ("OBS", "tow"): {"unit": "ms"},
+        ("OBS", "obs"): {"count": "rest", "up_to": 20, "struct": "OBS obs"},
+    },
 )
 def _groups() -> list:
     rows = [
@@ -282,7 +361,11 @@ def _groups() -> list:
         ["7N + 10", "2", "u8[2]", "", "obs[N].lock"],
         ["", "7N + 5", "", "", "Total Payload Length"],
     ]
-    return [heading("2 Observations"), text("Table 2: OBS 0x004A message structure"), table(rows)]
+    return [
+        heading("2 Observations"),
+        text("Table 2: OBS 0x004A message structure"),
+        table(rows),
+    ]
 
 
 @shape(
@@ -300,7 +383,11 @@ def _groups() -> list:
     base: 2
 """,
     messages={
-        "CTRL": (0x20, 1, [(0, 1, "EN"), (1, 1, "BOOT"), (3, 2, "MODE"), (5, 3, "ODR")]),
+        "CTRL": (
+            0x20,
+            1,
+            [(0, 1, "EN"), (1, 1, "BOOT"), (3, 2, "MODE"), (5, 3, "ODR")],
+        ),
         "FIFO": (0x2E, 1, [(0, 5, "WTM"), (5, 3, "FM")]),
     },
     facts={("CTRL", "ODR"): {"type": "enum", "enum": "ODR"}},
@@ -331,9 +418,20 @@ def _map() -> list:
     join: [Bytes]
 """,
     messages={
-        "basic info": (0x03, 7, [(0, 16, "Voltage"), (16, 16, "Current"), (32, 16, "Capacity"), (48, 8, "Cells")])
+        "basic info": (
+            0x03,
+            7,
+            [
+                (0, 16, "Voltage"),
+                (16, 16, "Current"),
+                (32, 16, "Capacity"),
+                (48, 8, "Cells"),
+            ],
+        )
     },
-    facts={("basic info", "Current"): {"type": "int", "formula": "raw*10", "unit": "mA"}},
+    facts={
+        ("basic info", "Current"): {"type": "int", "formula": "raw*10", "unit": "mA"}
+    },
 )
 def _cell() -> list:
     rows = [
@@ -354,7 +452,11 @@ def _cell() -> list:
 captions: [Listing]
 """,
     messages={
-        "Fan": (0x91, 6, [(0, 16, "Speed of the fan"), (16, 16, "Current"), (32, 16, "Temperature")]),
+        "Fan": (
+            0x91,
+            6,
+            [(0, 16, "Speed of the fan"), (16, 16, "Current"), (32, 16, "Temperature")],
+        ),
         "Supply": (0x92, 3, [(0, 16, "Voltage"), (16, 8, "Load")]),
     },
     facts={("Fan", "Current"): {"type": "int", "formula": "raw*10", "unit": "mA"}},
@@ -379,10 +481,15 @@ def _unknown() -> list:
     message: {caption: '^{message} \({id}\)$', kind: telemetry}
     columns: {Byte: byte, Name: name, Type: type, Description: text}
 """,
-    messages={"Housekeeping": (0x41, 60, [(16 * n, 16, f"Channel {n}") for n in range(30)])},
+    messages={
+        "Housekeeping": (0x41, 60, [(16 * n, 16, f"Channel {n}") for n in range(30)])
+    },
 )
 def _open() -> list:
-    rows = [[str(2 * n), f"Channel {n}", "uint16", f"Voltage of channel {n}"] for n in range(30)]
+    rows = [
+        [str(2 * n), f"Channel {n}", "uint16", f"Voltage of channel {n}"]
+        for n in range(30)
+    ]
     head = ["Byte", "Name", "Type", "Description"]
     return [
         heading("9 Telemetry"), *[text("Prose. " * 60)] * 7, text("Table 3: Housekeeping (0x41)"),

@@ -1,4 +1,7 @@
-"""Structs in C, of headers and of documents, are tables that rules read; their layout is what gcc makes of them."""
+"""Structs in C, of headers and of documents, are tables that rules read.
+
+Their layout is what gcc makes of them.
+"""
 
 from __future__ import annotations
 
@@ -55,14 +58,28 @@ FIELDS = [
 def test_a_rule_reads_the_structs_of_a_header(tmp_path):
     (tmp_path / "motor.h").write_text(HEADER, encoding="utf-8")
     (tmp_path / "rules.yaml").write_text(RULES, encoding="utf-8")
-    result, trees = run.run(tmp_path / "motor.h", profile.load(tmp_path / "rules.yaml"), prose=True)
+    result, trees = run.run(
+        tmp_path / "motor.h", profile.load(tmp_path / "rules.yaml"), prose=True
+    )
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
     (message,) = trees["motor"]["messages"]
-    assert (message["name"], message["id"], message["length"]) == ("motor_state", 0x21, 35)
+    assert (message["name"], message["id"], message["length"]) == (
+        "motor_state",
+        0x21,
+        35,
+    )
     assert fields(trees["motor"]) == FIELDS
     by_name = {field["name"]: field for field in message["fields"]}
-    assert (by_name["position"]["count"], by_name["position"]["type"], by_name["name"]["type"]) == (3, "int", "text")
-    assert (by_name["current"]["type"], by_name["speed"]["summary"], by_name["current"]["summary"]) == (
+    assert (
+        by_name["position"]["count"],
+        by_name["position"]["type"],
+        by_name["name"]["type"],
+    ) == (3, "int", "text")
+    assert (
+        by_name["current"]["type"],
+        by_name["speed"]["summary"],
+        by_name["current"]["summary"],
+    ) == (
         "float",
         "rpm",
         '"A; not mA"',
@@ -79,23 +96,40 @@ def test_a_rule_reads_the_structs_that_a_document_prints(tmp_path):
         "  float speed;",
         "} robot_t;",
     ]
-    draw(tmp_path / "motor.pdf", [heading("4.1 Robot (0x0201)", 2), *(text(line) for line in lines), text("The end.")])
+    draw(
+        tmp_path / "motor.pdf",
+        [
+            heading("4.1 Robot (0x0201)", 2),
+            *(text(line) for line in lines),
+            text("The end."),
+        ],
+    )
     rules = NODE + r"""rules:
   - tables: {head: Byte | Bit}
     message: {heading: '^[\d.]+ {message} \({id}\)$', kind: telemetry}
     columns: {Byte: byte, Bit: bit, Bits: bits, Type: type, Name: name, Count: count, Members: members, Comment: text}
 """
     (tmp_path / "rules.yaml").write_text(rules, encoding="utf-8")
-    result, trees = run.run(tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1)
+    result, trees = run.run(
+        tmp_path / "motor.pdf", profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
-    assert fields(trees["motor"]) == [(0, 8, "robot_id"), (8, 5, "level"), (13, 11, "rest"), (24, 32, "speed")]
+    assert fields(trees["motor"]) == [
+        (0, 8, "robot_id"),
+        (8, 5, "level"),
+        (13, 11, "rest"),
+        (24, 32, "speed"),
+    ]
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("struct a { uint8_t *p; };", "struct `a`: `p` is a pointer"),
-        ("struct a { long n; };", "the size of the type `long` depends on the compiler"),
+        (
+            "struct a { long n; };",
+            "the size of the type `long` depends on the compiler",
+        ),
         ("struct a { union { int i; float f; } u; };", "struct `a`: `u` is a union"),
         ("struct a { uint8_t n; uint8_t data[]; };", "`data` has no size"),
         ("struct a { struct b { int8_t x; } b[100]; };", "`b` has 100 elements"),
@@ -109,9 +143,14 @@ def test_what_is_no_frame_is_an_error(tmp_path, text, message):
 
 
 def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
-    (tmp_path / "a.h").write_text("struct a { uint8_t n; uint32_t m; uint16_t k; };", encoding="utf-8")
+    (tmp_path / "a.h").write_text(
+        "struct a { uint8_t n; uint32_t m; uint16_t k; };", encoding="utf-8"
+    )
     document, (table,) = sources.read(tmp_path / "a.h", profile.load())
-    assert "padding stands in front of `m` (3 bytes), at the end (2 bytes)" in document.import_findings[0].message
+    assert (
+        "padding stands in front of `m` (3 bytes), at the end (2 bytes)"
+        in document.import_findings[0].message
+    )
     assert table.before == ["sizeof 12"]
     (tmp_path / "a.h").write_text("\nstruct a {\n  unknown_t x;\n};", encoding="utf-8")
     with pytest.raises(Findings) as caught:
@@ -121,7 +160,16 @@ def test_padding_is_a_warning_and_a_header_that_is_no_c_a_finding(tmp_path):
 
 def made_up(random: random.Random) -> str:
     """A struct of random members, packed or not."""
-    types = ["uint8_t", "int8_t", "uint16_t", "int16_t", "uint32_t", "uint64_t", "float", "double"]
+    types = [
+        "uint8_t",
+        "int8_t",
+        "uint16_t",
+        "int16_t",
+        "uint32_t",
+        "uint64_t",
+        "float",
+        "double",
+    ]
     members = []
     for index in range(random.randint(1, 9)):
         kind = random.choice(types)
@@ -145,18 +193,36 @@ def test_the_layout_is_that_of_gcc(tmp_path):
     code.append("int main(void) {")
     expected = []
     for index, struct in enumerate(structs):
-        (table,) = [block for block in c_structs.read_structs(struct)[0] if hasattr(block, "rows")]
+        (table,) = [
+            block
+            for block in c_structs.read_structs(struct)[0]
+            if hasattr(block, "rows")
+        ]
         rows = [[cell.text for cell in row.cells] for row in table.rows[1:]]
-        (size,) = [block.text for block in c_structs.read_structs(struct)[0] if not hasattr(block, "rows")]
-        code.append(f"{{ static union {{ struct made{index} s; uint8_t b[sizeof(struct made{index})]; }} u;")
+        (size,) = [
+            block.text
+            for block in c_structs.read_structs(struct)[0]
+            if not hasattr(block, "rows")
+        ]
+        code.append(
+            f"{{ static union {{ struct made{index} s; uint8_t b[sizeof(struct made{index})]; }} u;"
+        )
         code.append('printf("sizeof %zu\\n", sizeof u.s);')
         expected.append(size)
         for byte, bit, bits, kind, name, count, _, _ in rows:
             first = 8 * int(byte) + int(bit or 0)
             size_in_bits = int(bits) * int(count or 1)
-            value = "1" if "float" in kind or count else f"({kind.rstrip('0123456789')}64_t)-1"
+            value = (
+                "1"
+                if "float" in kind or count
+                else f"({kind.rstrip('0123456789')}64_t)-1"
+            )
             code.append("memset(&u, 0, sizeof u);")
-            code.append(f"memset(&u.s.{name}, 255, sizeof u.s.{name});" if not bit else f"u.s.{name} = {value};")
+            code.append(
+                f"memset(&u.s.{name}, 255, sizeof u.s.{name});"
+                if not bit
+                else f"u.s.{name} = {value};"
+            )
             code.append(
                 'for (size_t i = 0; i < 8 * sizeof u; i++) if (u.b[i / 8] >> i % 8 & 1) printf("%zu ", i); printf("\\n");'
             )
@@ -165,5 +231,7 @@ def test_the_layout_is_that_of_gcc(tmp_path):
     code.append("return 0; }")
     (tmp_path / "a.c").write_text("\n".join(code), encoding="utf-8")
     subprocess.run(["gcc", "-w", "-o", "a", "a.c"], cwd=tmp_path, check=True)
-    got = subprocess.run([tmp_path / "a"], capture_output=True, text=True, check=True).stdout.splitlines()
+    got = subprocess.run(
+        [tmp_path / "a"], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     assert [line.strip() for line in got] == expected

@@ -33,45 +33,71 @@ RULES = r"""rules:
 
 
 def enumerations(tree) -> dict[str, list[str]]:
-    return {enum["name"]: [member["name"] for member in enum["members"]] for enum in tree.get("enums", [])}
+    return {
+        enum["name"]: [member["name"] for member in enum["members"]]
+        for enum in tree.get("enums", [])
+    }
 
 
 def test_a_table_with_a_column_of_names_gives_several_enumerations(tmp_path):
     text = COMMAND.format(action="Switch action", mode="Charge mode") + VALUES
     result, tree = read(tmp_path, text, RULES.replace("PATTERN", "enumeration"))
-    assert enumerations(tree) == {"Switch action": ["Off", "On"], "Charge mode": ["Slow", "Fast"]}
-    assert [field["enum"] for field in tree["messages"][0]["fields"]] == ["Switch action", "Charge mode"]
-    assert not [finding for finding in result.import_findings if finding.severity == "error"]
+    assert enumerations(tree) == {
+        "Switch action": ["Off", "On"],
+        "Charge mode": ["Slow", "Fast"],
+    }
+    assert [field["enum"] for field in tree["messages"][0]["fields"]] == [
+        "Switch action",
+        "Charge mode",
+    ]
+    assert not [
+        finding for finding in result.import_findings if finding.severity == "error"
+    ]
 
 
 @pytest.mark.parametrize("name", ["Switch action and charge mode", "Switch action and"])
-def test_the_caption_of_a_table_of_several_enumerations_names_none_of_them(tmp_path, name):
+def test_the_caption_of_a_table_of_several_enumerations_names_none_of_them(
+    tmp_path, name
+):
     text = COMMAND.format(action=name, mode="Charge mode") + VALUES
     result, tree = read(tmp_path, text, RULES.replace("PATTERN", "enumeration"))
-    assert found(result, "IMP050") == [f"table 1 (`Command data`), field `Action`: there is no enumeration `{name}`"]
-    assert [field["type"] for field in tree["messages"][0]["fields"]] == ["uint", "enum"] and result.failed
+    assert found(result, "IMP050") == [
+        f"table 1 (`Command data`), field `Action`: there is no enumeration `{name}`"
+    ]
+    assert [field["type"] for field in tree["messages"][0]["fields"]] == [
+        "uint",
+        "enum",
+    ] and result.failed
 
 
 def test_the_number_of_a_table_of_several_enumerations_does_not_choose_one(tmp_path):
-    text = COMMAND.format(action="Coded as in Table 2", mode="Coded as in Table 2") + VALUES
+    text = (
+        COMMAND.format(action="Coded as in Table 2", mode="Coded as in Table 2")
+        + VALUES
+    )
     phrases = "phrases:\n  enumeration: ['Coded as in {table}']\n"
     rules = RULES.replace("PATTERN}", "text}\n    each: {bits: 8}")
     result, _ = read(tmp_path, text.replace("uint8", "enum"), phrases + rules)
-    assert "which has 2 enumerations: `Switch action` and `Charge mode`" in found(result, "IMP050")[0]
+    assert (
+        "which has 2 enumerations: `Switch action` and `Charge mode`"
+        in found(result, "IMP050")[0]
+    )
 
 
 def test_a_title_that_begins_two_enumerations_names_neither(tmp_path):
-    values = VALUES.replace("Switch action and charge mode", "Switch").replace("Charge mode", "Switch mode")
+    values = VALUES.replace("Switch action and charge mode", "Switch").replace(
+        "Charge mode", "Switch mode"
+    )
     text = COMMAND.format(action="Switch", mode="Switch mode") + values
     result, _ = read(tmp_path, text, RULES.replace("PATTERN", "enumeration"))
     assert len(found(result, "IMP050")) == 1 and result.failed
 
 
-def test_the_fields_of_bits_have_enumerations_and_these_the_source_of_their_table(tmp_path):
+def test_the_fields_of_bits_have_enumerations_and_these_the_source_of_their_table(
+    tmp_path,
+):
     text = "Table 1: Command data\n\nByte\tName\tType\n0\tSetup\tuint8\n\n"
-    text += (
-        "Table 2: Bits of Setup\n\nBits\tName\tMeaning\n0-3\tAction\tSwitch action\n4-7\tState\t0 = idle, 1 = busy\n\n"
-    )
+    text += "Table 2: Bits of Setup\n\nBits\tName\tMeaning\n0-3\tAction\tSwitch action\n4-7\tState\t0 = idle, 1 = busy\n\n"
     text += VALUES.replace("Table 2", "Table 3")
     rules = RULES.replace(" | Meaning", "").replace(", Meaning: PATTERN", "")
     rules += r"""  - tables: {head: Bits | Name | Meaning}
@@ -88,4 +114,6 @@ def test_the_fields_of_bits_have_enumerations_and_these_the_source_of_their_tabl
     ]
     sources = {enum["name"]: enum["source"]["table"] for enum in tree["enums"]}
     assert sources["State"] == 2 and sources["Switch action"] == 3
-    assert not [finding for finding in result.import_findings if finding.severity == "error"]
+    assert not [
+        finding for finding in result.import_findings if finding.severity == "error"
+    ]

@@ -1,4 +1,6 @@
-"""Mistakes that people make in profiles: each is reported with its place, and none gives a wrong result in silence."""
+"""Mistakes that people make in profiles: each is reported with its place, and none
+gives a wrong result in silence.
+"""
 
 from __future__ import annotations
 
@@ -59,14 +61,49 @@ def test_the_profile_without_a_mistake_has_no_finding(tmp_path):
             "unknown role `mini` in the pattern `^{mini}~{max}$`: did you mean `{min}`?",
         ),
         ("'^{min}~{max}$'", "'^({min}~{max}$'", 11, "is not a regular expression"),
-        ("'^{min}~{max}$'", r"'^\d+~\d+$'", 11, "is neither a role nor a pattern with a role"),
-        ("each: {type: uint}", "each: {typ: uint}", 15, "unknown role `typ`: did you mean `type`?"),
+        (
+            "'^{min}~{max}$'",
+            r"'^\d+~\d+$'",
+            11,
+            "is neither a role nor a pattern with a role",
+        ),
+        (
+            "each: {type: uint}",
+            "each: {typ: uint}",
+            15,
+            "unknown role `typ`: did you mean `type`?",
+        ),
         ("kind: telemetry", "kind: telemtry", 6, "`telemtry` is not a kind of message"),
-        ("  - rule: state", "  - rule: state\n    like: stat", 5, "there is no rule `stat` before this one"),
-        ("  - rule: state", "  - rule: state\n    what: messages", 5, "`what` cannot be the text 'messages'"),
-        ("head: Num | Parameter", "head: Num | ~Para(meter", 5, "`Para(meter` is not a regular expression"),
-        ("    ignore: [Num]", "    ignore: [Num]\n    skip: '('", 17, "`(` is not a regular expression"),
-        ("    ignore: [Num]", "    melt: '^D{bit}$'", 16, "`melt` needs the pattern of the cells"),
+        (
+            "  - rule: state",
+            "  - rule: state\n    like: stat",
+            5,
+            "there is no rule `stat` before this one",
+        ),
+        (
+            "  - rule: state",
+            "  - rule: state\n    what: messages",
+            5,
+            "`what` cannot be the text 'messages'",
+        ),
+        (
+            "head: Num | Parameter",
+            "head: Num | ~Para(meter",
+            5,
+            "`Para(meter` is not a regular expression",
+        ),
+        (
+            "    ignore: [Num]",
+            "    ignore: [Num]\n    skip: '('",
+            17,
+            "`(` is not a regular expression",
+        ),
+        (
+            "    ignore: [Num]",
+            "    melt: '^D{bit}$'",
+            16,
+            "`melt` needs the pattern of the cells",
+        ),
         (
             "      Unit: unit",
             "      '*': name",
@@ -79,16 +116,26 @@ def test_the_profile_without_a_mistake_has_no_finding(tmp_path):
             4,
             "the rule does not say to which field the enumeration belongs",
         ),
-        ("'^{min}~{max}$'", "'^{min}~{min}$'", 11, "each role may stand once in a pattern"),
+        (
+            "'^{min}~{max}$'",
+            "'^{min}~{min}$'",
+            11,
+            "each role may stand once in a pattern",
+        ),
     ],
 )
-def test_a_mistake_in_the_profile_is_found_before_anything_is_read(tmp_path, right, wrong, line, message):
+def test_a_mistake_in_the_profile_is_found_before_anything_is_read(
+    tmp_path, right, wrong, line, message
+):
     assert RULES.count(right) == 1
-    (tmp_path / "rules.yaml").write_text(NODE + RULES.replace(right, wrong), encoding="utf-8")
+    (tmp_path / "rules.yaml").write_text(
+        NODE + RULES.replace(right, wrong), encoding="utf-8"
+    )
     with pytest.raises(Findings) as caught:
         profile.load(tmp_path / "rules.yaml")
     assert any(
-        message in f"{f.message}: {f.help}" and (f.code, f.place.line) == ("IMP001", line)
+        message in f"{f.message}: {f.help}"
+        and (f.code, f.place.line) == ("IMP001", line)
         for f in caught.value.findings
     ), [(f.message, f.help, f.place.line) for f in caught.value.findings]
 
@@ -117,17 +164,25 @@ def test_a_mistake_in_the_profile_is_found_before_anything_is_read(tmp_path, rig
         ("Parameter: name", "Parameter: '^{name:Volt}'", "IMP103", "no pattern of rule `state` takes `Current`"),
     ],
 )  # fmt: skip
-def test_a_mistake_that_shows_in_the_result_is_a_finding(tmp_path, right, wrong, code, message):
+def test_a_mistake_that_shows_in_the_result_is_a_finding(
+    tmp_path, right, wrong, code, message
+):
     assert RULES.count(right) == 1
     result, _ = read(tmp_path, TABLE, RULES.replace(right, wrong))
-    assert any(message in text for text in found(result, code)), [(t.code, t.message) for t in result.import_findings]
+    assert any(message in text for text in found(result, code)), [
+        (t.code, t.message) for t in result.import_findings
+    ]
     if code not in ("IMP035", "IMP104", "IMP106"):
         assert result.failed
 
 
 def test_every_finding_about_a_rule_names_its_line(tmp_path):
     result, _ = read(tmp_path, TABLE, RULES.replace("Factor: scale", "Scale: scale"))
-    import_finding = next(t for t in result.import_findings if t.code == "IMP102" and "no column" in t.message)
+    import_finding = next(
+        t
+        for t in result.import_findings
+        if t.code == "IMP102" and "no column" in t.message
+    )
     assert (import_finding.place.line, import_finding.place.column) == (12, 7)
     assert "its columns are `Num`, `Parameter`" in import_finding.help
 
@@ -140,21 +195,37 @@ CAPTION = "Table 3: Basic state, id 0x02F4, 5 bytes\n\nNum"
     [
         (CAPTION, []),
         (CAPTION.replace("0x02F4", "756"), []),
-        (CAPTION.replace("0x02F4", "0x02F5"), ["`0x02F5` in its caption, `0x02F4` in its heading"]),
+        (
+            CAPTION.replace("0x02F4", "0x02F5"),
+            ["`0x02F5` in its caption, `0x02F4` in its heading"],
+        ),
     ],
 )
-def test_caption_and_heading_with_different_ids_are_reported(tmp_path, caption, messages):
-    rules = RULES.replace("{heading:", "{caption: ', id {id}, {length} bytes$', heading:")
+def test_caption_and_heading_with_different_ids_are_reported(
+    tmp_path, caption, messages
+):
+    rules = RULES.replace(
+        "{heading:", "{caption: ', id {id}, {length} bytes$', heading:"
+    )
     result, _ = read(tmp_path, TABLE.replace("Num", caption, 1), rules)
     reported = found(result, "IMP110")
-    assert [text.rsplit("`id`: ")[-1] for text in reported] == messages and result.failed == bool(messages)
+    assert [
+        text.rsplit("`id`: ")[-1] for text in reported
+    ] == messages and result.failed == bool(messages)
 
 
 @pytest.mark.parametrize(
     ("second", "values"),
-    [("TM\t2", []), ("HK\t0x02", []), ("TC\t2", ["`telemetry` and `telecommand`"]), ("TM\t3", ["`2` and `3`"])],
+    [
+        ("TM\t2", []),
+        ("HK\t0x02", []),
+        ("TC\t2", ["`telemetry` and `telecommand`"]),
+        ("TM\t3", ["`2` and `3`"]),
+    ],
 )
-def test_rows_that_give_a_message_two_kinds_or_lengths_are_reported(tmp_path, second, values):
+def test_rows_that_give_a_message_two_kinds_or_lengths_are_reported(
+    tmp_path, second, values
+):
     rules = r"""rules:
   - tables: {head: Id | Message | Kind | Length}
     columns: {Id: id, Message: message, Kind: kind, Length: length, Field: name, Type: type}
@@ -167,4 +238,7 @@ Id\tMessage\tKind\tLength\tField\tType
 5\tState\t{second}\tFault\tuint8
 """
     result, _ = read(tmp_path, table, rules)
-    assert [text.rsplit(": ")[-1].removesuffix(" in its rows") for text in found(result, "IMP110")] == values
+    assert [
+        text.rsplit(": ")[-1].removesuffix(" in its rows")
+        for text in found(result, "IMP110")
+    ] == values

@@ -1,4 +1,6 @@
-"""What each key of a rule does, on tables of a text: the tables are the same for every source."""
+"""What each key of a rule does, on tables of a text: the tables are the same for every
+source.
+"""
 
 from __future__ import annotations
 
@@ -16,15 +18,22 @@ RULE = r"""rules:
 """
 
 
-def read(tmp_path, text: str, rules: str = RULE, node: str = NODE) -> tuple[run.Result, dict]:
+def read(
+    tmp_path, text: str, rules: str = RULE, node: str = NODE
+) -> tuple[run.Result, dict]:
     (tmp_path / "motor.txt").write_text(text, encoding="utf-8")
     (tmp_path / "rules.yaml").write_text(node + rules, encoding="utf-8")
-    result, trees = run.run(tmp_path / "motor.txt", profile.load(tmp_path / "rules.yaml"), jobs=1)
+    result, trees = run.run(
+        tmp_path / "motor.txt", profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
     return result, trees.get("motor", {})
 
 
 def fields(tree: dict, message: int = 0) -> list[tuple]:
-    return [(f["at"], f.get("bits"), f["name"]) for f in tree["messages"][message].get("fields", [])]
+    return [
+        (f["at"], f.get("bits"), f["name"])
+        for f in tree["messages"][message].get("fields", [])
+    ]
 
 
 def found(result, code: str) -> list[str]:
@@ -46,32 +55,53 @@ def test_rows_are_skipped_kept_filled_and_the_table_stopped(tmp_path):
 def test_offset_is_added_after_scaling_and_bias_subtracted_before(tmp_path):
     rows = "Byte\tName\tType\tScale\tOffset\n0\tVoltage\tu16\t0.1\t-400\n"
     rules = RULE.replace("Type: type}", "Type: type, Scale: scale, Offset: offset}")
-    assert read(tmp_path, HEADING + rows, rules)[1]["messages"][0]["fields"][0]["formula"] == "raw*0.1 - 400"
-    tree = read(tmp_path, HEADING + rows, rules.replace("Offset: offset", "Offset: bias"))[1]
+    assert (
+        read(tmp_path, HEADING + rows, rules)[1]["messages"][0]["fields"][0]["formula"]
+        == "raw*0.1 - 400"
+    )
+    tree = read(
+        tmp_path, HEADING + rows, rules.replace("Offset: offset", "Offset: bias")
+    )[1]
     assert tree["messages"][0]["fields"][0]["formula"] == "(raw + 400)*0.1"
 
 
 @pytest.mark.parametrize("text", ["0.1", ".1", "1e-3", "-2", "+5"])
 def test_scales_keep_the_digits_of_the_source(tmp_path, text):
     rows = f"Byte\tName\tType\tScale\n0\tVoltage\ti16\t{text}\n"
-    tree = read(tmp_path, HEADING + rows, RULE.replace("Type: type}", "Type: type, Scale: scale}"))[1]
+    tree = read(
+        tmp_path,
+        HEADING + rows,
+        RULE.replace("Type: type}", "Type: type, Scale: scale}"),
+    )[1]
     wanted = {".1": "0.1", "+5": "5"}.get(text, text)
     assert tree["messages"][0]["fields"][0]["formula"] == f"raw*{wanted}"
 
 
 def test_an_index_completes_messages_and_contradicts_them(tmp_path):
     rows = "Byte\tName\tType\n0\tMode\tu8\nThe messages:\n"
-    rows += "No.\tMessage\tDir\tLength\n0x21\tMotor state\tTM\t2\n0x22\tTank state\tTM\t1\n"
+    rows += (
+        "No.\tMessage\tDir\tLength\n0x21\tMotor state\tTM\t2\n0x22\tTank state\tTM\t1\n"
+    )
     rules = RULE.replace(", kind: telemetry", "") + (
         "  - what: index\n    tables: {head: No. | Message}\n"
         "    columns: {No.: id, Message: message, Dir: kind, Length: length}\n"
         "    map: {kind: {TM: telemetry}}\n"
     )
     result, tree = read(tmp_path, HEADING + rows, rules)
-    assert (tree["messages"][0]["kind"], tree["messages"][0]["length"]) == ("telemetry", 2)
-    assert found(result, "IMP061") == ["table 2: it lists `Tank state`, and no table describes it"]
-    result, _ = read(tmp_path, HEADING + rows, rules.replace("before: '^", "length: 1, before: '^"))
-    assert "gives `Motor state` the length 2, its own table says 1" in found(result, "IMP060")[0]
+    assert (tree["messages"][0]["kind"], tree["messages"][0]["length"]) == (
+        "telemetry",
+        2,
+    )
+    assert found(result, "IMP061") == [
+        "table 2: it lists `Tank state`, and no table describes it"
+    ]
+    result, _ = read(
+        tmp_path, HEADING + rows, rules.replace("before: '^", "length: 1, before: '^")
+    )
+    assert (
+        "gives `Motor state` the length 2, its own table says 1"
+        in found(result, "IMP060")[0]
+    )
 
 
 def test_bits_of_a_table_divide_a_field_in_either_byte_order(tmp_path):
@@ -88,7 +118,10 @@ def test_bits_of_a_table_divide_a_field_in_either_byte_order(tmp_path):
     tree = read(tmp_path, HEADING + rows, rules, NODE.replace("little", "big"))[1]
     assert fields(tree) == [(8, 1, "Over voltage"), (9, 3, "Level"), (16, 8, "Load")]
     result, _ = read(tmp_path, HEADING + rows.replace("4-15\tReserved\n", ""), rules)
-    assert "the bits of `State` leave out or exceed its bits: 4, 5" in found(result, "IMP105")[0]
+    assert (
+        "the bits of `State` leave out or exceed its bits: 4, 5"
+        in found(result, "IMP105")[0]
+    )
 
 
 def test_a_lookup_table_gives_points(tmp_path):
@@ -98,12 +131,20 @@ def test_a_lookup_table_gives_points(tmp_path):
         "    columns: {Code: value, Degrees: points}\n"
     )
     tree = read(tmp_path, HEADING + rows, rules)[1]
-    assert tree["messages"][0]["fields"][0]["points"] == [[0, -40.0], [100, 20.5], [255, 125.0]]
+    assert tree["messages"][0]["fields"][0]["points"] == [
+        [0, -40.0],
+        [100, 20.5],
+        [255, 125.0],
+    ]
 
 
 def test_members_stand_in_a_cell_or_in_its_lines(tmp_path):
     rows = "Byte\tName\tType\tValues\n0\tMode\tu8\t0: off; 1: slow speed; 0x10: fast\n"
-    tree = read(tmp_path, HEADING + rows, RULE.replace("Type: type}", "Type: type, Values: members}"))[1]
+    tree = read(
+        tmp_path,
+        HEADING + rows,
+        RULE.replace("Type: type}", "Type: type, Values: members}"),
+    )[1]
     assert tree["messages"][0]["fields"][0]["enum"] == "Mode"
     assert [(m["value"], m["name"]) for m in tree["enums"][0]["members"]] == [
         (0, "off"),
@@ -116,15 +157,24 @@ def test_members_keep_commas_in_names_and_leave_nothing_silently(tmp_path):
     rules = RULE.replace("Type: type}", "Type: type, Values: members}")
     rows = "Byte\tName\tType\tValues\n0\tMode\tu8\t0: off, 1: slow, but steady\n"
     tree = read(tmp_path, HEADING + rows, rules)[1]
-    assert [(m["value"], m["name"]) for m in tree["enums"][0]["members"]] == [(0, "off"), (1, "slow, but steady")]
+    assert [(m["value"], m["name"]) for m in tree["enums"][0]["members"]] == [
+        (0, "off"),
+        (1, "slow, but steady"),
+    ]
     result, _ = read(tmp_path, HEADING + rows.replace("0: off", "off"), rules)
     assert "`members` leaves `off`" in found(result, "IMP104")[0] and result.failed
 
 
-@pytest.mark.parametrize(("text", "value"), [("0", 0), ("0x5A", 90), ("5Ah", 90), ("7", 7)])
+@pytest.mark.parametrize(
+    ("text", "value"), [("0", 0), ("0x5A", 90), ("5Ah", 90), ("7", 7)]
+)
 def test_a_constant_is_the_one_valid_value_also_if_it_is_0(tmp_path, text, value):
     rows = f"Byte\tName\tType\tMust be\n0\tKey\tu8\t{text}\n"
-    tree = read(tmp_path, HEADING + rows, RULE.replace("Type: type}", "Type: type, Must be: const}"))[1]
+    tree = read(
+        tmp_path,
+        HEADING + rows,
+        RULE.replace("Type: type}", "Type: type, Must be: const}"),
+    )[1]
     assert tree["messages"][0]["fields"][0]["const"] == value
     result, _ = read(
         tmp_path,
@@ -137,11 +187,15 @@ def test_a_constant_is_the_one_valid_value_also_if_it_is_0(tmp_path, text, value
 def test_a_rule_takes_over_the_keys_of_another(tmp_path):
     rows = "Byte\tName\tType\n0\tMode\tu8\n"
     text = f"Replies\n\n{HEADING}{rows}\nCommands\n\nMotor start (0x22)\n\n{rows}"
-    rules = RULE.replace("  - tables", "  - rule: reply\n    tables").replace("Type}", "Type, nth: 1}")
+    rules = RULE.replace("  - tables", "  - rule: reply\n    tables").replace(
+        "Type}", "Type, nth: 1}"
+    )
     rules += "  - {like: reply, tables: {nth: 2}, message: {kind: telecommand}}\n"
     _, tree = read(tmp_path, text, rules)
     assert all(m["fields"] for m in tree["messages"])
-    assert [(m["name"], m["kind"]) for m in tree["messages"]] == [("Motor state", "telemetry")]
+    assert [(m["name"], m["kind"]) for m in tree["messages"]] == [
+        ("Motor state", "telemetry")
+    ]
     rules = rules.replace("nth: 2", "nth: 1")
     _, tree = read(tmp_path, text, rules)
     assert [(m["name"], m["kind"]) for m in tree["messages"]] == [
@@ -173,7 +227,10 @@ def test_a_message_may_have_no_parameters(tmp_path):
     rows = "Byte\tName\tType\n\t\t\nNote\tNote\tNote\n"
     rules = RULE + "    skip: ^Note\n"
     _, tree = read(tmp_path, HEADING + rows, rules)
-    assert (tree["messages"][0]["name"], tree["messages"][0]["length"]) == ("Motor state", 0)
+    assert (tree["messages"][0]["name"], tree["messages"][0]["length"]) == (
+        "Motor state",
+        0,
+    )
 
 
 @pytest.mark.parametrize(("order", "at"), [("lsb0", 4), ("msb0", 2)])
@@ -201,18 +258,28 @@ def test_the_order_may_stand_under_nodes(tmp_path, order, at):
     each: {type: uint}
 """
     nodes = f"nodes: [{{name: motor, byte_order: big, bit_order: {order}}}]\n"
-    _, tree = read(tmp_path, HEADING + "Bits\tName\n7:6\tRate\n5:4\tMode\n3:0\tGain\n", nodes + rules, NODE)
+    _, tree = read(
+        tmp_path,
+        HEADING + "Bits\tName\n7:6\tRate\n5:4\tMode\n3:0\tGain\n",
+        nodes + rules,
+        NODE,
+    )
     assert (tree["node"]["bit_order"], tree["node"]["byte_order"]) == (order, "big")
     assert {f["name"]: f["at"] for f in tree["messages"][0]["fields"]}["Mode"] == at
     assert all("bit_order" not in f for f in tree["messages"][0]["fields"])
 
 
 def test_nodes_of_different_orders_are_refused(tmp_path):
-    nodes = "nodes:\n  - {name: motor, byte_order: big}\n  - {name: tank, match: [Tank]}\n"
+    nodes = (
+        "nodes:\n  - {name: motor, byte_order: big}\n  - {name: tank, match: [Tank]}\n"
+    )
     with pytest.raises(Findings) as caught:
         read(tmp_path, HEADING, nodes + RULE)
     (finding,) = caught.value.findings
-    assert "different values of `byte_order`: big and little" in finding.message and finding.place.line == 4
+    assert (
+        "different values of `byte_order`: big and little" in finding.message
+        and finding.place.line == 4
+    )
 
 
 def test_a_register_of_two_bytes_follows_the_byte_order_of_the_node(tmp_path):
@@ -224,22 +291,38 @@ def test_a_register_of_two_bytes_follows_the_byte_order_of_the_node(tmp_path):
     columns: {Bits: '^{last_bit}:{bit}$', Name: name}
     each: {type: uint}
 """
-    assert fields(read(tmp_path, HEADING + rows, rules)[1]) == [(0, 12, "Count"), (12, 4, "Rate")]
+    assert fields(read(tmp_path, HEADING + rows, rules)[1]) == [
+        (0, 12, "Count"),
+        (12, 4, "Rate"),
+    ]
     _, tree = read(tmp_path, HEADING + rows, rules, NODE.replace("little", "big"))
     count = next(f for f in tree["messages"][0]["fields"] if f["name"] == "Count")
-    assert (count["at"], count["bit_order"]) == (4, "msb0")  # four bits of byte 0, then all of byte 1
+    assert (count["at"], count["bit_order"]) == (
+        4,
+        "msb0",
+    )  # four bits of byte 0, then all of byte 1
     rate = next(f for f in tree["messages"][0]["fields"] if f["name"] == "Rate")
     assert (rate["at"], rate.get("bit_order")) == (4, None)
 
 
 def test_a_range_of_bytes_that_may_be_an_array_is_a_question(tmp_path):
     rules = RULE.replace("Byte: byte", "Byte: '^{byte}-{last_byte}$'")
-    result, tree = read(tmp_path, HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n", rules)
+    result, tree = read(
+        tmp_path,
+        HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n",
+        rules,
+    )
     assert "field `Cells`: a number of 6 bytes is unusual" in found(result, "IMP105")[0]
     rules += "    set: [{where: {name: ^Cells$}, bits: 16, count: 3}]\n"
-    result, tree = read(tmp_path, HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n", rules)
+    result, tree = read(
+        tmp_path,
+        HEADING + "Byte\tName\tType\n0-5\tCells\tuint\n6-7\tSum\tuint\n",
+        rules,
+    )
     assert found(result, "IMP105") == []
-    assert [(f["at"], f["bits"], f.get("count")) for f in tree["messages"][0]["fields"]] == [(0, 16, 3), (48, 16, None)]
+    assert [
+        (f["at"], f["bits"], f.get("count")) for f in tree["messages"][0]["fields"]
+    ] == [(0, 16, 3), (48, 16, None)]
 
 
 def test_parts_of_a_field_in_several_cells_are_one_field(tmp_path):
@@ -260,22 +343,31 @@ def test_head_rows_under_a_common_heading_are_one_heading(tmp_path):
     )
     (tmp_path / "tables" / "001.table.yaml").write_text(text, encoding="utf-8")
     rules = RULE.replace(
-        "head: Byte | Name | Type}", "head: Position | '*' | Name | Type}\n    head_rows: 2".replace("'", "")
+        "head: Byte | Name | Type}",
+        "head: Position | '*' | Name | Type}\n    head_rows: 2".replace("'", ""),
     )
-    rules = rules.replace("{head: Position | * | Name | Type}", "{head: Position | Name | Type}")
+    rules = rules.replace(
+        "{head: Position | * | Name | Type}", "{head: Position | Name | Type}"
+    )
     rules = rules.replace("Byte: byte", "Position Byte: byte, Position Bit: bit")
     (tmp_path / "rules.yaml").write_text(NODE + rules, encoding="utf-8")
-    _, trees = run.run(tmp_path / "tables", profile.load(tmp_path / "rules.yaml"), jobs=1)
+    _, trees = run.run(
+        tmp_path / "tables", profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
     assert fields(trees["motor"]) == [(0, 1, "On"), (1, 3, "Level")]
 
 
 def test_the_page_and_the_line_of_a_row_stand_in_its_finding(tmp_path):
-    result, _ = read(tmp_path, HEADING + "Byte\tName\tType\n0\tMode\tu8\n1\tLoad\tword\n")
+    result, _ = read(
+        tmp_path, HEADING + "Byte\tName\tType\n0\tMode\tu8\n1\tLoad\tword\n"
+    )
     import_finding = next(t for t in result.import_findings if t.code == "IMP026")
     assert (import_finding.spot.line, import_finding.severity) == (5, "error")
     assert "types: {word: {type: uint, bits: 16}}" in import_finding.help
     _, tree = read(
-        tmp_path, HEADING + "Byte\tName\tType\n1\tLoad\tword\n", "types: {word: {type: uint, bits: 16}}\n" + RULE
+        tmp_path,
+        HEADING + "Byte\tName\tType\n1\tLoad\tword\n",
+        "types: {word: {type: uint, bits: 16}}\n" + RULE,
     )
     assert fields(tree) == [(8, 16, "Load")]
 
@@ -286,8 +378,15 @@ def test_the_reference_describes_every_key_and_role():
     from tests.conftest import ROOT
 
     page = (ROOT / "docs" / "reference" / "import-rules.md").read_text(encoding="utf-8")
-    keys = {*schema.definition("rule")["properties"], *schema.definition("rule_conditions")["properties"], *ROLES}
-    keys |= {key.rstrip("?") for key in schema.definition("rule")["properties"]["message"]["properties"]}
+    keys = {
+        *schema.definition("rule")["properties"],
+        *schema.definition("rule_conditions")["properties"],
+        *ROLES,
+    }
+    keys |= {
+        key.rstrip("?")
+        for key in schema.definition("rule")["properties"]["message"]["properties"]
+    }
     assert [key for key in sorted(keys) if f"`{key}`" not in page] == []
 
 
@@ -299,7 +398,11 @@ def test_a_rule_without_columns_reads_a_message_without_parameters(tmp_path):
 """
     result, tree = read(tmp_path, HEADING + "Length\t0\n", rules)
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
-    assert (tree["messages"][0]["name"], tree["messages"][0]["length"], "fields" in tree["messages"][0]) == (
+    assert (
+        tree["messages"][0]["name"],
+        tree["messages"][0]["length"],
+        "fields" in tree["messages"][0],
+    ) == (
         "Motor state",
         0,
         False,
@@ -314,8 +417,15 @@ def test_each_row_of_a_table_of_commands_is_a_message_without_parameters(tmp_pat
     message: {kind: telecommand, length: 0}
     columns: {Command: message, Code: id, Remarks: message_text}
 """
-    _, tree = read(tmp_path, "Commands\nCommand\tCode\tRemarks\nStart\t0x10\tStarts it\nHalt\t0x11\t\n", rules)
-    assert [(m["name"], m["id"], m["length"]) for m in tree["messages"]] == [("Start", 16, 0), ("Halt", 17, 0)]
+    _, tree = read(
+        tmp_path,
+        "Commands\nCommand\tCode\tRemarks\nStart\t0x10\tStarts it\nHalt\t0x11\t\n",
+        rules,
+    )
+    assert [(m["name"], m["id"], m["length"]) for m in tree["messages"]] == [
+        ("Start", 16, 0),
+        ("Halt", 17, 0),
+    ]
 
 
 def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
@@ -332,7 +442,9 @@ def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
 """
     (tmp_path / "motor.txt").write_text(text, encoding="utf-8")
     (tmp_path / "rules.yaml").write_text(NODE + rules, encoding="utf-8")
-    _, trees = run.run(tmp_path / "motor.txt", profile.load(tmp_path / "rules.yaml"), jobs=1)
+    _, trees = run.run(
+        tmp_path / "motor.txt", profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
     (tree,) = trees.values()
     assert (tree["node"]["name"], tree["messages"][0]["group"]) == ("pump", "State")
     assert tree["loggable"] == [{"bit": 9, "id": 33}]
@@ -341,8 +453,12 @@ def test_lists_name_the_groups_of_messages_and_what_can_be_logged(tmp_path):
 
 @pytest.mark.parametrize("printed", ["–", ""])
 def test_a_reserved_row_needs_no_type(tmp_path, printed):
-    text = f"{HEADING}Byte\tName\tType\tBits\n0\tMode\tu8\t8\n1\tReserved\t{printed}\t72\n"
-    result, tree = read(tmp_path, text, RULE.replace("Type: type", "Type: type, Bits: bits"))
+    text = (
+        f"{HEADING}Byte\tName\tType\tBits\n0\tMode\tu8\t8\n1\tReserved\t{printed}\t72\n"
+    )
+    result, tree = read(
+        tmp_path, text, RULE.replace("Type: type", "Type: type, Bits: bits")
+    )
     assert fields(tree) == [(0, 8, "Mode")] and tree["messages"][0]["length"] == 10
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
 
@@ -350,6 +466,8 @@ def test_a_reserved_row_needs_no_type(tmp_path, printed):
 @pytest.mark.parametrize("minus", ["-", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}"])
 def test_a_minus_sign_of_a_pattern_is_that_of_the_document(tmp_path, minus):
     text = f"{HEADING}Byte\tName\tType\tScale\n0\tHeat\tu8\t0.5 N \N{MINUS SIGN} 55\n"
-    rules = RULE.replace("Type: type", f"Type: type, Scale: '^{{scale}} N {{offset:{minus} ?[\\d.]+}}$'")
+    rules = RULE.replace(
+        "Type: type", f"Type: type, Scale: '^{{scale}} N {{offset:{minus} ?[\\d.]+}}$'"
+    )
     _, tree = read(tmp_path, text, rules)
     assert tree["messages"][0]["fields"][0]["formula"] == "raw*0.5 - 55"

@@ -1,4 +1,6 @@
-"""Documents in the shapes of real ones are read right by short profiles, from the document and from its table files."""
+"""Documents in the shapes of real ones are read right by short profiles, from the
+document and from its table files.
+"""
 
 from __future__ import annotations
 
@@ -29,22 +31,39 @@ def test_a_short_profile_reads_the_document(shape, tmp_path):
     got = {}
     for message in tree["messages"]:
         fields = [
-            (f["at"], f.get("bits", 0) * f.get("count", 1) if "struct" not in f else None, f["name"])
+            (
+                f["at"],
+                f.get("bits", 0) * f.get("count", 1) if "struct" not in f else None,
+                f["name"],
+            )
             for f in message["fields"]
         ]
-        got[message["name"]] = message.get("id", message.get("set_id")), message["length"], fields
+        got[message["name"]] = (
+            message.get("id", message.get("set_id")),
+            message["length"],
+            fields,
+        )
     wanted = {
         name: (
             id,
             length,
-            [(at, None if shape.facts.get((name, n), {}).get("struct") else bits, n) for at, bits, n in fields],
+            [
+                (at, None if shape.facts.get((name, n), {}).get("struct") else bits, n)
+                for at, bits, n in fields
+            ],
         )
         for name, (id, length, fields) in shape.messages.items()
     }
     assert got == wanted
     fields = {(m["name"], f["name"]): f for m in tree["messages"] for f in m["fields"]}
-    assert {key: {k: fields[key].get(k) for k in facts} for key, facts in shape.facts.items()} == shape.facts
-    assert {e["name"]: {m["value"]: m["name"] for m in e["members"]} for e in tree.get("enums", [])} == shape.enums
+    assert {
+        key: {k: fields[key].get(k) for k in facts}
+        for key, facts in shape.facts.items()
+    } == shape.facts
+    assert {
+        e["name"]: {m["value"]: m["name"] for m in e["members"]}
+        for e in tree.get("enums", [])
+    } == shape.enums
 
 
 def test_table_files_give_what_the_document_gives(shape, tmp_path):
@@ -56,14 +75,19 @@ def test_table_files_give_what_the_document_gives(shape, tmp_path):
     assert again.tables == result.tables
     texts = {path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()}
     table_files.write(again.tables, tmp_path / "tables", again.document)
-    assert texts == {path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()}
+    assert texts == {
+        path.name: path.read_bytes() for path in (tmp_path / "tables").iterdir()
+    }
 
 
 def test_without_rules_nothing_becomes_a_message(shape, tmp_path):
     (tmp_path / "rules.yaml").write_text("profile: 1\nrules: []\n", encoding="utf-8")
     result, tree = read(tmp_path / "manual.pdf", tmp_path / "rules.yaml")
     assert tree == {} and result.failed
-    assert {t.code for t in result.import_findings if t.severity != "note"} == {"IMP004", "IMP100"}
+    assert {t.code for t in result.import_findings if t.severity != "note"} == {
+        "IMP004",
+        "IMP100",
+    }
 
 
 def test_the_kinds_of_tables_are_a_profile_to_be_completed(shape, tmp_path):
@@ -72,4 +96,7 @@ def test_the_kinds_of_tables_are_a_profile_to_be_completed(shape, tmp_path):
     result, _ = read(tmp_path / "manual.pdf", tmp_path / "rules.yaml")
     proposal = yaml.safe_load(explore.report(result.tables, "manual.pdf"))
     heads = [tuple(rule["tables"]["head"].split(" | ")) for rule in proposal["rules"]]
-    assert heads == [tuple(title or "*" for title in group[0].titles) for group in explore.kinds(result.tables)]
+    assert heads == [
+        tuple(title or "*" for title in group[0].titles)
+        for group in explore.kinds(result.tables)
+    ]

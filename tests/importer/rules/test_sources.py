@@ -1,4 +1,6 @@
-"""Spreadsheets, web pages, Markdown and Word documents give the tables that a PDF gives, and are read by the same rules."""
+"""Spreadsheets, web pages, Markdown and Word documents give the tables that a PDF
+gives, and are read by the same rules.
+"""
 
 from __future__ import annotations
 
@@ -74,42 +76,80 @@ def html(path: Path) -> None:
             if t is not None
         )
         lines.append("<tr>" + "\n  ".join(cells) + "</tr>")
-    path.write_text(f"<html><body><h1>Messages</h1><table>{''.join(lines)}</table></body></html>", encoding="utf-8")
+    path.write_text(
+        f"<html><body><h1>Messages</h1><table>{''.join(lines)}</table></body></html>",
+        encoding="utf-8",
+    )
 
 
 def separated(path: Path) -> None:
     lines = [";".join(TITLES)]
     for index, row in enumerate(ROWS):
-        row = [text if text is not None else ROWS[index - 1][column] for column, text in enumerate(row)]
+        row = [
+            text if text is not None else ROWS[index - 1][column]
+            for column, text in enumerate(row)
+        ]
         lines.append(";".join(f'"{text}"' if "\n" in text else text for text in row))
-    path.write_text("Interface of the motor\n\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    path.write_text(
+        "Interface of the motor\n\n" + "\n".join(lines) + "\n", encoding="utf-8"
+    )
 
 
 def markdown(path: Path) -> None:
-    lines = ["# Messages", "", "| " + " | ".join(TITLES) + " |", "|---" * len(TITLES) + "|"]
+    lines = [
+        "# Messages",
+        "",
+        "| " + " | ".join(TITLES) + " |",
+        "|---" * len(TITLES) + "|",
+    ]
     for index, row in enumerate(ROWS):
-        row = [text if text is not None else ROWS[index - 1][column] for column, text in enumerate(row)]
-        lines.append("| " + " | ".join(text.replace("\n", "<br>") for text in row) + " |")
+        row = [
+            text if text is not None else ROWS[index - 1][column]
+            for column, text in enumerate(row)
+        ]
+        lines.append(
+            "| " + " | ".join(text.replace("\n", "<br>") for text in row) + " |"
+        )
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-WRITERS = {"motor.xlsx": xlsx, "motor.docx": word, "motor.html": html, "motor.csv": separated, "motor.md": markdown}
+WRITERS = {
+    "motor.xlsx": xlsx,
+    "motor.docx": word,
+    "motor.html": html,
+    "motor.csv": separated,
+    "motor.md": markdown,
+}
 
 
 @pytest.mark.parametrize("name", WRITERS)
 def test_one_rule_reads_a_table_of_every_source(tmp_path, name):
     WRITERS[name](tmp_path / name)
     (tmp_path / "rules.yaml").write_text(RULES, encoding="utf-8")
-    result, trees = run.run(tmp_path / name, profile.load(tmp_path / "rules.yaml"), jobs=1)
+    result, trees = run.run(
+        tmp_path / name, profile.load(tmp_path / "rules.yaml"), jobs=1
+    )
     assert [t.message for t in result.import_findings if t.severity == "error"] == []
     state, speed = trees["motor"]["messages"]
-    assert (state["name"], state["id"], state["kind"], state["length"]) == ("Motor state", 0x21, "telemetry", 3)
+    assert (state["name"], state["id"], state["kind"], state["length"]) == (
+        "Motor state",
+        0x21,
+        "telemetry",
+        3,
+    )
     assert [(f["at"], f["bits"], f["name"], f["type"]) for f in state["fields"]] == [
         (0, 8, "Mode", "uint"),
         (8, 16, "Speed", "int"),
     ]
-    assert (state["fields"][1]["formula"], state["fields"][1]["unit"]) == ("raw*0.5", "rpm")
-    assert (speed["name"], speed["kind"], speed["length"]) == ("Set speed", "telecommand", 2)
+    assert (state["fields"][1]["formula"], state["fields"][1]["unit"]) == (
+        "raw*0.5",
+        "rpm",
+    )
+    assert (speed["name"], speed["kind"], speed["length"]) == (
+        "Set speed",
+        "telecommand",
+        2,
+    )
 
 
 @pytest.mark.parametrize("name", WRITERS)
@@ -130,12 +170,17 @@ def test_a_range_that_a_spreadsheet_made_a_date_is_an_error(tmp_path):
     book.save(tmp_path / "motor.xlsx")
     document, _ = sources.read(tmp_path / "motor.xlsx", profile.load())
     date, formula = [t for t in document.import_findings if t.severity == "error"]
-    assert "sheet `Sheet`, cell A2: the spreadsheet program made the date 2026-01-02" in date.message
+    assert (
+        "sheet `Sheet`, cell A2: the spreadsheet program made the date 2026-01-02"
+        in date.message
+    )
     assert "range such as 1-2" in date.help
     assert "cell A3: the formula `=A1+1` has no stored value" in formula.message
 
 
-def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(tmp_path):
+def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(
+    tmp_path,
+):
     xlsx(tmp_path / "motor.xlsx")
     book = openpyxl.load_workbook(tmp_path / "motor.xlsx")
     sheet = book["Messages"]
@@ -151,7 +196,9 @@ def test_sheets_have_several_tables_with_texts_above_and_hidden_ones_are_named(t
         ["0", "none"],
         ["1.5", "hot"],
     ]
-    assert [t.message for t in document.import_findings] == ["the sheet `Old` is hidden; it was left out"]
+    assert [t.message for t in document.import_findings] == [
+        "the sheet `Old` is hidden; it was left out"
+    ]
 
 
 def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):
@@ -166,7 +213,11 @@ def test_captions_and_the_chain_of_headings_come_from_the_document(tmp_path):
         "Asked for by 0x21.",
     )
     assert first.rows[0].cells[1].columns == 2
-    assert (second.label, second.caption, second.rows[0].cells[1].text) == (7, "Tank state", "d\ne")
+    assert (second.label, second.caption, second.rows[0].cells[1].text) == (
+        7,
+        "Tank state",
+        "d\ne",
+    )
     assert second.rows[0].cells[0].rows == 1  # no more than there are
 
 

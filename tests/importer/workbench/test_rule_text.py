@@ -1,4 +1,7 @@
-"""The workbench changes one rule of a profile; everything else keeps its text and its comments."""
+"""The workbench changes one rule of a profile.
+
+Everything else keeps its text and its comments.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,11 @@ rules:
   - {what: ignore, tables: {head: Pin}}
 types: {word: {type: uint, bits: 16}}  # two bytes
 """
-NEW = {"tables": {"head": "A | B"}, "columns": {"A": "byte", "B": r"^{name} \(x\)$"}, "width": "unit"}
+NEW = {
+    "tables": {"head": "A | B"},
+    "columns": {"A": "byte", "B": r"^{name} \(x\)$"},
+    "width": "unit",
+}
 
 
 def test_a_rule_is_added_behind_the_others():
@@ -36,12 +43,22 @@ def test_a_rule_is_replaced_and_comments_around_it_stay(index):
     text = rule_text.with_rule(PROFILE, index, NEW)
     assert rule_text.rules_of(text)[index] == NEW
     assert rule_text.rules_of(text)[1 - index] == rule_text.rules_of(PROFILE)[1 - index]
-    for comment in ("# Of the motor.", "# as the manual says", "  # telemetry", "  # the rest", "# two bytes"):
+    for comment in (
+        "# Of the motor.",
+        "# as the manual says",
+        "  # telemetry",
+        "  # the rest",
+        "# two bytes",
+    ):
         assert comment in text
 
 
 @pytest.mark.parametrize(
-    "start", [PROFILE, "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}, {what: ignore, tables: {head: Q}}]"]
+    "start",
+    [
+        PROFILE,
+        "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}, {what: ignore, tables: {head: Q}}]",
+    ],
 )
 def test_a_rule_is_added_behind_another(start):
     before = rule_text.rules_of(start)
@@ -56,7 +73,9 @@ def test_two_rules_in_the_text_of_one_are_refused(blank):
     assert rule_text.parse_rule(text) == NEW
     with pytest.raises(Findings) as caught:
         rule_text.parse_rule(text + rule_text.text_of_rule(NEW))
-    assert caught.value.findings[0].message == "one rule only: the text has 2 list items"
+    assert (
+        caught.value.findings[0].message == "one rule only: the text has 2 list items"
+    )
 
 
 def test_rules_are_removed_down_to_none():
@@ -66,7 +85,12 @@ def test_rules_are_removed_down_to_none():
 
 
 @pytest.mark.parametrize(
-    "start", ["profile: 1\n", rule_text.NEW, "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}]"]
+    "start",
+    [
+        "profile: 1\n",
+        rule_text.NEW,
+        "profile: 1\nrules: [{what: ignore, tables: {head: Pin}}]",
+    ],
 )
 def test_the_first_rule_finds_its_place(start):
     text = rule_text.with_rule(start, None, NEW)
@@ -107,8 +131,12 @@ def test_the_node_is_replaced_or_added():
 )
 def test_every_text_comes_back_as_it_was(value, tmp_path):
     rule = {"tables": {"head": value}, "what": "ignore", "skip": value}
-    (tmp_path / "p.yaml").write_text(rule_text.with_rule(rule_text.NEW, None, rule), encoding="utf-8")
-    assert rule_text.rules_of((tmp_path / "p.yaml").read_text(encoding="utf-8")) == [rule]
+    (tmp_path / "p.yaml").write_text(
+        rule_text.with_rule(rule_text.NEW, None, rule), encoding="utf-8"
+    )
+    assert rule_text.rules_of((tmp_path / "p.yaml").read_text(encoding="utf-8")) == [
+        rule
+    ]
 
 
 def test_shipped_rules_survive_being_written(tmp_path):

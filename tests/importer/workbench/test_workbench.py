@@ -1,4 +1,6 @@
-"""A person writes a profile in the workbench, with the keyboard alone, and gets an ICD without findings."""
+"""A person writes a profile in the workbench, with the keyboard alone, and gets an ICD
+without findings.
+"""
 
 from __future__ import annotations
 
@@ -57,13 +59,22 @@ def ask(address, path, data=None, headers=None):
     body = None if data is None else json.dumps(data).encode()
     request = urllib.request.Request(address + path, body, headers or {"X-Icdgen": "1"})
     with urllib.request.urlopen(request) as answer:
-        return json.loads(answer.read()) if "json" in answer.headers["Content-Type"] else answer.read()
+        return (
+            json.loads(answer.read())
+            if "json" in answer.headers["Content-Type"]
+            else answer.read()
+        )
 
 
 RULE = {
     "tables": {"head": "Byte | Name | Unit"},
     "message": {"heading": r"^[\d.]+ {message} \({id}\)$", "kind": "telemetry"},
-    "columns": {"Byte": "^{byte}(?:-{last_byte})?$", "Name": "name", "Unit": "unit", "Remarks": "text"},
+    "columns": {
+        "Byte": "^{byte}(?:-{last_byte})?$",
+        "Name": "name",
+        "Unit": "unit",
+        "Remarks": "text",
+    },
     "each": {"type": "uint"},
     "width": "unit",
 }
@@ -80,7 +91,9 @@ def test_a_rule_gives_fields_and_findings_of_all_tables_of_its_kind_at_once(addr
     assert [(one["rules"], one["fields"], one["messages"]) for one in state["tables"]] == [
         ([0], 2, ["Motor state"]), ([0], 2, ["Supply"]), ([], 0, []),
     ]  # fmt: skip
-    assert [one["code"] for one in state["findings"] if one["severity"] == "warning"] == ["IMP100"]
+    assert [
+        one["code"] for one in state["findings"] if one["severity"] == "warning"
+    ] == ["IMP100"]
     (message,) = ask(address, "/api/table/1")["messages"]
     assert [(f["at"], f["bits"], f["name"], f["unit"]) for f in message["fields"]] == [
         (0, 8, "Mode", ""),
@@ -88,27 +101,48 @@ def test_a_rule_gives_fields_and_findings_of_all_tables_of_its_kind_at_once(addr
     ]
 
 
-def test_a_rule_with_errors_keeps_its_last_valid_form_and_other_rules_still_work(address):
+def test_a_rule_with_errors_keeps_its_last_valid_form_and_other_rules_still_work(
+    address,
+):
     ask(address, "/api/rule", {"index": None, "rule": RULE})
     wrong = {**RULE, "columns": {**RULE["columns"], "Name": "nam"}}
     state = ask(address, "/api/rule", {"index": 0, "rule": wrong})["state"]
     (error,) = state["errors"]
-    assert (error["rule"], error["message"]) == (0, "`nam` is neither a role nor a pattern with a role")
+    assert (error["rule"], error["message"]) == (
+        0,
+        "`nam` is neither a role nor a pattern with a role",
+    )
     assert "did you mean the role `name`?" in error["help"]
     assert state["tables"][0]["fields"] == 2
-    refused = ask(address, "/api/rule-text", {"index": 0, "text": "tables: {head: ["})["refused"]
+    refused = ask(address, "/api/rule-text", {"index": 0, "text": "tables: {head: ["})[
+        "refused"
+    ]
     assert "not YAML" in refused[0]["message"]
     pins = {"tables": {"head": "Pin | Function"}, "what": "ignore"}
     state = ask(address, "/api/rule", {"index": None, "rule": pins})["state"]
-    assert [(one["rules"], one["fields"]) for one in state["tables"]] == [([0], 2), ([0], 2), ([1], 0)]
+    assert [(one["rules"], one["fields"]) for one in state["tables"]] == [
+        ([0], 2),
+        ([0], 2),
+        ([1], 0),
+    ]
     state = ask(address, "/api/rule", {"index": 1, "rule": None})["state"]
-    assert state["errors"] == [error] and [one["rules"] for one in state["tables"]] == [[0], [0], []]
+    assert state["errors"] == [error] and [one["rules"] for one in state["tables"]] == [
+        [0],
+        [0],
+        [],
+    ]
     for action in ("undo", "undo", "undo"):
         state = ask(address, f"/api/{action}", {})["state"]
-    assert state["errors"] == [] and [one["fields"] for one in state["tables"]] == [2, 2, 0]
+    assert state["errors"] == [] and [one["fields"] for one in state["tables"]] == [
+        2,
+        2,
+        0,
+    ]
 
 
-def test_a_new_rule_with_errors_belongs_to_its_tables_and_gives_nothing(address, session, tmp_path):
+def test_a_new_rule_with_errors_belongs_to_its_tables_and_gives_nothing(
+    address, session, tmp_path
+):
     rule = {
         "tables": {"head": "Pin | Function"},
         "what": "enumeration",
@@ -118,44 +152,83 @@ def test_a_new_rule_with_errors_belongs_to_its_tables_and_gives_nothing(address,
     state = ask(address, "/api/rule", {"index": None, "rule": rule})["state"]
     assert [error["rule"] for error in state["errors"]] == [1]
     assert [one["rules"] for one in state["tables"]] == [[0], [0], [1]]
-    assert ask(address, "/api/save", {})["done"]["files"] == [f"{tmp_path}/rules.yaml: written"]
+    assert ask(address, "/api/save", {})["done"]["files"] == [
+        f"{tmp_path}/rules.yaml: written"
+    ]
     assert not (tmp_path / "icd").exists()
-    state = ask(address, "/api/rule", {"index": 1, "rule": rule | {"message": {"enumeration": "Pins"}}})["state"]
+    state = ask(
+        address,
+        "/api/rule",
+        {"index": 1, "rule": rule | {"message": {"enumeration": "Pins"}}},
+    )["state"]
     assert state["errors"] == []
 
 
-def test_saving_does_not_overwrite_what_another_program_wrote(address, session, tmp_path):
+def test_saving_does_not_overwrite_what_another_program_wrote(
+    address, session, tmp_path
+):
     path = tmp_path / "rules.yaml"
     ask(address, "/api/rule", {"index": None, "rule": RULE})
     assert "conflict" not in ask(address, "/api/save", {})["done"]
-    edited = path.read_text(encoding="utf-8").replace("node: {}", "node: {byte_order: big}  # page 3")
+    edited = path.read_text(encoding="utf-8").replace(
+        "node: {}", "node: {byte_order: big}  # page 3"
+    )
     path.write_text(edited, encoding="utf-8")
     written = (tmp_path / "icd" / "motor.yaml").read_bytes()
     ask(address, "/api/node", {"byte_order": "little"})
     saved = ask(address, "/api/save", {})["done"]
-    assert saved == {"conflict": f"{path} was changed by another program; nothing is written"}
-    assert path.read_text(encoding="utf-8") == edited and (tmp_path / "icd" / "motor.yaml").read_bytes() == written
+    assert saved == {
+        "conflict": f"{path} was changed by another program; nothing is written"
+    }
+    assert (
+        path.read_text(encoding="utf-8") == edited
+        and (tmp_path / "icd" / "motor.yaml").read_bytes() == written
+    )
     state = ask(address, "/api/reload", {})["state"]
-    assert state["node"] == {"byte_order": "big"} and state["is_saved"] and session.text == edited
+    assert (
+        state["node"] == {"byte_order": "big"}
+        and state["is_saved"]
+        and session.text == edited
+    )
     assert ask(address, "/api/undo", {})["state"]["node"] == {"byte_order": "little"}
     path.write_text("rules: [", encoding="utf-8")
     (refused,) = ask(address, "/api/reload", {})["refused"]
-    assert "not YAML" in refused["message"] and session.node() == {"byte_order": "little"}
+    assert "not YAML" in refused["message"] and session.node() == {
+        "byte_order": "little"
+    }
     assert "conflict" not in ask(address, "/api/save", {"overwrite": True})["done"]
     assert path.read_text(encoding="utf-8") == session.text
     path.unlink()
-    assert "was removed" in ask(address, "/api/save", {})["done"]["conflict"] and not path.exists()
+    assert (
+        "was removed" in ask(address, "/api/save", {})["done"]["conflict"]
+        and not path.exists()
+    )
 
 
 def test_a_second_rule_of_a_table_stands_behind_the_first(address, session):
     ask(address, "/api/rule", {"index": None, "rule": RULE})
-    ask(address, "/api/rule", {"index": None, "rule": {"tables": {"head": "Pin | Function"}, "what": "ignore"}})
-    second = {"tables": RULE["tables"], "what": "bits", "message": {"of": "Mode"}, "ignore": ["Byte"]}
+    ask(
+        address,
+        "/api/rule",
+        {
+            "index": None,
+            "rule": {"tables": {"head": "Pin | Function"}, "what": "ignore"},
+        },
+    )
+    second = {
+        "tables": RULE["tables"],
+        "what": "bits",
+        "message": {"of": "Mode"},
+        "ignore": ["Byte"],
+    }
     answer = ask(address, "/api/rule", {"index": None, "rule": second, "behind": 0})
     assert answer["done"] == 1
     assert [one["rules"] for one in answer["state"]["tables"]] == [[0, 1], [0, 1], [2]]
     assert yaml.safe_load(session.text)["rules"][:2] == [{**RULE, "also": True}, second]
-    assert yaml.safe_load(ask(address, "/api/undo", {}) and session.text)["rules"][0] == RULE
+    assert (
+        yaml.safe_load(ask(address, "/api/undo", {}) and session.text)["rules"][0]
+        == RULE
+    )
 
 
 def test_pages_of_other_sites_change_nothing(address, session):
@@ -164,7 +237,11 @@ def test_pages_of_other_sites_change_nothing(address, session):
         with pytest.raises(urllib.error.HTTPError) as refused:
             ask(address, "/api/rule", {"index": None, "rule": RULE}, headers)
         assert refused.value.code == 403
-    for path, data in (("/api/rule", {"rule": 1}), ("/api/nothing", {}), ("/api/rule", [])):
+    for path, data in (
+        ("/api/rule", {"rule": 1}),
+        ("/api/nothing", {}),
+        ("/api/rule", []),
+    ):
         with pytest.raises(urllib.error.HTTPError) as refused:
             ask(address, path, data)
         assert refused.value.code == 400
@@ -185,11 +262,18 @@ def browser():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        running = playwright.chromium.launch(
+            executable_path=program, args=["--no-sandbox"]
+        )
         made = running.new_page(viewport={"width": 1600, "height": 900})
         problems: list[str] = []
         made.on("pageerror", lambda error: problems.append(str(error)))
-        made.on("console", lambda message: problems.append(message.text) if message.type == "error" else None)
+        made.on(
+            "console",
+            lambda message: (
+                problems.append(message.text) if message.type == "error" else None
+            ),
+        )
         yield made
         assert problems == []
         running.close()
@@ -230,13 +314,21 @@ def test_a_profile_is_written_with_the_keyboard_alone(page, session, tmp_path):
         page.keyboard.type(value)
     tab_to(page, "a position alone is one unit")
     page.keyboard.press("Space")
-    for label, value in (("Role of Byte", "^{byte}(?:-{last_byte})?$"), ("Role of Remarks", "text")):
+    for label, value in (
+        ("Role of Byte", "^{byte}(?:-{last_byte})?$"),
+        ("Role of Remarks", "text"),
+    ):
         tab_to(page, label)
         page.keyboard.press("Control+a")
         page.keyboard.type(value)
     page.keyboard.press("Tab")
     page.get_by_role("status").filter(has_text="0 errors, 1 warning").wait_for()
-    assert page.locator("table.fields").inner_text().split("\n")[1].split("\t")[:4] == ["0", "8", "Mode", "uint"]
+    assert page.locator("table.fields").inner_text().split("\n")[1].split("\t")[:4] == [
+        "0",
+        "8",
+        "Mode",
+        "uint",
+    ]
     tab_to(page, "?3 ")  # the table of pins, which has no rule
     page.keyboard.press("Enter")
     page.get_by_role("heading", name="table 3").wait_for()
@@ -247,12 +339,20 @@ def test_a_profile_is_written_with_the_keyboard_alone(page, session, tmp_path):
     page.get_by_role("status").filter(has_text="no findings").wait_for()
 
     written = yaml.safe_load((tmp_path / "rules.yaml").read_text(encoding="utf-8"))
-    assert written["node"] == {"byte_order": "big"}  # the bit order has no effect on whole bytes
-    assert [rule.get("what", "message") for rule in written["rules"]] == ["message", "ignore"]
+    assert written["node"] == {
+        "byte_order": "big"
+    }  # the bit order has no effect on whole bytes
+    assert [rule.get("what", "message") for rule in written["rules"]] == [
+        "message",
+        "ignore",
+    ]
     loaded = load([tmp_path / "icd" / "motor.yaml"])
     assert loaded.findings == []
     state, supply = loaded.icd.nodes[0].messages
-    assert [(f.name, f.at, f.bits) for f in state.fields] == [("Mode", 0, 8), ("Speed", 8, 16)]
+    assert [(f.name, f.at, f.bits) for f in state.fields] == [
+        ("Mode", 0, 8),
+        ("Speed", 8, 16),
+    ]
     assert (supply.name, supply.ids, supply.length) == ("Supply", (0x22,), 4)
 
 
@@ -261,9 +361,14 @@ def test_the_picture_of_the_page_shows_the_tables_and_leads_to_them(page):
     page.get_by_role("heading", name="table 2").wait_for()
     outline = page.get_by_label("show table 2").first.bounding_box()
     image = page.get_by_alt_text("page 1").bounding_box()
-    assert image["x"] < outline["x"] and outline["y"] + outline["height"] < image["y"] + image["height"]
+    assert (
+        image["x"] < outline["x"]
+        and outline["y"] + outline["height"] < image["y"] + image["height"]
+    )
     assert outline["width"] > 0.2 * image["width"]
-    assert page.get_by_label("show table 2").first.get_attribute("aria-current") == "true"
+    assert (
+        page.get_by_label("show table 2").first.get_attribute("aria-current") == "true"
+    )
 
 
 def test_changes_are_undone_and_made_again_with_the_keyboard(page, session):
@@ -278,7 +383,9 @@ def test_changes_are_undone_and_made_again_with_the_keyboard(page, session):
     page.get_by_role("button", name="Remove the rule").wait_for()
     assert session.text == changed
     page.get_by_role("button", name="Undo").click()
-    page.get_by_role("button", name="Make a rule for this kind").click()  # a new change ends what could be redone
+    page.get_by_role(
+        "button", name="Make a rule for this kind"
+    ).click()  # a new change ends what could be redone
     page.get_by_label("These tables are").wait_for()
     assert page.get_by_role("button", name="Redo").is_disabled()
 
@@ -287,20 +394,27 @@ def test_words_and_numbered_headings_have_controls(page, session):
     from playwright.sync_api import expect
 
     page.get_by_role("button", name="Make a rule for this kind").click()
-    page.get_by_label("Words mean").fill("kind: TC = telecommand, TM = telemetry; type: CHAR = text")
+    page.get_by_label("Words mean").fill(
+        "kind: TC = telecommand, TM = telemetry; type: CHAR = text"
+    )
     page.get_by_label("Headings that number columns").fill("^D{bit}$")
     page.get_by_label("Role of their cells").fill("^{name}$")
     page.keyboard.press("Tab")
     page.get_by_text("The rule as YAML").click()
     expect(page.get_by_label("The rule as YAML")).to_have_value(re.compile("{name}"))
     (rule,) = yaml.safe_load(session.text)["rules"]
-    assert rule["map"] == {"kind": {"TC": "telecommand", "TM": "telemetry"}, "type": {"CHAR": "text"}}
+    assert rule["map"] == {
+        "kind": {"TC": "telecommand", "TM": "telemetry"},
+        "type": {"CHAR": "text"},
+    }
     assert rule["melt"] == "^D{bit}$" and rule["columns"]["*"] == "^{name}$"
 
 
 def test_the_document_is_read_again_by_the_headings_of_rules(tmp_path):
     rows = [["Item", "Wert", "Bemerkung"], ["0", "Mode", "-"]]
-    draw(tmp_path / "motor.pdf", [heading("4.1 Motor state (0x21)", 2), open_table(rows)])
+    draw(
+        tmp_path / "motor.pdf", [heading("4.1 Motor state (0x21)", 2), open_table(rows)]
+    )
     words = profile.load()
 
     def reader(own):
@@ -335,26 +449,43 @@ def test_the_rule_as_yaml_says_what_the_page_has_no_control_for(page):
 
 def test_the_command_serves_the_page_until_it_is_interrupted(tmp_path):
     manual(tmp_path / "motor.pdf")
-    command = [sys.executable, "-m", "icdgen", "import", "motor.pdf", "--profile", "mine.yaml", "--workbench"]
+    command = [
+        sys.executable,
+        "-m",
+        "icdgen",
+        "import",
+        "motor.pdf",
+        "--profile",
+        "mine.yaml",
+        "--workbench",
+    ]
     with subprocess.Popen(
         command,
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores it
+        preexec_fn=lambda: signal.signal(
+            signal.SIGINT, signal.SIG_DFL
+        ),  # a job in the background ignores it
     ) as running:
         line = running.stdout.readline()
         address = re.search("http://[0-9.:]+", line)
-        assert line.startswith("motor.pdf: 3 tables; open http://127.0.0.1:") and address
+        assert (
+            line.startswith("motor.pdf: 3 tables; open http://127.0.0.1:") and address
+        )
         assert len(ask(address[0], "/api/state")["tables"]) == 3
         running.send_signal(signal.SIGINT)
         assert running.wait(20) == 0
         assert running.stderr.read() == ""
     assert not (tmp_path / "mine.yaml").exists()
-    (tmp_path / "words.yaml").write_text("profile: 1\ncaptions: [Listing]\n", encoding="utf-8")
+    (tmp_path / "words.yaml").write_text(
+        "profile: 1\ncaptions: [Listing]\n", encoding="utf-8"
+    )
     command[-2] = "words.yaml"
-    refused = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    refused = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
     assert refused.returncode == 1 and "the profile has no `rules:`" in refused.stderr
 
 
@@ -367,25 +498,38 @@ def test_the_page_asks_before_it_overwrites_the_work_of_an_editor(page, tmp_path
     page.get_by_role("button", name="Remove the rule").click()
     page.get_by_role("button", name="Ignore this kind").wait_for()
     page.get_by_role("button", name="Save profile and ICD").click()
-    page.get_by_role("alert").filter(has_text="was changed by another program").wait_for()
+    page.get_by_role("alert").filter(
+        has_text="was changed by another program"
+    ).wait_for()
     page.get_by_role("button", name="Reload the file").click()
     page.get_by_role("button", name="Remove the rule").wait_for()
     assert not page.get_by_role("button", name="Overwrite the file").is_visible()
     assert (tmp_path / "rules.yaml").read_text(encoding="utf-8") == edited
     page.get_by_role("button", name="Undo").click()
     page.get_by_role("button", name="Ignore this kind").wait_for()
-    page.keyboard.press("Control+s")  # the page knows the file, so that this is no conflict
+    page.keyboard.press(
+        "Control+s"
+    )  # the page knows the file, so that this is no conflict
     page.get_by_role("status").filter(has_text="written").wait_for()
     assert "of the editor" not in (tmp_path / "rules.yaml").read_text(encoding="utf-8")
 
 
 def test_the_findings_of_check_are_shown_after_saving(page, address, tmp_path):
-    twins = {**RULE, "message": {**RULE["message"], "id": "0x21", "heading": r"^[\d.]+ {message} \(0x"}}
+    twins = {
+        **RULE,
+        "message": {
+            **RULE["message"],
+            "id": "0x21",
+            "heading": r"^[\d.]+ {message} \(0x",
+        },
+    }
     ask(address, "/api/rule", {"index": None, "rule": twins})
     page.reload()
     page.get_by_role("heading", name="table 1").wait_for()
     page.keyboard.press("Control+s")
-    page.get_by_role("heading", name="icdgen check of the saved ICD: 1 error").wait_for()
+    page.get_by_role(
+        "heading", name="icdgen check of the saved ICD: 1 error"
+    ).wait_for()
     shown = page.locator("#checked li.error").inner_text()
     assert "error ICD" in shown and re.search(r"motor\.yaml:[0-9]+\n.+", shown)
 
@@ -394,7 +538,9 @@ def test_an_error_of_a_rule_leads_to_its_table(page):
     page.get_by_role("button", name="Make a rule for this kind").click()
     page.get_by_label("Role of Name").fill("nam")
     page.keyboard.press("Tab")
-    error = page.get_by_role("alert").filter(has_text="Rule 1: `nam` is neither a role nor a pattern with a role")
+    error = page.get_by_role("alert").filter(
+        has_text="Rule 1: `nam` is neither a role nor a pattern with a role"
+    )
     error.wait_for()
     page.get_by_label("show table 3").first.click()
     page.get_by_role("heading", name="table 3").wait_for()
@@ -428,14 +574,22 @@ def test_each_rule_of_a_table_is_edited(page, session):
     expect(page.get_by_role("group", name="Rule 1, for 2 tables")).to_be_visible()
     page.get_by_label("Type of all fields").fill("uint")
     page.keyboard.press("Tab")
-    expect(page.get_by_role("button", name="Rule 1: message")).to_have_attribute("aria-pressed", "true")
+    expect(page.get_by_role("button", name="Rule 1: message")).to_have_attribute(
+        "aria-pressed", "true"
+    )
     page.get_by_text("The rule as YAML").click()
     expect(page.get_by_label("The rule as YAML")).to_have_value(re.compile("uint"))
     first, second = yaml.safe_load(session.text)["rules"]
-    assert (first["each"], first["also"], second["each"]) == ({"type": "uint"}, True, {"type": "int"})
+    assert (first["each"], first["also"], second["each"]) == (
+        {"type": "uint"},
+        True,
+        {"type": "int"},
+    )
     page.get_by_label("The rule as YAML").fill(session.text.split("rules:\n")[1])
     page.get_by_role("button", name="Apply").click()
-    page.get_by_role("alert").filter(has_text="one rule only: the text has 2 list items").wait_for()
+    page.get_by_role("alert").filter(
+        has_text="one rule only: the text has 2 list items"
+    ).wait_for()
 
 
 ARRAYS = [
@@ -450,7 +604,9 @@ ARRAYS = [
 def test_the_result_has_enumerations_counts_and_strides(tmp_path):
     draw(tmp_path / "motor.pdf", [heading("4.1 Motor state (0x21)", 2), table(ARRAYS)])
     session = Session(
-        *sources.read(tmp_path / "motor.pdf", profile.load(), jobs=1), tmp_path / "rules.yaml", tmp_path / "icd"
+        *sources.read(tmp_path / "motor.pdf", profile.load(), jobs=1),
+        tmp_path / "rules.yaml",
+        tmp_path / "icd",
     )
     session.set_rule(None, {
         "tables": {"head": "Byte | Name | Size | Count"}, "each": {"type": "uint"},
@@ -462,7 +618,10 @@ def test_the_result_has_enumerations_counts_and_strides(tmp_path):
         threading.Thread(target=running.serve_forever, daemon=True).start()
         made.goto(f"http://{server.HOST}:{running.server_port}")
         made.locator("table.fields").wait_for()
-        rows = [row.split("\t")[2:5] for row in made.locator("table.fields").inner_text().split("\n")[1:]]
+        rows = [
+            row.split("\t")[2:5]
+            for row in made.locator("table.fields").inner_text().split("\n")[1:]
+        ]
         assert rows == [
             ["Mode", "enum Mode", ""], ["Level", "uint", "6 times, every 2 bytes"],
             ["Current", "uint", "Channel: 20 times, every 4 bytes"], ["State", "uint", "Channel: 20 times, every 4 bytes"],

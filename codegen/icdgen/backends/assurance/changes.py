@@ -19,7 +19,16 @@ from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
 from icdgen.icd.derived import parse
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.frames import frame_fields
-from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, Orders, Scalar, scalar_of, stride
+from icdgen.icd.layout import (
+    Array,
+    Derived,
+    Layout,
+    LayoutNode,
+    Orders,
+    Scalar,
+    scalar_of,
+    stride,
+)
 from icdgen.icd.layout_copies import with_attributes
 from icdgen.icd.located import Map, plain
 from icdgen.icd.meanings import Limits, special
@@ -39,7 +48,10 @@ OTHER_TYPES = {
 
 T = TypeVar("T", Message, Node, Member)
 _OTHER_ORDER = {"little": "big", "big": "little", "lsb0": "msb0", "msb0": "lsb0"}
-_WIDER = {**dict.fromkeys(("uint", "int", "enum"), (-1, 1)), **dict.fromkeys(("bytes", "text"), (-8, 8))}
+_WIDER = {
+    **dict.fromkeys(("uint", "int", "enum"), (-1, 1)),
+    **dict.fromkeys(("bytes", "text"), (-8, 8)),
+}
 _LIMITS = ("min", "max", "above", "below")
 _OF_SCALED = ("formula", "const", "special", *_LIMITS)  # keys of numbers only
 
@@ -56,7 +68,9 @@ class Change(NamedTuple):
     now: object
 
 
-def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[Change, LayoutNode]]:
+def of_line(
+    node: LayoutNode, layout: Layout, orders: Orders
+) -> Iterator[tuple[Change, LayoutNode]]:
     """Yield the changes of a line of a message or struct, each with the resulting node.
 
     Changes that are impossible for the type of the field or the length of the frame are
@@ -68,12 +82,19 @@ def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[
         return
     behind = layout.inner_parts and node.at >= 8 * layout.inner_parts[0].begin
     if behind or any(node is part for part in layout.sequence):
-        # Size and position of a variable-length part, and of fields behind it, are no attributes of a field.
+        # Size and position of a variable-length part, and of fields behind it, are no
+        # attributes of a field.
         if scalar is not None and not scalar.is_bytes:
-            yield from (*_types(node, scalar), *_formulas(node, scalar), *_values(node, scalar))
+            yield from (
+                *_types(node, scalar),
+                *_formulas(node, scalar),
+                *_values(node, scalar),
+            )
         return
     counters = {part.counter for part in layout.counted_parts}
-    conditions = {condition.field for other in layout.nodes for condition in other.present_if}
+    conditions = {
+        condition.field for other in layout.nodes for condition in other.present_if
+    }
     if node.name in counters | conditions:
         return  # other parts of the frame depend on its value
     yield from _of_conditions(node, layout)
@@ -82,13 +103,19 @@ def of_line(node: LayoutNode, layout: Layout, orders: Orders) -> Iterator[tuple[
     for step in (-8, 8) if scalar is None or scalar.is_bytes else (-8, -1, 1, 8):
         # A field outside of the frame would be reported by `icdgen check`.
         if 0 <= node.at + step <= size - bits * count:
-            yield _step("offset", source, "at", node.at, step), with_attributes(node, at=node.at + step)
+            yield _step("offset", source, "at", node.at, step), with_attributes(
+                node, at=node.at + step
+            )
     for step in _WIDER.get(scalar.type, ()) if scalar else ():
         if 0 < (bits + step) * count <= size - node.at:
-            yield _step("width", source, "bits", bits, step), with_attributes(node, bits=bits + step)
+            yield _step("width", source, "bits", bits, step), with_attributes(
+                node, bits=bits + step
+            )
     for step in (-1, 1) if isinstance(node, Array) else ():
         if 0 < count + step <= (size - node.at) // bits:
-            yield _step("count", source, "count", count, step), with_attributes(node, size=count + step)
+            yield _step("count", source, "count", count, step), with_attributes(
+                node, size=count + step
+            )
     if scalar is not None:
         yield from _types(node, scalar)
     yield from _of_orders(node, layout.orders.within(orders))
@@ -108,19 +135,30 @@ def _derived(node: Derived) -> Iterator[tuple[Change, LayoutNode]]:
                 yield change, with_attributes(node, formula=text, derivation=new)
 
 
-def _of_conditions(node: LayoutNode, layout: Layout) -> Iterator[tuple[Change, LayoutNode]]:
+def _of_conditions(
+    node: LayoutNode, layout: Layout
+) -> Iterator[tuple[Change, LayoutNode]]:
     """Yield the changes of a required value of another field, if the ICD states it as a
     number.
     """
-    scalars = {other.name: scalar for other in layout.nodes if (scalar := scalar_of(other)) is not None}
+    scalars = {
+        other.name: scalar
+        for other in layout.nodes
+        if (scalar := scalar_of(other)) is not None
+    }
     for place, condition in enumerate(node.present_if):
-        value, other = node.source["when"].get(condition.field), scalars[condition.field]
+        value, other = (
+            node.source["when"].get(condition.field),
+            scalars[condition.field],
+        )
         for step in (-1, 1) if type(value) is int else ():
             if not other.raw_min <= value + step <= other.raw_max:
                 continue
             now = replace(condition, values=(value + step,))
             present_if = (*node.present_if[:place], now, *node.present_if[place + 1 :])
-            change = _step("condition", node.source["when"], condition.field, value, step)
+            change = _step(
+                "condition", node.source["when"], condition.field, value, step
+            )
             yield change, with_attributes(node, present_if=present_if)
 
 
@@ -136,15 +174,24 @@ def _of_orders(node: LayoutNode, around: Orders) -> Iterator[tuple[Change, Layou
         order = getattr(own, name)
         other = replace(own, **{name: _OTHER_ORDER[order]})
         # Different orders can result in the same bits, for example of a single byte.
-        places = (pieces_at(node.at, stride(node), orders.byte, orders.bit) for orders in (own, other))
+        places = (
+            pieces_at(node.at, stride(node), orders.byte, orders.bit)
+            for orders in (own, other)
+        )
         if key in node.source and next(places) != next(places):
-            change = Change(key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order])
-            yield change, with_attributes(node, orders=replace(node.orders, **{name: _OTHER_ORDER[order]}))
+            change = Change(
+                key.replace("_", " "), node.source, key, order, _OTHER_ORDER[order]
+            )
+            yield change, with_attributes(
+                node, orders=replace(node.orders, **{name: _OTHER_ORDER[order]})
+            )
 
 
 def _types(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNode]]:
     source = node.source
-    for kind in OTHER_TYPES[scalar.type] if "type" in source and "enum" not in source else ():
+    for kind in (
+        OTHER_TYPES[scalar.type] if "type" in source and "enum" not in source else ()
+    ):
         if _can_be(node, scalar, kind):
             # Formulas of integers are exact scales, formulas of floats are not.
             scale, curve = calibration(scalar.formula, kind)
@@ -166,12 +213,26 @@ def _formulas(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, Layout
             yield change, with_attributes(node, scale=scale, curve=curve)
 
 
-def _tables(node: LayoutNode, scalar: Scalar, old: Curve) -> Iterator[tuple[Change, LayoutNode]]:
-    source, printed, outside = node.source, plain(node.source["points"]), node.source.get("outside", "")
-    variants = [(Change("points", source, "points", printed, points), points, outside) for points in tables(printed)]
-    if outside and (scalar.type == "float" or not old.covers(scalar.raw_min, scalar.raw_max)):
+def _tables(
+    node: LayoutNode, scalar: Scalar, old: Curve
+) -> Iterator[tuple[Change, LayoutNode]]:
+    source, printed, outside = (
+        node.source,
+        plain(node.source["points"]),
+        node.source.get("outside", ""),
+    )
+    variants = [
+        (Change("points", source, "points", printed, points), points, outside)
+        for points in tables(printed)
+    ]
+    if outside and (
+        scalar.type == "float" or not old.covers(scalar.raw_min, scalar.raw_max)
+    ):
         words = (word for word in OUTSIDE if word != outside)
-        variants += [(Change("outside", source, "outside", outside, word), printed, word) for word in words]
+        variants += [
+            (Change("outside", source, "outside", outside, word), printed, word)
+            for word in words
+        ]
     for change, points, beyond in variants:
         with suppress(FormulaError):  # no lookup table after the change
             new = table(doubles(points), beyond)
@@ -197,7 +258,11 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
     for index, old in enumerate(scalar.special):
         source = node.source["special"][index]
         # NaN and infinities are exchanged for each other instead of counted up.
-        named = [name for name in floats.NAMED if old.number in floats.NAMED and name != old.number]
+        named = [
+            name
+            for name in floats.NAMED
+            if old.number in floats.NAMED and name != old.number
+        ]
         for now in named or [source["value"] + step for step in (-1, 1)]:
             new = special(scalar.type, scalar.bits, now, old.meaning)
             if new is not None and new != old:
@@ -211,7 +276,9 @@ def _values(node: LayoutNode, scalar: Scalar) -> Iterator[tuple[Change, LayoutNo
             continue
         for step in (-1, 1):
             change = _step("limit", node.source, key, node.source[key], step)
-            yield change, with_attributes(node, limits=replace(limits, **{key: value + step}))
+            yield change, with_attributes(
+                node, limits=replace(limits, **{key: value + step})
+            )
 
 
 def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
@@ -225,16 +292,22 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             if value + step >= 0:
                 if key == "length":
                     layout = replace(message.layout, length=value + step)
-                    yield _step("length", source, key, value, step), replace(message, layout=layout)
+                    yield _step("length", source, key, value, step), replace(
+                        message, layout=layout
+                    )
                 else:
-                    yield _step("id", source, key, value, step), _with(message, key, value + step)
+                    yield _step("id", source, key, value, step), _with(
+                        message, key, value + step
+                    )
     for key, name in (("byte_order", "byte"), ("bit_order", "bit")):
         if key in source:
             now = _OTHER_ORDER[source[key]]
             orders = replace(message.layout.orders, **{name: now})
             layout = replace(message.layout, orders=orders)
             if _places(message.layout, node.orders) != _places(layout, node.orders):
-                yield Change(key.replace("_", " "), source, key, source[key], now), replace(message, layout=layout)
+                yield Change(
+                    key.replace("_", " "), source, key, source[key], now
+                ), replace(message, layout=layout)
 
 
 def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
@@ -243,13 +316,20 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
     for key in ("node_type", "interface_version"):
         value = getattr(node, key)
         for step in (-1, 1) if value is not None else ():
-            yield _step("node", source, key, value, step), _with(node, key, value + step)
+            yield _step("node", source, key, value, step), _with(
+                node, key, value + step
+            )
     for key in ("byte_order", "bit_order"):
         now = _OTHER_ORDER[getattr(node, key)]
         other = _with(node, key, now)
         layouts = [message.layout for message in node.messages]
-        if any(_places(layout, node.orders) != _places(layout, other.orders) for layout in layouts):
-            yield Change(key.replace("_", " "), source, key, getattr(node, key), now), other
+        if any(
+            _places(layout, node.orders) != _places(layout, other.orders)
+            for layout in layouts
+        ):
+            yield Change(
+                key.replace("_", " "), source, key, getattr(node, key), now
+            ), other
 
 
 def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
@@ -258,8 +338,14 @@ def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
         for key, step in product(("value", "to"), (-1, 1)):
             value = getattr(member, key)
             if value is not None and not _is_taken(value + step, member, enum):
-                members = (*enum.members[:index], _with(member, key, value + step), *enum.members[index + 1 :])
-                yield _step("enum value", member.source, key, value, step), replace(enum, members=members)
+                members = (
+                    *enum.members[:index],
+                    _with(member, key, value + step),
+                    *enum.members[index + 1 :],
+                )
+                yield _step("enum value", member.source, key, value, step), replace(
+                    enum, members=members
+                )
 
 
 def _is_taken(value: int, member: Member, enum: Enum) -> bool:
@@ -268,7 +354,9 @@ def _is_taken(value: int, member: Member, enum: Enum) -> bool:
     The ICD format excludes overlaps, so the resulting name is undefined.
     """
     return member.to is not None and any(
-        other.value <= value <= other.last for other in enum.members if other is not member
+        other.value <= value <= other.last
+        for other in enum.members
+        if other is not member
     )
 
 
@@ -282,7 +370,11 @@ def formulas(text: str) -> Iterator[str]:
         for other in (number - last, number + last, number * 10, number / 10):
             yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
     # A formula may be solved for the raw value: `raw = value / 0.5`.
-    yield text.replace("raw", "-raw", 1) if "=" not in text else text.replace("value", "-value", 1)
+    yield (
+        text.replace("raw", "-raw", 1)
+        if "=" not in text
+        else text.replace("value", "-value", 1)
+    )
     yield f"{text} + 1"
 
 
@@ -321,5 +413,12 @@ def _can_be(node: LayoutNode, scalar: Scalar, kind: str) -> bool:
 def _places(layout: Layout, orders: Orders) -> list[tuple[Piece, ...]]:
     """Return the bits of each number in the longest frame."""
     fields = frame_fields(layout, orders)
-    numbers = (field for field in fields if field.role in ("field", "overlay") and not field.scalar.is_bytes)
-    return [pieces_at(field.at, field.bits, field.byte_order, field.bit_order) for field in numbers]
+    numbers = (
+        field
+        for field in fields
+        if field.role in ("field", "overlay") and not field.scalar.is_bytes
+    )
+    return [
+        pieces_at(field.at, field.bits, field.byte_order, field.bit_order)
+        for field in numbers
+    ]

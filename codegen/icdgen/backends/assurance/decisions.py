@@ -22,8 +22,12 @@ _OF_ERRATA = (
     "Errata are decisions about errors of the manual: the printed value, the value that replaces it, the reason, and the "
     "confidence. Notes change no value. Each names the place of the decision and the affected lines of the ICD.",
 )
-_OF_ASSUMPTIONS = ("Facts that the manual omits and the code needs, each with its reason and the line of the ICD.",)
-_OF_MISSING = ("Messages that the manual mentions and does not describe. No code is generated for them.",)
+_OF_ASSUMPTIONS = (
+    "Facts that the manual omits and the code needs, each with its reason and the line of the ICD.",
+)
+_OF_MISSING = (
+    "Messages that the manual mentions and does not describe. No code is generated for them.",
+)
 
 
 def papers(
@@ -33,25 +37,66 @@ def papers(
     errata_rows = list(errata(icd, elements, files))
     if errata_rows:
         groups = [
-            Group([_folded(row) for row in errata_rows if row[2] == node.name], node.title)
+            Group(
+                [_folded(row) for row in errata_rows if row[2] == node.name], node.title
+            )
             for node in icd.nodes
             if node.errata
         ]
-        columns = ("Id", "Kind", "What", "Confidence", "Tables", "Decided in", "Touches", "Printed", "Held", "Evidence")
-        yield Page("errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)), errata_rows, ERRATA
+        columns = (
+            "Id",
+            "Kind",
+            "What",
+            "Confidence",
+            "Tables",
+            "Decided in",
+            "Touches",
+            "Printed",
+            "Held",
+            "Evidence",
+        )
+        yield Page(
+            "errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)
+        ), errata_rows, ERRATA
     tables = (
-        ("assumptions", "Assumptions", _OF_ASSUMPTIONS, ASSUMPTIONS, list(assumptions(icd, files))),
+        (
+            "assumptions",
+            "Assumptions",
+            _OF_ASSUMPTIONS,
+            ASSUMPTIONS,
+            list(assumptions(icd, files)),
+        ),
         ("missing", "Not described", _OF_MISSING, MISSING, list(missing(icd))),
     )
     for name, title, says, keys, rows in tables:
         if rows:  # page and table have the same columns
             shown = tuple(map(str.capitalize, keys))
-            yield Page(f"{name}.html", title, says, shown, [Group([*rows])], data=(f"{name}.csv",)), rows, keys
+            yield Page(
+                f"{name}.html",
+                title,
+                says,
+                shown,
+                [Group([*rows])],
+                data=(f"{name}.csv",),
+            ), rows, keys
 
 
 def _folded(row: list[Cell]) -> list[Cell]:
     """Return a row of the page, with the reason below the title."""
-    id, kind, _, title, confidence, tables, decided, touches, printed, corrected, why, evidence = row
+    (
+        id,
+        kind,
+        _,
+        title,
+        confidence,
+        tables,
+        decided,
+        touches,
+        printed,
+        corrected,
+        why,
+        evidence,
+    ) = row
     return [
         id,
         kind,
@@ -77,7 +122,10 @@ def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list
             for erratum in row.errata:
                 touched.setdefault(id(erratum), []).append(files.line(row.source.place))
         for erratum in node.errata:
-            lines = [*touched.get(id(erratum), ()), *(files.line(place.place) for place in _sections(node, erratum))]
+            lines = [
+                *touched.get(id(erratum), ()),
+                *(files.line(place.place) for place in _sections(node, erratum)),
+            ]
             yield [
                 erratum.id, erratum.label, node.name, erratum.title, erratum.confidence, [f"{table}" for table in erratum.tables],
                 files.line(erratum.source.place), list(dict.fromkeys(lines)), _pairs(erratum.printed), _pairs(erratum.held),
@@ -92,7 +140,14 @@ def assumptions(icd: Icd, files: Files) -> Iterator[list[Cell]]:
             for key, why in owner["assumptions"].items():
                 value = owner.get(key)
                 shown = "" if isinstance(value, dict | list) else _shown(value)
-                yield [node.name, path, key, shown, files.line(owner["assumptions"].key_at(key)), str(why)]
+                yield [
+                    node.name,
+                    path,
+                    key,
+                    shown,
+                    files.line(owner["assumptions"].key_at(key)),
+                    str(why),
+                ]
 
 
 def missing(icd: Icd) -> Iterator[list[Cell]]:
@@ -129,4 +184,8 @@ def _pairs(pairs: tuple[tuple[str, object], ...]) -> list[str]:
 
 
 def _shown(value: object) -> str:
-    return "(absent)" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+    return (
+        "(absent)"
+        if value is None
+        else str(value).lower() if isinstance(value, bool) else str(value)
+    )

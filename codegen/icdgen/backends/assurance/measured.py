@@ -46,12 +46,17 @@ def icd_digest(icd: Icd) -> str:
     """Return the digest of a set of ICDs, computed from the digests of its nodes,
     errata included.
     """
-    return sha256("".join(f"{node.name} {node.digest}\n" for node in icd.nodes).encode()).hexdigest()
+    return sha256(
+        "".join(f"{node.name} {node.digest}\n" for node in icd.nodes).encode()
+    ).hexdigest()
 
 
 def code_digest(files: Iterable[tuple[PurePosixPath, str | bytes]]) -> str:
     """Return the digest of generated files, computed from their names and contents."""
-    contents = ((path, content.encode() if isinstance(content, str) else content) for path, content in files)
+    contents = (
+        (path, content.encode() if isinstance(content, str) else content)
+        for path, content in files
+    )
     # Sorted, so that the digest does not depend on the order of generation.
     lines = sorted(f"{path} {sha256(data).hexdigest()}\n" for path, data in contents)
     return sha256("".join(lines).encode()).hexdigest()
@@ -65,7 +70,11 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
     or code.
     """
     try:
-        paths = sorted(path for path in folder.iterdir() if path.suffix == ".json" and not path.name.startswith("."))
+        paths = sorted(
+            path
+            for path in folder.iterdir()
+            if path.suffix == ".json" and not path.name.startswith(".")
+        )
     except OSError as error:
         text = f"{folder}: cannot be read: {error.strerror}"
         raise UserError(text, "--measured names a folder of measurements") from None
@@ -80,14 +89,25 @@ def read(folder: Path, icd: Icd, code_of: Callable[[str], str]) -> list[Measurem
         )
         for what, measured_digest, current_digest in chain([ours], code):
             if measured_digest != current_digest:
-                text = (
-                    f"{path}: it measures other {what} is {measured_digest[:16]} there and {current_digest[:16]} here"
-                )
+                text = f"{path}: it measures other {what} is {measured_digest[:16]} there and {current_digest[:16]} here"
                 raise UserError(text, _AGAIN)
         rows = [[str(cell) for cell in row] for row in data["rows"]]
         facts = tuple((str(key), str(value)) for key, value in data["facts"])
-        says, made_by, columns = (tuple(map(str, data[key])) for key in ("says", "made_by", "columns"))
-        measurements.append(Measurement(data["name"], data["title"], says, data["code"], made_by, facts, columns, rows))
+        says, made_by, columns = (
+            tuple(map(str, data[key])) for key in ("says", "made_by", "columns")
+        )
+        measurements.append(
+            Measurement(
+                data["name"],
+                data["title"],
+                says,
+                data["code"],
+                made_by,
+                facts,
+                columns,
+                rows,
+            )
+        )
     return sorted(measurements, key=lambda measurement: measurement.name)
 
 
@@ -110,7 +130,11 @@ def _data(path: Path) -> dict[str, Any]:
         raise UserError(f"{path}: `facts` is missing or not of its kind", _AGAIN)
     width = len(data["columns"])
     if any(type(row) is not list or len(row) != width for row in data["rows"]):
-        raise UserError(f"{path}: a row has not as many cells as there are columns", _AGAIN)
+        raise UserError(
+            f"{path}: a row has not as many cells as there are columns", _AGAIN
+        )
     if not data["name"].replace("-", "").isalnum() or not data["name"].isascii():
-        raise UserError(f"{path}: `name` is no name for a file", "letters, digits and `-`")
+        raise UserError(
+            f"{path}: `name` is no name for a file", "letters, digits and `-`"
+        )
     return data

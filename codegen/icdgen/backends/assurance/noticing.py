@@ -44,8 +44,15 @@ class LongRow(NamedTuple):
 class MessageWatch:
     """Golden vectors of a message that ``node`` declares, with detection of changes."""
 
-    def __init__(self, node: Node, vectors: MessageVectors, lines: MessageLines) -> None:
-        self.node, self.message, self.vectors, self.lines = node, vectors.message, vectors, lines
+    def __init__(
+        self, node: Node, vectors: MessageVectors, lines: MessageLines
+    ) -> None:
+        self.node, self.message, self.vectors, self.lines = (
+            node,
+            vectors.message,
+            vectors,
+            lines,
+        )
 
     def layout(self, now: Message) -> list[int]:
         """Return the lines that detect another layout of the message."""
@@ -53,14 +60,26 @@ class MessageWatch:
         if [old.name for old in olds] != [new.name for new in news]:
             return self.places(now, self.node)
         pairs = enumerate(zip(olds, news, strict=True))
-        changed = [(index, old, new) for index, (old, new) in pairs if _content(old) != _content(new)]
+        changed = [
+            (index, old, new)
+            for index, (old, new) in pairs
+            if _content(old) != _content(new)
+        ]
         # With several moved fields, decode the whole message; otherwise one field at a
         # time, which is faster.
-        if len(changed) > 1 and any(_place(old) != _place(new) for _, old, new in changed):
+        if len(changed) > 1 and any(
+            _place(old) != _place(new) for _, old, new in changed
+        ):
             # A field can take bits that another one leaves.
-            lines = [self.lines.fields[old.name] for _, old, new in changed if self._line_notices(old, new)]
+            lines = [
+                self.lines.fields[old.name]
+                for _, old, new in changed
+                if self._line_notices(old, new)
+            ]
             return lines + self.places(now, self.node)
-        return [line for index, _, new in changed for line in self.field(index, new, now)]
+        return [
+            line for index, _, new in changed for line in self.field(index, new, now)
+        ]
 
     def field(self, index: int, now: NodePlace, message: Message) -> list[int]:
         """Return the lines that detect another field at an index of the message.
@@ -72,15 +91,21 @@ class MessageWatch:
         if now.derived is not None:
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
             return [
-                line for line, row in pairs if codec.derived(message, row.raw).get(now.name) != row.raw.get(now.name)
+                line
+                for line, row in pairs
+                if codec.derived(message, row.raw).get(now.name)
+                != row.raw.get(now.name)
             ]
         lines = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
         # The reduced message must contain the fields on which the presence depends.
         needed = {condition.field for condition in (*old.conditions, *now.conditions)}
         reduced_message = self._message_of(
-            now, *(place for place in scalars_in(message.layout) if place.name in needed)
+            now,
+            *(place for place in scalars_in(message.layout) if place.name in needed),
         )
-        rows = zip(self.lines.rows, self._long_rows, self._of_others[index], strict=True)
+        rows = zip(
+            self.lines.rows, self._long_rows, self._of_others[index], strict=True
+        )
         return lines + [
             number
             for number, row, other_bits in rows
@@ -90,26 +115,45 @@ class MessageWatch:
     def enum(self, old: Enum, new: Enum) -> list[int]:
         """Return the lines that detect a changed enumeration."""
         layout = with_enum(self.message.layout, old, new)
-        return [] if layout is self.message.layout else self.layout(replace(self.message, layout=layout))
+        return (
+            []
+            if layout is self.message.layout
+            else self.layout(replace(self.message, layout=layout))
+        )
 
     def places(self, now: Message, node: Node) -> list[int]:
         """Return the lines that detect other positions of bits, by the layout of the
         message or the orders of its node.
         """
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
-        return [number for number, row in pairs if _answer(node, now, row.frame) != (row.raw, row.encoded)]
+        return [
+            number
+            for number, row in pairs
+            if _answer(node, now, row.frame) != (row.raw, row.encoded)
+        ]
 
     def _message_of(self, *fields: NodePlace) -> Message:
         """Return the message in its longest form, reduced to the given fields."""
         fixed: list[FixedNode] = []
         for field in fields:
             scalar = replace(
-                field.scalar, name=field.name, at=field.at, bits=field.bits, length=None, orders=field.declared_orders
+                field.scalar,
+                name=field.name,
+                at=field.at,
+                bits=field.bits,
+                length=None,
+                orders=field.declared_orders,
             )
             fixed.append(overlay_of(scalar) if field.is_read_only else scalar)
         layout = self.message.layout
         return replace(
-            self.message, layout=Layout(layout.name, layout.longest, tuple(fixed), may_end_early=layout.may_end_early)
+            self.message,
+            layout=Layout(
+                layout.name,
+                layout.longest,
+                tuple(fixed),
+                may_end_early=layout.may_end_early,
+            ),
         )
 
     def id(self, key: str) -> list[int]:
@@ -125,7 +169,9 @@ class MessageWatch:
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
     def _line_notices(self, old: NodePlace, now: NodePlace) -> bool:
-        if self._is_in_new_message(old) and _shown(old, old.initial_value) != _shown(now, now.initial_value):
+        if self._is_in_new_message(old) and _shown(old, old.initial_value) != _shown(
+            now, now.initial_value
+        ):
             return True
         if [special.value for special in old.special] != [
             special.value for special in now.special
@@ -133,16 +179,29 @@ class MessageWatch:
             return True
         unfit = self.vectors.unfit.get(old.name, ())
         if any(part.counter == old.name for part in self.message.layout.counted_parts):
-            unfit = [value for value in unfit if not old.raw_min <= value <= old.raw_max]
-        if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
+            unfit = [
+                value for value in unfit if not old.raw_min <= value <= old.raw_max
+            ]
+        if any(
+            _attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit
+        ):
             return True
         assignments = self.vectors.settings.get(old.name, [])
         if not assignments or old.type == "text":
-            return any(_attempt(codec.raw_from_text, now, text) != _expected(raw) for text, raw in assignments)
+            return any(
+                _attempt(codec.raw_from_text, now, text) != _expected(raw)
+                for text, raw in assignments
+            )
         if not (now.has_formula and now.is_invertible):
             return True
-        attempts = [*assignments, *((bits, None) for bits in NEVER if old.type != "float")]
-        return any(_attempt(codec.raw_from_physical, now, float_of(bits)) != _expected(raw) for bits, raw in attempts)
+        attempts = [
+            *assignments,
+            *((bits, None) for bits in NEVER if old.type != "float"),
+        ]
+        return any(
+            _attempt(codec.raw_from_physical, now, float_of(bits)) != _expected(raw)
+            for bits, raw in attempts
+        )
 
     def _is_in_new_message(self, field: NodePlace) -> bool:
         """Return whether a new message contains a field: its variable-length arrays are
@@ -183,7 +242,11 @@ class MessageWatch:
         """
         layout = self.message.layout
         for gap in layout.gaps(codec.sizes_of_values(self.message, raw)):
-            frame = frame[: gap.begin].ljust(gap.begin, b"\0") + bytes(gap.length) + frame[gap.begin :]
+            frame = (
+                frame[: gap.begin].ljust(gap.begin, b"\0")
+                + bytes(gap.length)
+                + frame[gap.begin :]
+            )
         return frame.ljust(layout.longest, b"\0")
 
     @cached_property
@@ -194,10 +257,17 @@ class MessageWatch:
             if field.is_read_only or field.is_count:
                 columns.append([0] * len(self.vectors.rows))
                 continue
-            reduced_message = self._message_of(replace(field, scalar=replace(field.scalar, present_if=())))
+            reduced_message = self._message_of(
+                replace(field, scalar=replace(field.scalar, present_if=()))
+            )
             raws = (row.raw.get(field.name) for row in self.vectors.rows)
             frames = (
-                b"" if raw is None else codec.encode(self.node, reduced_message, {field.name: raw}) for raw in raws
+                (
+                    b""
+                    if raw is None
+                    else codec.encode(self.node, reduced_message, {field.name: raw})
+                )
+                for raw in raws
             )
             columns.append([_number(frame) for frame in frames])
         by_row = []
@@ -210,7 +280,12 @@ class MessageWatch:
 
 
 def _notices(
-    long: LongRow, old: NodePlace, now: NodePlace, node: Node, reduced_message: Message, other_bits: int
+    long: LongRow,
+    old: NodePlace,
+    now: NodePlace,
+    node: Node,
+    reduced_message: Message,
+    other_bits: int,
 ) -> bool:
     """Return whether a row of the vectors fails with another field.
 
@@ -225,14 +300,24 @@ def _notices(
     if raw is None or read is None:
         return raw is not read
     # An overlay must have the value in the encoded frame too.
-    if now.is_read_only and codec.decode(node, reduced_message, long.encoded)[now.name] != raw:
+    if (
+        now.is_read_only
+        and codec.decode(node, reduced_message, long.encoded)[now.name] != raw
+    ):
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
-    if now.type == "text" or now.type != old.type or _formula(now) != _formula(old) or now.bits != old.bits:
+    if (
+        now.type == "text"
+        or now.type != old.type
+        or _formula(now) != _formula(old)
+        or now.bits != old.bits
+    ):
         if _physical(now, read) != _physical(old, raw):
             return True
-        if old.is_invertible and (not now.is_invertible or _set_back(now, read) != _set_back(old, raw)):
+        if old.is_invertible and (
+            not now.is_invertible or _set_back(now, read) != _set_back(old, raw)
+        ):
             return True  # a non-invertible calibration has no setter
     return (_number(frame) | other_bits) & long.sent != _number(long.encoded)
 

@@ -26,24 +26,45 @@ _HOME = (
 )
 
 
-def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[PurePosixPath, str]]:
+def files(
+    icd: Icd, render: Renderer, folder: Path | None
+) -> Iterator[tuple[PurePosixPath, str]]:
     """Yield path and text of each file.
 
     ``folder``: folder of measurements. Raises `UserError` for a measurement of other
     ICDs or code.
     """
-    measurements = measured.read(folder, icd, lambda language: code_now(icd, language)) if folder is not None else []
+    measurements = (
+        measured.read(folder, icd, lambda language: code_now(icd, language))
+        if folder is not None
+        else []
+    )
     digests = tuple((f"{node.title} ({node.name})", node.digest) for node in icd.nodes)
-    of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
-    read = Files(file for file in (*(node.file for node in icd.nodes), *of_errata) if file)
+    of_errata = (
+        erratum.source.place.file for node in icd.nodes for erratum in node.errata
+    )
+    read = Files(
+        file for file in (*(node.file for node in icd.nodes), *of_errata) if file
+    )
     # The traceability computes thousands of mutations, so it runs once for all reports.
     traced, tracing = Trace(icd), Tracing(read, Symbols(icd))
     elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
     # The tables cover all nodes; each page covers one.
-    every = [element for elements_of_node in elements.values() for element in elements_of_node]
-    foot = {"version": __version__, "digest": measured.icd_digest(icd), "lines_of": lines_of}
+    every = [
+        element
+        for elements_of_node in elements.values()
+        for element in elements_of_node
+    ]
+    foot = {
+        "version": __version__,
+        "digest": measured.icd_digest(icd),
+        "lines_of": lines_of,
+    }
 
-    pages = [tracing.page(node, elements[node.name], (("Digest of the ICD", node.digest),)) for node in icd.nodes]
+    pages = [
+        tracing.page(node, elements[node.name], (("Digest of the ICD", node.digest),))
+        for node in icd.nodes
+    ]
     tables = {
         "trace.csv": csv_text(tracing.columns, tracing.rows(every)),
         "changes.csv": csv_text(CHANGES, tracing.changes(every)),
@@ -53,10 +74,22 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
         tables[page.data[0]] = csv_text(columns, rows)
     for measurement in measurements:
         pages.append(_page_of_measurement(measurement))
-        tables[f"{measurement.name}.csv"] = csv_text(measurement.columns, measurement.rows)
+        tables[f"{measurement.name}.csv"] = csv_text(
+            measurement.columns, measurement.rows
+        )
 
-    home = Page("index.html", "Assurance pack", _HOME, _COLUMNS, [Group(_counts(icd, elements))], digests, ())
-    yield PurePosixPath(home.file), render("index.html.j2", page=home, papers=pages, tables=list(tables), **foot)
+    home = Page(
+        "index.html",
+        "Assurance pack",
+        _HOME,
+        _COLUMNS,
+        [Group(_counts(icd, elements))],
+        digests,
+        (),
+    )
+    yield PurePosixPath(home.file), render(
+        "index.html.j2", page=home, papers=pages, tables=list(tables), **foot
+    )
     for page in pages:
         yield PurePosixPath(page.file), render("paper.html.j2", page=page, **foot)
     for name, text in tables.items():
@@ -64,7 +97,15 @@ def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[Pur
     yield PurePosixPath("style.css"), render("style.css")
 
 
-_COLUMNS = ("Node", "Messages", "Fields", "Enumerations", "Members", "Changes tried", "Unnoticed by the vectors")
+_COLUMNS = (
+    "Node",
+    "Messages",
+    "Fields",
+    "Enumerations",
+    "Members",
+    "Changes tried",
+    "Unnoticed by the vectors",
+)
 
 
 def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]]:
@@ -72,19 +113,36 @@ def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]
     rows: list[tuple[str, list[int]]] = []
     for node in icd.nodes:
         kinds = [element.kind for element in elements[node.name]]
-        tried = [traced for element in elements[node.name] for traced in element.changes]
-        numbers = [kinds.count(kind) for kind in ("message", "field", "enumeration", "member")]
-        rows.append((node.title, [*numbers, len(tried), sum(not change.noticed for change in tried)]))
+        tried = [
+            traced for element in elements[node.name] for traced in element.changes
+        ]
+        numbers = [
+            kinds.count(kind) for kind in ("message", "field", "enumeration", "member")
+        ]
+        rows.append(
+            (
+                node.title,
+                [*numbers, len(tried), sum(not change.noticed for change in tried)],
+            )
+        )
     # The last row is the total of all nodes.
-    total = [sum(column) for column in zip(*(numbers for _, numbers in rows), strict=True)]
-    return [[name, *(f"{number:,}" for number in numbers)] for name, numbers in (*rows, ("All", total))]
+    total = [
+        sum(column) for column in zip(*(numbers for _, numbers in rows), strict=True)
+    ]
+    return [
+        [name, *(f"{number:,}" for number in numbers)]
+        for name, numbers in (*rows, ("All", total))
+    ]
 
 
 def _page_of_measurement(measurement: Measurement) -> Page:
     facts = (
         *measurement.facts,
         *(("Measured with", tool) for tool in measurement.made_by),
-        *((f"Digest of the generated {title(language)}", digest) for language, digest in measurement.code.items()),
+        *(
+            (f"Digest of the generated {title(language)}", digest)
+            for language, digest in measurement.code.items()
+        ),
     )
     rows: list[Sequence[Cell]] = list(measurement.rows)
     return Page(

@@ -69,7 +69,11 @@ class Files:
         self._top = os.path.commonpath(folders) if folders else ""
 
     def name(self, file: str) -> str:
-        return os.path.relpath(os.path.abspath(file), self._top).replace(os.sep, "/") if file else ""
+        return (
+            os.path.relpath(os.path.abspath(file), self._top).replace(os.sep, "/")
+            if file
+            else ""
+        )
 
     def line(self, place: Place) -> str:
         """Return the place as ``errata/demo.yaml:12``; empty without a file."""

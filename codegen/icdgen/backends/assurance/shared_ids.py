@@ -15,15 +15,23 @@ from icdgen.vectors.shared import SharedRow, ids
 class SharedIds:
     """Frames of shared ids of all nodes. Each is a vector with a line number."""
 
-    def __init__(self, icd: Icd, vectors: dict[str, NodeVectors], lines: dict[str, NodeLines]) -> None:
+    def __init__(
+        self, icd: Icd, vectors: dict[str, NodeVectors], lines: dict[str, NodeLines]
+    ) -> None:
         self._icd = icd
         self._rows: dict[str, list[tuple[int, SharedRow, list[Message]]]] = {}
         for node in icd.nodes:
             rows, numbers = vectors[node.name].shared, lines[node.name].shared
-            by_direction = {direction: ids(icd, node, direction) for direction in {row.direction for row in rows}}
+            by_direction = {
+                direction: ids(icd, node, direction)
+                for direction in {row.direction for row in rows}
+            }
             # The messages of an id are needed again for each change, so they are looked
             # up once.
-            shared_rows = [(n, row, by_direction[row.direction][row.id]) for n, row in zip(numbers, rows, strict=True)]
+            shared_rows = [
+                (n, row, by_direction[row.direction][row.id])
+                for n, row in zip(numbers, rows, strict=True)
+            ]
             if shared_rows:
                 self._rows[node.name] = shared_rows
 
@@ -40,17 +48,26 @@ class SharedIds:
         nodes = tuple(now if other is node else other for other in self._icd.nodes)
         icd = replace(self._icd, nodes=nodes)
         return self._noticing(
-            icd, lambda message: message, lambda messages: any(message.node == node.name for message in messages)
+            icd,
+            lambda message: message,
+            lambda messages: any(message.node == node.name for message in messages),
         )
 
     def _noticing(
-        self, icd: Icd, now: Callable[[Message], Message], concerns: Callable[[Sequence[Message]], bool]
+        self,
+        icd: Icd,
+        now: Callable[[Message], Message],
+        concerns: Callable[[Sequence[Message]], bool],
     ) -> dict[str, list[int]]:
         noticed: dict[str, list[int]] = {}
         for name, rows in self._rows.items():
             for number, row, messages in rows:
                 expected = row.message if row.expected is None else row.expected
-                if concerns(messages) and _answer(icd, row, [now(message) for message in messages]) != expected:
+                if (
+                    concerns(messages)
+                    and _answer(icd, row, [now(message) for message in messages])
+                    != expected
+                ):
                     noticed.setdefault(name, []).append(number)
         return noticed
 
@@ -61,12 +78,22 @@ def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
 
     An empty tuple stands for any other response.
     """
-    candidates = [message for message in messages if getattr(message, f"{row.direction}_id") == row.id]
+    candidates = [
+        message
+        for message in messages
+        if getattr(message, f"{row.direction}_id") == row.id
+    ]
     # The id identifies the message: the dispatcher decodes all frames
     if len(candidates) == 1:
-        return () if len(row.frame) in candidates[0].layout.lengths else candidates[0].layout.longest
+        return (
+            ()
+            if len(row.frame) in candidates[0].layout.lengths
+            else candidates[0].layout.longest
+        )
     try:
-        message = codec.message_of_frame(icd, candidates, row.frame) if candidates else None
+        message = (
+            codec.message_of_frame(icd, candidates, row.frame) if candidates else None
+        )
     except codec.LengthError as error:
         return error.expected
     except (ValueError, OverflowError):

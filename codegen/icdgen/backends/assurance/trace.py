@@ -95,7 +95,9 @@ class Trace:
             node_lines = self._lines[node.name] = lines(vectors, text(vectors))
             for message_vectors in vectors.messages:
                 name = message_vectors.message.name
-                self._watches[node.name, name] = MessageWatch(node, message_vectors, node_lines.messages[name])
+                self._watches[node.name, name] = MessageWatch(
+                    node, message_vectors, node_lines.messages[name]
+                )
         self._shared = SharedIds(icd, self._vectors, self._lines)
 
     def elements(self, node: Node) -> Iterator[Element]:
@@ -108,18 +110,43 @@ class Trace:
             yield Element("enumeration", node, None, enum, None, ())
             for row, member in enumerate(enum.members, 1):
                 # Changes of an enumeration are computed for all members at once.
-                own = tuple(change for change in traced if change.change.source is member.source)
+                own = tuple(
+                    change for change in traced if change.change.source is member.source
+                )
                 yield Element("member", node, enum, member, row, own)
         for struct in node.structs:
             yield Element("struct", node, None, struct, None, ())
             for row, line in enumerate(struct.layout.nodes, 1):
-                yield Element("field", node, struct, line, row, tuple(self._of_struct(struct, line, node)))
+                yield Element(
+                    "field",
+                    node,
+                    struct,
+                    line,
+                    row,
+                    tuple(self._of_struct(struct, line, node)),
+                )
         for message in node.messages:
-            yield Element("message", node, None, message, None, tuple(self._of_message(message, node)))
+            yield Element(
+                "message",
+                node,
+                None,
+                message,
+                None,
+                tuple(self._of_message(message, node)),
+            )
             for row, line in enumerate(message.layout.nodes, 1):
-                yield Element("field", node, message, line, row, tuple(self._of_line(message, line, node)))
+                yield Element(
+                    "field",
+                    node,
+                    message,
+                    line,
+                    row,
+                    tuple(self._of_line(message, line, node)),
+                )
 
-    def _of_line(self, message: Message, line: LayoutNode, node: Node) -> Iterator[Traced]:
+    def _of_line(
+        self, message: Message, line: LayoutNode, node: Node
+    ) -> Iterator[Traced]:
         """Yield the changes of a line of a message."""
         watch = self._watches[node.name, message.name]
         for change, new in changes.of_line(line, message.layout, node.orders):
@@ -127,7 +154,9 @@ class Trace:
             shared = self._shared.of_message(message, now)
             yield Traced(change, merged([_noticed(node, watch.layout(now)), shared]))
 
-    def _of_struct(self, struct: Struct, line: LayoutNode, node: Node) -> Iterator[Traced]:
+    def _of_struct(
+        self, struct: Struct, line: LayoutNode, node: Node
+    ) -> Iterator[Traced]:
         """Yield the changes of a line of a struct, with the vectors of all messages
         that use the struct.
         """
@@ -135,38 +164,64 @@ class Trace:
             changed = with_node(struct.layout, line, new)
             results: list[Noticed] = []
             for watch in self._watches.values():
-                layout = with_struct_layout(watch.message.layout, struct.layout, changed)
+                layout = with_struct_layout(
+                    watch.message.layout, struct.layout, changed
+                )
                 # The layout object is unchanged if the message does not use the struct.
                 if layout is not watch.message.layout:
                     now = replace(watch.message, layout=layout)
-                    results += (_noticed(watch.node, watch.layout(now)), self._shared.of_message(watch.message, now))
+                    results += (
+                        _noticed(watch.node, watch.layout(now)),
+                        self._shared.of_message(watch.message, now),
+                    )
             yield Traced(change, merged(results))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):
             if change.kind == "node":
-                yield Traced(change, _noticed(node, [self._lines[node.name].head[change.key]]))
+                yield Traced(
+                    change, _noticed(node, [self._lines[node.name].head[change.key]])
+                )
             else:
-                watches = (self._watches[node.name, message.name] for message in node.messages)
-                rows = [line for watch in watches for line in watch.places(watch.message, now)]
-                yield Traced(change, merged([_noticed(node, rows), self._shared.of_node(node, now)]))
+                watches = (
+                    self._watches[node.name, message.name] for message in node.messages
+                )
+                rows = [
+                    line
+                    for watch in watches
+                    for line in watch.places(watch.message, now)
+                ]
+                yield Traced(
+                    change,
+                    merged([_noticed(node, rows), self._shared.of_node(node, now)]),
+                )
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
             results = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
-            results += (_noticed(watch.node, watch.enum(enum, now)) for watch in self._watches.values())
+            results += (
+                _noticed(watch.node, watch.enum(enum, now))
+                for watch in self._watches.values()
+            )
             yield Traced(change, merged(results))
 
     def _of_message(self, message: Message, node: Node) -> Iterator[Traced]:
         watch = self._watches[node.name, message.name]
         for change, now in changes.of_message(message, node):
             if change.kind == "id":
-                noticed = merged([self._lines_of_ids(message, now), _noticed(node, watch.id(change.key))])
+                noticed = merged(
+                    [
+                        self._lines_of_ids(message, now),
+                        _noticed(node, watch.id(change.key)),
+                    ]
+                )
             elif change.kind == "length":
                 noticed = _noticed(node, watch.length())
             else:
                 noticed = _noticed(node, watch.places(now, node))
-            yield Traced(change, merged([noticed, self._shared.of_message(message, now)]))
+            yield Traced(
+                change, merged([noticed, self._shared.of_message(message, now)])
+            )
 
     def _lines_of_ids(self, message: Message, now: Message) -> Noticed:
         """Return the lines with lists of ids that detect a lost id, for each node that
@@ -178,9 +233,13 @@ class Trace:
             if all(message is not other for other in self.icd.messages_of(node)):
                 continue
             for direction, names_by_id in self._vectors[node.name].ids.items():
-                own_ids = {id for id, names in names_by_id.items() if message.name in names}
+                own_ids = {
+                    id for id, names in names_by_id.items() if message.name in names
+                }
                 if own_ids & (set(message.ids) - set(now.ids)):
-                    noticed.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
+                    noticed.setdefault(node.name, []).append(
+                        self._lines[node.name].ids[direction]
+                    )
         return noticed
 
 

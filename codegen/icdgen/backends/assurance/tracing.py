@@ -32,7 +32,19 @@ _SAYS = (
 TRACE = (
     "kind", "node", "part of", "name", "row", "table", "page", "file", "line", "says", "errata", "changes", "unnoticed", "vectors",
 )  # fmt: skip
-CHANGES = ("kind", "node", "part of", "name", "key", "file", "line", "column", "says", "changed to", "vectors")
+CHANGES = (
+    "kind",
+    "node",
+    "part of",
+    "name",
+    "key",
+    "file",
+    "line",
+    "column",
+    "says",
+    "changed to",
+    "vectors",
+)
 
 
 class Symbol(NamedTuple):
@@ -60,7 +72,9 @@ class Symbols:
             for identifier in backends.get(language).identifiers(icd):
                 # Names of the support layer have no line in the ICD.
                 if identifier.source is not None:
-                    by_source.setdefault(id(identifier.source), []).append(Symbol(identifier.scope, identifier.text))
+                    by_source.setdefault(id(identifier.source), []).append(
+                        Symbol(identifier.scope, identifier.text)
+                    )
 
     def of(self, language: str, source: Map) -> list[Symbol]:
         """Return the names of a line in a language, without duplicates, in the order of
@@ -101,7 +115,10 @@ class Tracing:
                 str(_unnoticed(element)),
                 vectors(element.noticed),
                 *(
-                    [str(name) for name in self.symbols.of(language, element.model.source)]
+                    [
+                        str(name)
+                        for name in self.symbols.of(language, element.model.source)
+                    ]
                     for language in self.symbols.languages
                 ),
             ]
@@ -128,20 +145,46 @@ class Tracing:
                     vectors(traced.noticed),
                 ]
 
-    def page(self, node: Node, elements: Sequence[Element], facts: tuple[tuple[str, str], ...]) -> Page:
+    def page(
+        self,
+        node: Node,
+        elements: Sequence[Element],
+        facts: tuple[tuple[str, str], ...],
+    ) -> Page:
         """Return the page of a node, grouped by message."""
         groups: list[Group] = []
         for element in elements:
             if element.owner is None:
                 rows: list[Sequence[Cell]] = []
-                heading = element.model.title if isinstance(element.model, Node) else element.name
+                heading = (
+                    element.model.title
+                    if isinstance(element.model, Node)
+                    else element.name
+                )
                 # Messages, enumerations and structs start a group; their parts follow.
                 groups.append(Group(rows, heading, _notes(element)))
             groups[-1].rows.append(self._shown(element))
         languages = (title(language) for language in self.symbols.languages)
-        columns = ("Row", "Name", "Says", "Line", *languages, "Changes", "Unnoticed", "Vectors")
+        columns = (
+            "Row",
+            "Name",
+            "Says",
+            "Line",
+            *languages,
+            "Changes",
+            "Unnoticed",
+            "Vectors",
+        )
         file = f"trace-{node.name}.html"
-        return Page(file, f"Trace: {node.title}", _SAYS, columns, groups, facts, ("trace.csv", "changes.csv"))
+        return Page(
+            file,
+            f"Trace: {node.title}",
+            _SAYS,
+            columns,
+            groups,
+            facts,
+            ("trace.csv", "changes.csv"),
+        )
 
     def _shown(self, element: Element) -> list[Cell]:
         errata = [f"{erratum.label} {erratum.id}" for erratum in element.errata]
@@ -157,7 +200,12 @@ class Tracing:
         ]
 
     def _names(self, language: str, element: Element) -> list[str]:
-        return list(dict.fromkeys(symbol.name for symbol in self.symbols.of(language, element.model.source)))
+        return list(
+            dict.fromkeys(
+                symbol.name
+                for symbol in self.symbols.of(language, element.model.source)
+            )
+        )
 
 
 def title(language: str) -> str:
@@ -167,7 +215,9 @@ def title(language: str) -> str:
 
 def printed_numbers(element: Element) -> str:
     """Return the printed values of the line, as in the ICD."""
-    return ", ".join(f"{key} {element.source[key]}" for key in _SHOWN if key in element.source)
+    return ", ".join(
+        f"{key} {element.source[key]}" for key in _SHOWN if key in element.source
+    )
 
 
 def _notes(element: Element) -> tuple[str, ...]:
@@ -200,4 +250,6 @@ def _ranges(numbers: Iterable[int]) -> str:
             runs[-1][1] = number
         else:
             runs.append([number, number])
-    return " ".join(f"{first}-{last}" if last > first else str(first) for first, last in runs)
+    return " ".join(
+        f"{first}-{last}" if last > first else str(first) for first, last in runs
+    )

@@ -19,7 +19,8 @@ from icdgen.describe.description import Composite
 class AccessorCode(NamedTuple):
     """Code of the getter and setter of a physical value.
 
-    Without a setter, for overlay fields and calibrations without an inverse, ``assignment`` is empty.
+    Without a setter, for overlay fields and calibrations without an inverse,
+    ``assignment`` is empty.
     """
 
     end: str  # end of the names
@@ -45,7 +46,11 @@ def integer_accessors(message: Composite[Any]) -> list[AccessorCode]:
 
 def of_kind(message: Composite[Any], kind: Kind) -> list[Accessor]:
     """Return the accessors of one kind."""
-    return [accessor for field in message.declared_members for accessor in accessors_of(field, kind)]
+    return [
+        accessor
+        for field in message.declared_members
+        for accessor in accessors_of(field, kind)
+    ]
 
 
 def _double(accessor: Accessor) -> AccessorCode:
@@ -74,7 +79,11 @@ def _integer(accessor: Accessor) -> AccessorCode:
         accessor.comment,
         accessor.title,
         physical.integer_value(integers, field.storage, _raw(field)),
-        f"{_member(field)} = {physical.integer_raw(integers, field.storage)};" if accessor.is_settable else "",
+        (
+            f"{_member(field)} = {physical.integer_raw(integers, field.storage)};"
+            if accessor.is_settable
+            else ""
+        ),
         either(refused) if refused else "",
         elements=field.count,
     )
@@ -82,13 +91,30 @@ def _integer(accessor: Accessor) -> AccessorCode:
 
 def _derived(field: FieldDescription) -> AccessorCode:
     computation = derived(field, taken=RESERVED | {"message"})
-    lines = [_constant(f"const double {name}", _as_double(operand)) for name, operand in computation.fields]
+    lines = [
+        _constant(f"const double {name}", _as_double(operand))
+        for name, operand in computation.fields
+    ]
     for name, operator, *operands in computation.statements:
-        left, right = (operand if isinstance(operand, str) else repr(operand) for operand in operands)
-        value = f"icdgen_power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
+        left, right = (
+            operand if isinstance(operand, str) else repr(operand)
+            for operand in operands
+        )
+        value = (
+            f"icdgen_power({left}, {right})"
+            if operator == "^"
+            else f"{left} {operator} {right}"
+        )
         lines.append(_constant(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
-    return AccessorCode(field.name, "double", about, "", f"icdgen_quiet({computation.result})", declared=tuple(lines))
+    return AccessorCode(
+        field.name,
+        "double",
+        about,
+        "",
+        f"icdgen_quiet({computation.result})",
+        declared=tuple(lines),
+    )
 
 
 def _constant(head: str, value: str) -> str:
@@ -97,28 +123,51 @@ def _constant(head: str, value: str) -> str:
 
 
 def _as_double(field: FieldDescription) -> str:
-    """Return the physical value of a field of ``message`` as a double; the raw value without a scale."""
+    """Return the physical value of a field of ``message`` as a double.
+
+    The raw value without a scale.
+    """
     if field.is_scaled:
         return f"{getter(field.message, field.physical_name)}(message)"
     raw = _raw(field)
-    return raw if field.model.type == "float" and field.model.bits == 64 else f"ICDGEN_CAST(double, {raw})"
+    return (
+        raw
+        if field.model.type == "float" and field.model.bits == 64
+        else f"ICDGEN_CAST(double, {raw})"
+    )
 
 
 _FROM_FRAME = "Read from the frame that the message makes: 0 if it makes none, as a raw value does not fit its field."
 
 
 def overlay(field: FieldDescription) -> dict[str, str]:
-    """Return the getter of an overlay field. Its ``statement`` reads ``value`` from ``buffer``."""
+    """Return the getter of an overlay field.
+
+    Its ``statement`` reads ``value`` from ``buffer``.
+    """
     about = field.comment._replace(
-        details=(*field.comment.details, _FROM_FRAME) if field.message.is_narrow else field.comment.details
+        details=(
+            (*field.comment.details, _FROM_FRAME)
+            if field.message.is_narrow
+            else field.comment.details
+        )
     )
     statement = decoding.number(field, "value")
-    return {"name": field.name, "type": type_of(field), "about": described(about), "statement": statement}
+    return {
+        "name": field.name,
+        "type": type_of(field),
+        "about": described(about),
+        "statement": statement,
+    }
 
 
 def _raw(field: FieldDescription) -> str:
     """Return the raw value of a field of ``message``."""
-    return f"{getter(field.message, field.name)}(message)" if field.model.is_read_only else _member(field)
+    return (
+        f"{getter(field.message, field.name)}(message)"
+        if field.model.is_read_only
+        else _member(field)
+    )
 
 
 def _member(field: FieldDescription) -> str:

@@ -15,7 +15,9 @@ BITS = "{bits}"
 
 
 class Read(NamedTuple):
-    """Expression that reads a field: terms to combine by ``|``, and the raw value over the result."""
+    """Expression that reads a field: terms to combine by ``|``, and the raw value over
+    the result.
+    """
 
     bits: int  # 32 or 64: width in which the terms are combined
     terms: tuple[str, ...]
@@ -28,24 +30,38 @@ class Read(NamedTuple):
 
 
 def read(field: FieldDescription, frame: str = "buffer") -> Read:
-    """Return the expression of the raw value, for a float its bits, over the bytes at ``frame``."""
+    """Return the expression of the raw value, for a float its bits, over the bytes at
+    ``frame``.
+    """
     bits = field.model.bits
     if field.is_word:
-        return Read(32, (_load(field, frame),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
+        return Read(
+            32,
+            (_load(field, frame),),
+            f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS,
+        )
     pieces = field.pieces
     if field.model.type == "bool":
-        return Read(32, (f"{_byte(pieces[0], frame)} & {mask(pieces[0].mask, 8)}",), f"({BITS}) != 0u")
+        return Read(
+            32,
+            (f"{_byte(pieces[0], frame)} & {mask(pieces[0].mask, 8)}",),
+            f"({BITS}) != 0u",
+        )
     wide = 64 if bits > 32 else 32
     if len(pieces) == 1:
-        return Read(wide, (_low_bits(pieces[0], frame),), _from_bits(field, wide, joined=False))
-    terms = tuple(_shifted(piece, wide, frame) for piece in sorted(pieces, key=lambda p: p.at))
+        return Read(
+            wide, (_low_bits(pieces[0], frame),), _from_bits(field, wide, joined=False)
+        )
+    terms = tuple(
+        _shifted(piece, wide, frame) for piece in sorted(pieces, key=lambda p: p.at)
+    )
     return Read(wide, terms, _from_bits(field, wide, joined=True))
 
 
 def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
     storage = field.storage
-    # Converting an unsigned value beyond INT_MAX to a signed type is implementation-defined (C99, 6.3.1.3), so functions of
-    # the support header do it.
+    # Converting an unsigned value beyond INT_MAX to a signed type is
+    # implementation-defined (C99, 6.3.1.3), so functions of the support header do it.
     if not storage.signed:
         return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
     if not field.is_narrow:
@@ -57,7 +73,11 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
 
 def _load(field: FieldDescription, frame: str) -> str:
     byte, bits = field.model.at // 8, field.model.bits
-    return f"{frame}[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{field.order}(&{frame}[{byte}])"
+    return (
+        f"{frame}[{byte}]"
+        if bits == 8
+        else f"icdgen_load_u{bits}{field.order}(&{frame}[{byte}])"
+    )
 
 
 def _byte(piece: Piece, frame: str) -> str:
@@ -67,7 +87,11 @@ def _byte(piece: Piece, frame: str) -> str:
 def _low_bits(piece: Piece, frame: str) -> str:
     """Return a run of bits, shifted down to bit 0."""
     if piece.shift == 0:
-        return _byte(piece, frame) if piece.is_byte else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
+        return (
+            _byte(piece, frame)
+            if piece.is_byte
+            else f"{_byte(piece, frame)} & {mask(piece.mask, 8)}"
+        )
     return f"({_byte(piece, frame)} >> {piece.shift}) & {mask(piece.low_mask, 8)}"
 
 
@@ -78,14 +102,20 @@ def _shifted(piece: Piece, wide: int, frame: str) -> str:
 
 
 def put(field: FieldDescription, piece: Piece) -> str:
-    """Return the term of a field for the byte of ``piece``, an `int`. The caller removes bits beyond the byte."""
+    """Return the term of a field for the byte of ``piece``, an `int`.
+
+    The caller removes bits beyond the byte.
+    """
     storage, value = field.storage, _raw(field)
     if piece.at:
         # `>>` of a negative value is implementation-defined (C99, 6.5.7).
-        value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
+        value = (
+            f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
+        )
     if storage.bits > 8 or storage.signed:
         value = cast(value, 8)
-    # Above the top bits of an unsigned value there are only zeros: encode has tested that it fits.
+    # Above the top bits of an unsigned value there are only zeros: encode has tested
+    # that it fits.
     top = piece.at + piece.bits == field.model.bits and not storage.signed
     if not top and not piece.reaches_top:
         value = f"{grouped(value)} & 0x{piece.low_mask:02X}"
@@ -105,23 +135,32 @@ def store(field: FieldDescription, frame: str = "buffer") -> str:
 def _raw(field: FieldDescription) -> str:
     """Return the raw value; for a float its bits."""
     member = f"message->{field.member}"
-    return f"icdgen_bits_f{field.model.bits}(&{member})" if field.model.type == "float" else member
+    return (
+        f"icdgen_bits_f{field.model.bits}(&{member})"
+        if field.model.type == "float"
+        else member
+    )
 
 
 def excess(field: FieldDescription, member: str) -> str:
-    """Return an expression that is 0 if and only if the raw value in ``member`` fits its field."""
+    """Return an expression that is 0 if and only if the raw value in ``member`` fits
+    its field.
+    """
     storage, place = field.storage, field.model
     wide = 64 if storage.bits == 64 else 32
     if storage.signed:
-        # The sum maps the valid values to 0 .. 2**bits - 1, so that one mask tests both ends.
+        # The sum maps the valid values to 0 .. 2**bits - 1, so that one mask tests both
+        # ends.
         beyond = ((1 << wide) - 1) ^ ((1 << place.bits) - 1)
-        excess_bits = (
-            f"({cast(f'message->{member}', wide)} + {mask(1 << (place.bits - 1), wide)}) & {mask(beyond, wide)}"
-        )
+        excess_bits = f"({cast(f'message->{member}', wide)} + {mask(1 << (place.bits - 1), wide)}) & {mask(beyond, wide)}"
     else:
         beyond = ((1 << storage.bits) - 1) ^ place.raw_max
         excess_bits = f"message->{member} & {mask(beyond, storage.bits)}"
-    return f"{has(field.message, field.name)}(message) ? ({excess_bits}) : 0u" if place.conditions else excess_bits
+    return (
+        f"{has(field.message, field.name)}(message) ? ({excess_bits}) : 0u"
+        if place.conditions
+        else excess_bits
+    )
 
 
 def excess_type(message: MessageDescription) -> str:

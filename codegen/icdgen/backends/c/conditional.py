@@ -1,4 +1,6 @@
-"""Optional fields: the function that returns whether a field is present, and the code that depends on it."""
+"""Optional fields: the function that returns whether a field is present, and the code
+that depends on it.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from icdgen.describe.description import Need
 
 
 def conditional(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for the template per optional field: the value if it is absent, and the code if it is present."""
+    """Return the values for the template per optional field: the value if it is absent,
+    and the code if it is present.
+    """
     return [
         {
             "name": has(message, field.name),
@@ -27,10 +31,14 @@ def conditional(message: MessageDescription) -> list[dict[str, object]]:
 
 
 def _absent(field: FieldDescription) -> str:
-    """Return the value of an absent field: its constant, so that the message is valid once the field is present; else 0."""
+    """Return the value of an absent field: its constant, so that the message is valid
+    once the field is present; else 0.
+    """
     if field.model.const is not None:
         return constants.only(field)
-    return {"bool": "false", "float": "0"}.get(field.model.type, "0" if field.storage.signed else "0u")
+    return {"bool": "false", "float": "0"}.get(
+        field.model.type, "0" if field.storage.signed else "0u"
+    )
 
 
 def _test(need: Need) -> str:
@@ -57,6 +65,8 @@ def _written(field: FieldDescription) -> list[str]:
     if field.is_word:
         return [bits.store(field)]
     return [
-        assigned_byte(f"buffer[{piece.byte}]", [f"buffer[{piece.byte}]", bits.put(field, piece)])
+        assigned_byte(
+            f"buffer[{piece.byte}]", [f"buffer[{piece.byte}]", bits.put(field, piece)]
+        )
         for piece in field.pieces
     ]

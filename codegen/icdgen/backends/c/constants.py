@@ -23,26 +23,47 @@ _MAX_ENUMERATOR = 32767
 
 def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:
     """Return the constants of the fields of a message, and their values."""
-    return [(constant, _value(constant, field)) for field in message.declared_members for constant in field.constants]
+    return [
+        (constant, _value(constant, field))
+        for field in message.declared_members
+        for constant in field.constants
+    ]
 
 
 def _value(constant: Constant, field: FieldDescription) -> str:
     if constant.number:
         return _float(constant, field.model.bits)
-    if isinstance(constant.value, int) and constant.key in ("const", "special") and not field.storage.signed:
+    if (
+        isinstance(constant.value, int)
+        and constant.key in ("const", "special")
+        and not field.storage.signed
+    ):
         return mask(constant.value, field.storage.bits)
-    if constant.is_raw and field.storage.signed and constant.value == -(1 << field.storage.bits - 1):
-        return f"INT{field.storage.bits}_MIN"  # `-9223372036854775808` is no literal: the operand of `-` is too large
+    if (
+        constant.is_raw
+        and field.storage.signed
+        and constant.value == -(1 << field.storage.bits - 1)
+    ):
+        # `-9223372036854775808` is no literal: the operand of `-` is too large
+        return f"INT{field.storage.bits}_MIN"
     text = exact_text(constant.value)
     if constant.is_raw and constant.value >= 1 << 63 and text.isdigit():
-        return f"UINT64_C({text})"  # compilers warn about plain literals that no signed type can store
+        # Compilers warn about plain literals that no signed type can store.
+        return f"UINT64_C({text})"
     if not constant.is_raw and text.lstrip("-").isdigit():
         text += ".0"  # a physical value is a double
-    return f"({text})" if constant.value < 0 and constant.key not in ("const", "special") else text
+    return (
+        f"({text})"
+        if constant.value < 0 and constant.key not in ("const", "special")
+        else text
+    )
 
 
 def _float(constant: Constant, bits: int) -> str:
-    """Return a special value of a float; NaN and infinity by their bits, as some targets have no names for them."""
+    """Return a special value of a float.
+
+    NaN and infinity by their bits, as some targets have no names for them.
+    """
     assert isinstance(constant.value, int)
     if constant.number in floats.NAMED:
         return f"icd_f{bits}_of({mask(constant.value, bits)})"
@@ -57,8 +78,12 @@ def only(field: FieldDescription) -> str:
 
 
 def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
-    """Return whether values of an enumeration must be macros because an `int` may be too small, and the function for literals."""
-    are_macros = any(abs(member.model.value) > _MAX_ENUMERATOR for member in enum.members)
+    """Return whether values of an enumeration must be macros because an `int` may be
+    too small, and the function for literals.
+    """
+    are_macros = any(
+        abs(member.model.value) > _MAX_ENUMERATOR for member in enum.members
+    )
     if enum.storage.signed:
         return are_macros, partial(_signed, bits=enum.storage.bits if are_macros else 0)
     form = "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
@@ -68,12 +93,19 @@ def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
 def within(enum: EnumDescription, member: Member) -> str:
     """Return the test whether ``value`` is between the ends of a range."""
     bits, signed = enum.storage
-    form = partial(_signed, bits=bits) if signed else ("UINT64_C(%d)" if bits == 64 else "%du").__mod__
+    form = (
+        partial(_signed, bits=bits)
+        if signed
+        else ("UINT64_C(%d)" if bits == 64 else "%du").__mod__
+    )
     return f"value > {form(member.value)} && value < {form(member.last)}"
 
 
 def _signed(value: int, bits: int) -> str:
-    """Return the literal of a signed integer of ``bits`` bits; of an `int` if ``bits`` is 0."""
+    """Return the literal of a signed integer of ``bits`` bits.
+
+    Of an `int` if ``bits`` is 0.
+    """
     if bits and value == -(1 << bits - 1):
         return f"INT{bits}_MIN"
     text = f"INT64_C({value})" if bits == 64 else str(value)
@@ -94,9 +126,13 @@ def table(composite: Composite[Any]) -> Fields:
         model, bounds = field.model, field.bounds
         limits = f"&limits[{len(table.limits)}]" if bounds else "NULL"
         unit = literal(model.unit_symbol)
-        inside = "NULL" if field.struct is None else C_NAMES.symbol(field.struct, "fields")
+        inside = (
+            "NULL" if field.struct is None else C_NAMES.symbol(field.struct, "fields")
+        )
         place = f"{model.at}u, {model.bits}u, {field.count or 1}u"
-        table.rows.append(f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}")
+        table.rows.append(
+            f"{{{literal(model.name)}, {unit}, {place}, {limits}, {len(bounds)}u, {inside}}}"
+        )
         for bound in bounds:
             table.limits.append(f"{{ICD_LIMIT_{bound.key.upper()}, {bound.double!r}}}")
     return table

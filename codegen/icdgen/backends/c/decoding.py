@@ -42,9 +42,14 @@ Groups = list[Group | Structs]
 
 
 def elements_of_iteration(group: LoopElements) -> tuple[FieldDescription, ...]:
-    """Return the elements of an iteration, the first of which is ``element`` in the array."""
+    """Return the elements of an iteration, the first of which is ``element`` in the
+    array.
+    """
     name = group.array.member
-    return group.loop.members(group.first, lambda element: f"{name}[element{f' + {element}u' if element else ''}]")
+    return group.loop.members(
+        group.first,
+        lambda element: f"{name}[element{f' + {element}u' if element else ''}]",
+    )
 
 
 def macro_of(group: Flags | Row) -> str:
@@ -58,10 +63,15 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """Return a statement per field or group, in the order of the groups."""
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    lines = [_field(item) if isinstance(item, FieldDescription) else _group(item, message) for item in groups]
+    lines = [
+        _field(item) if isinstance(item, FieldDescription) else _group(item, message)
+        for item in groups
+    ]
     if message.last_part is not None and message.last_part.is_rest:
         counter = message.last_part.counter
-        lines.append(f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};")
+        lines.append(
+            f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};"
+        )
     return lines
 
 
@@ -76,21 +86,36 @@ def _count(part: VariablePartDescription) -> str:
 
 def misfit_length(message: MessageDescription) -> str:
     """Return the condition for a ``length`` that no frame has."""
-    return either([failed_length_test(test, constant(message, "length")) for test in message.length_tests])
+    return either(
+        [
+            failed_length_test(test, constant(message, "length"))
+            for test in message.length_tests
+        ]
+    )
 
 
 def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
-    """Return type and statement of the count in a frame, as ``value``, and the condition that it does not match the length."""
+    """Return type and statement of the count in a frame, as ``value``, and the
+    condition that it does not match the length.
+    """
     if part.is_rest:
         return None
     bits = max(part.counter.storage.bits, 32)
     value = "value" if part.counter.storage.bits == bits else cast("value", bits)
-    expected = cast(_count(part), bits) + (f" + {part.model.low}u" if part.model.low else "")
-    return type_of(part.counter), number(part.counter, "value"), f"{value} != {expected}"
+    expected = cast(_count(part), bits) + (
+        f" + {part.model.low}u" if part.model.low else ""
+    )
+    return (
+        type_of(part.counter),
+        number(part.counter, "value"),
+        f"{value} != {expected}",
+    )
 
 
 def of_spread_parts(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for parts at other places than in the longest frame: how they are located, decoded and encoded."""
+    """Return the values for parts at other places than in the longest frame: how they
+    are located, decoded and encoded.
+    """
     return [
         {
             **_of_counter(part),
@@ -98,18 +123,37 @@ def of_spread_parts(message: MessageDescription) -> list[dict[str, object]]:
             "place": place(part.place),
             "step": part.model.step,
             "is_last": part is message.last_part,
-            "there": elements(part, "value") if part.inner else in_bytes(elements(part, "value"), part.model.step),
-            "given": elements(part) if part.inner else in_bytes(elements(part), part.model.step),
-            "inner": [_of_inner_part(inner, f"inner_{number}") for number, inner in enumerate(part.inner, 1)],
-            "chunks": [(chunk.begin, _bytes_of_chunk(part, chunk)) for chunk in part.chunks] if part.inner else [],
-            "element": " + ".join(_bytes_of_chunk(part, chunk) for chunk in part.chunks),
+            "there": (
+                elements(part, "value")
+                if part.inner
+                else in_bytes(elements(part, "value"), part.model.step)
+            ),
+            "given": (
+                elements(part)
+                if part.inner
+                else in_bytes(elements(part), part.model.step)
+            ),
+            "inner": [
+                _of_inner_part(inner, f"inner_{number}")
+                for number, inner in enumerate(part.inner, 1)
+            ],
+            "chunks": (
+                [(chunk.begin, _bytes_of_chunk(part, chunk)) for chunk in part.chunks]
+                if part.inner
+                else []
+            ),
+            "element": " + ".join(
+                _bytes_of_chunk(part, chunk) for chunk in part.chunks
+            ),
         }
         for part in message.spread_parts
     ]
 
 
 def _of_counter(part: VariablePartDescription) -> dict[str, object]:
-    """Return the values for the counter of a part: how it is read from a frame, and tested."""
+    """Return the values for the counter of a part: how it is read from a frame, and
+    tested.
+    """
     return {
         "type": type_of(part.counter),
         "reading": number(part.counter, "value"),
@@ -118,7 +162,10 @@ def _of_counter(part: VariablePartDescription) -> dict[str, object]:
 
 
 def _of_inner_part(inner: VariablePartDescription, name: str) -> dict[str, object]:
-    """Return the values for an array in elements. The variable ``name`` has its bytes in each element."""
+    """Return the values for an array in elements.
+
+    The variable ``name`` has its bytes in each element.
+    """
     step = inner.model.step
     return {
         **_of_counter(inner),
@@ -131,7 +178,11 @@ def _of_inner_part(inner: VariablePartDescription, name: str) -> dict[str, objec
 def _bytes_of_chunk(part: VariablePartDescription, chunk: Chunk) -> str:
     """Return the sum of the bytes of a chunk of an element."""
     terms = [f"{chunk.fixed}u"] if chunk.fixed or chunk.inner is None else []
-    terms += [f"inner_{part.inner.index(chunk.inner) + 1}"] if chunk.inner is not None else []
+    terms += (
+        [f"inner_{part.inner.index(chunk.inner) + 1}"]
+        if chunk.inner is not None
+        else []
+    )
     return " + ".join(terms)
 
 
@@ -147,23 +198,36 @@ def in_bytes(count: str, step: int) -> str:
 
 
 def of_elements(part: VariablePartDescription, reading: str) -> list[str]:
-    """Return the statements that read the structs of the last variable part from ``buffer``."""
+    """Return the statements that read the structs of the last variable part from
+    ``buffer``.
+    """
     name = part.field.member
     loop_over = for_each(name, there(part), reading, part.place)
     return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
 def for_each(name: str, count: str, function: str, bytes: ElementBytes) -> str:
-    """Return the loop that calls a function with each element of an array of structs and its place in ``buffer``."""
+    """Return the loop that calls a function with each element of an array of structs
+    and its place in ``buffer``.
+    """
     if count == "1u":
         return call(function, (f"&message->{name}[0]", f"&buffer[{bytes.before}]"))
-    statement = call(function, (f"&message->{name}[element]", f"&buffer[{place(bytes)}]"), depth=2)
+    statement = call(
+        function, (f"&message->{name}[element]", f"&buffer[{place(bytes)}]"), depth=2
+    )
     return f"{loop('element', count)}\n{STEP * 2}{statement}\n{STEP}}}"
 
 
 def of_array(array: StructArray, function: str) -> str:
-    """Return the loop that calls a function with each element of a complete array of structs."""
-    return for_each(array.field.member, f"{array.field.count}u", function, ElementBytes(array.begin, array.step))
+    """Return the loop that calls a function with each element of a complete array of
+    structs.
+    """
+    return for_each(
+        array.field.member,
+        f"{array.field.count}u",
+        function,
+        ElementBytes(array.begin, array.step),
+    )
 
 
 def there(part: VariablePartDescription) -> str:
@@ -190,24 +254,40 @@ def elements(part: VariablePartDescription, counter: str = "") -> str:
 
 
 def miscount(part: VariablePartDescription, counter: str = "") -> str:
-    """Return the condition for a count that the variable part cannot have; empty if it can have all."""
+    """Return the condition for a count that the variable part cannot have.
+
+    Returns empty if it can have all.
+    """
     count = counter or f"message->{part.counter.name}"
     failed = {"at least": "<", "at most": ">"}
-    tests = [f"{count} {failed[test.kind]} {test.value}u" for test in part.counter_tests]
+    tests = [
+        f"{count} {failed[test.kind]} {test.value}u" for test in part.counter_tests
+    ]
     return either(tests) if tests else ""
 
 
 def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> str:
-    """Return the loop around the lines of an iteration. ``part`` points to its bytes, ``const`` if they are read."""
-    begin = place(ElementBytes(array_loop.begin, array_loop.step), array_loop.per_iteration)
+    """Return the loop around the lines of an iteration.
+
+    ``part`` points to its bytes, ``const`` if they are read.
+    """
+    begin = place(
+        ElementBytes(array_loop.begin, array_loop.step), array_loop.per_iteration
+    )
     pointer = f"{const}uint8_t *const part = &buffer[{begin}];"
-    body = "".join(f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}") for line in (pointer, *lines))
+    body = "".join(
+        f"{STEP * 2}{line}\n".replace(f"\n{STEP}", f"\n{STEP * 2}")
+        for line in (pointer, *lines)
+    )
     return f"{loop('element', f'{array_loop.elements}u', array_loop.per_iteration)}\n{body}{STEP}}}"
 
 
 def _group(group: Flags | Row | LoopElements | Structs, message: Composite[Any]) -> str:
     if isinstance(group, LoopElements):
-        lines = (number(element, f"message->{element.member}", "part") for element in elements_of_iteration(group))
+        lines = (
+            number(element, f"message->{element.member}", "part")
+            for element in elements_of_iteration(group)
+        )
         return loop_over_bytes(group.loop, "const ", lines)
     if isinstance(group, Structs):
         return of_array(group.array, group.reading)
@@ -217,7 +297,10 @@ def _group(group: Flags | Row | LoopElements | Structs, message: Composite[Any])
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
         return call(f"ICDGEN_READ_{macro_of(group)}", (*target, value, *members))
     value = f"&buffer[{group.byte}]"
-    return call(f"ICDGEN_READ_{macro_of(group)}", (*target, value, f"{len(members)}u", members[0], members[-1]))
+    return call(
+        f"ICDGEN_READ_{macro_of(group)}",
+        (*target, value, f"{len(members)}u", members[0], members[-1]),
+    )
 
 
 def _field(field: FieldDescription) -> str:
@@ -233,15 +316,23 @@ def number(field: FieldDescription, target: str, frame: str = "buffer") -> str:
     line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    within = "" if frame == "buffer" else f"{frame}_"  # in a loop the variable must not hide one of the function
+    within = (
+        "" if frame == "buffer" else f"{frame}_"
+    )  # in a loop the variable must not hide one of the function
     local = f"{within}bits_{field.model.at}"
     first, *further = read.terms
-    joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in further)]
-    return f"\n{STEP}".join([*joined, _assigned(field, target, read.value.format(bits=local))])
+    joined = [
+        f"uint{read.bits}_t {local} = {first};",
+        *(f"{local} |= {term};" for term in further),
+    ]
+    return f"\n{STEP}".join(
+        [*joined, _assigned(field, target, read.value.format(bits=local))]
+    )
 
 
 def _assigned(field: FieldDescription, target: str, value: str) -> str:
-    # C forbids access to the bits of a float through a pointer to an integer (C99, 6.5), so a function copies them.
+    # C forbids access to the bits of a float through a pointer to an integer (C99,
+    # 6.5), so a function copies them.
     if field.model.type == "float":
         return call(f"icdgen_set_f{field.model.bits}", (f"&{target}", value))
     return f"{target} = {value};"

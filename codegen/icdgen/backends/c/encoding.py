@@ -42,16 +42,23 @@ def size(message: MessageDescription) -> list[str]:
 
 
 def _encoded_elements(last: VariablePartDescription) -> str:
-    """Return the number of elements; 0 for a counter below the smallest, which encode refuses."""
+    """Return the number of elements.
+
+    Returns 0 for a counter below the smallest, which encode refuses.
+    """
     if not last.model.low:
         return elements(last)
-    return f"((message->{last.counter.name} > {last.model.low}u) ? {elements(last)} : 0u)"
+    return (
+        f"((message->{last.counter.name} > {last.model.low}u) ? {elements(last)} : 0u)"
+    )
 
 
 def _size_of_element(part: VariablePartDescription) -> str:
     """Return the bytes of an element with variable-length arrays."""
     fixed = sum(chunk.fixed for chunk in part.chunks)
-    arrays = (in_bytes(_encoded_elements(inner), inner.model.step) for inner in part.inner)
+    arrays = (
+        in_bytes(_encoded_elements(inner), inner.model.step) for inner in part.inner
+    )
     grouped = (f"({array})" if " * " in array else array for array in arrays)
     return " + ".join((*([f"{fixed}u"] if fixed else []), *grouped))
 
@@ -65,7 +72,9 @@ def counted_text(last: VariablePartDescription) -> str:
 
 
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
-    """Return the statements that write every byte of the frame once, except structs of the last variable part."""
+    """Return the statements that write every byte of the frame once, except structs of
+    the last variable part.
+    """
     if message.last_part is not None and message.last_part.element_struct is not None:
         return _Frame(message, groups, message.last_part.model.begin).in_order()
     frame = _Frame(message, groups, message.model.length)
@@ -78,7 +87,13 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 class _Frame:
     """Statements for the bytes of a frame, and variables that these statements need."""
 
-    def __init__(self, message: Composite[Any], groups: Groups, length: int, frame: str = "buffer") -> None:
+    def __init__(
+        self,
+        message: Composite[Any],
+        groups: Groups,
+        length: int,
+        frame: str = "buffer",
+    ) -> None:
         self.message, self.frame, self.bytes = message, frame, FrameBytes(length)
         self.joined: dict[int, list[str]] = {}  # byte -> variables of its terms
         for item in groups:
@@ -91,7 +106,11 @@ class _Frame:
         place = field.model
         first, size = place.at // 8, place.width // 8
         if place.is_bytes:
-            self.bytes.add_whole(first, size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);")
+            self.bytes.add_whole(
+                first,
+                size,
+                f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);",
+            )
         elif field.is_word:
             self.bytes.add_whole(first, size, bits.store(field, self.frame))
         else:
@@ -101,29 +120,53 @@ class _Frame:
     def _add_group(self, group: Flags | Row | LoopElements | Structs) -> None:
         if isinstance(group, LoopElements):
             loop = group.loop
-            lines = _Frame(self.message, list(elements_of_iteration(group)), loop.step, "part").in_order()
-            self.bytes.add_whole(loop.begin, loop.length, loop_over_bytes(loop, "", lines))
+            lines = _Frame(
+                self.message, list(elements_of_iteration(group)), loop.step, "part"
+            ).in_order()
+            self.bytes.add_whole(
+                loop.begin, loop.length, loop_over_bytes(loop, "", lines)
+            )
             return
         if isinstance(group, Structs):
-            self.bytes.add_whole(group.array.begin, group.length, of_array(group.array, group.writing))
+            self.bytes.add_whole(
+                group.array.begin, group.length, of_array(group.array, group.writing)
+            )
             return
         names = [field.member for field in group.fields]
         byte, source = group.byte, (C_NAMES.symbol(self.message, "t"), "message")
         if isinstance(group, Row):
-            arguments = (*source, f"&buffer[{byte}]", f"{len(names)}u", names[0], names[-1])
-            self.bytes.add_whole(byte, group.length, call(f"ICDGEN_WRITE_{macro_of(group)}", arguments))
+            arguments = (
+                *source,
+                f"&buffer[{byte}]",
+                f"{len(names)}u",
+                names[0],
+                names[-1],
+            )
+            self.bytes.add_whole(
+                byte, group.length, call(f"ICDGEN_WRITE_{macro_of(group)}", arguments)
+            )
             return
         macro = f"ICDGEN_JOIN_{macro_of(group)}"
-        # Eight flags are a byte of their own; four share it with other terms and are combined in a variable before.
+        # Eight flags are a byte of their own; four share it with other terms and are
+        # combined in a variable before.
         if len(names) == 8:
-            self.bytes.add_whole(byte, 1, call(f"buffer[{byte}] = {macro}", (*source, *names)))
+            self.bytes.add_whole(
+                byte, 1, call(f"buffer[{byte}] = {macro}", (*source, *names))
+            )
             return
         name = f"flags_{byte}" if group.shift == 0 else f"flags_{byte}_{group.shift}"
-        self.joined.setdefault(byte, []).append(call(f"const int {name} = {macro}", (*source, *names)))
-        self.bytes.add_part(byte, group.shift, f"{name} << {group.shift}" if group.shift else name)
+        self.joined.setdefault(byte, []).append(
+            call(f"const int {name} = {macro}", (*source, *names))
+        )
+        self.bytes.add_part(
+            byte, group.shift, f"{name} << {group.shift}" if group.shift else name
+        )
 
     def in_order(self) -> list[str]:
-        """Return the statements in the order of the bytes; bytes without a field become 0."""
+        """Return the statements in the order of the bytes.
+
+        Bytes without a field become 0.
+        """
         lines = []
         for byte, length, statement, terms in self.bytes.segments():
             if statement is not None:
@@ -137,4 +180,8 @@ class _Frame:
 
 
 def _zero(first: int, count: int) -> str:
-    return f"buffer[{first}] = 0u;" if count == 1 else f"(void)memset(&buffer[{first}], 0, {count}u);"
+    return (
+        f"buffer[{first}] = 0u;"
+        if count == 1
+        else f"(void)memset(&buffer[{first}], 0, {count}u);"
+    )

@@ -22,7 +22,9 @@ TYPES: dict[type, str] = {
 
 
 def has_presence_flag(fact: Fact) -> bool:
-    """Return whether a separate member states if an optional fact is given, because neither -1 nor 0 can mean that it is not."""
+    """Return whether a separate member states if an optional fact is given, because
+    neither -1 nor 0 can mean that it is not.
+    """
     return fact.is_optional and fact.least == 0 and fact.holds > MOST_SIGNED
 
 

@@ -37,7 +37,10 @@ class Table(NamedTuple):
 
 
 class Row(NamedTuple):
-    """Value of an initialiser, with a comment; subject to a condition of the preprocessor if there is one."""
+    """Value of an initialiser, with a comment.
+
+    Subject to a condition of the preprocessor if there is one.
+    """
 
     value: str
     text: str = ""
@@ -45,7 +48,9 @@ class Row(NamedTuple):
 
     def __str__(self) -> str:
         row = f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
-        return f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
+        return (
+            f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
+        )
 
 
 def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
@@ -54,13 +59,23 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     if facts.stream:
         return _stream_sizes(facts.stream)
     rows = [
-        ("LONGEST", facts.longest, "Size in bytes of the longest message in either direction, with id and checksum.")
+        (
+            "LONGEST",
+            facts.longest,
+            "Size in bytes of the longest message in either direction, with id and checksum.",
+        )
     ]
     slot = 1 + link.joined_bytes if facts.can else 0
     if facts.can:
-        rows.append(("CAN_SLOT_BYTES", slot, "Buffer size in bytes of a CAN joiner, per slot."))
+        rows.append(
+            ("CAN_SLOT_BYTES", slot, "Buffer size in bytes of a CAN joiner, per slot.")
+        )
     rows.append(
-        ("CLIENT_BYTES", facts.longest_telecommand + max(slot, facts.longest), "Buffer size of a client in bytes.")
+        (
+            "CLIENT_BYTES",
+            facts.longest_telecommand + max(slot, facts.longest),
+            "Buffer size of a client in bytes.",
+        )
     )
     if facts.log_file and facts.mask:
         most = max(facts.mask.size + link.log_entry_bytes, facts.log_file.header_bytes)
@@ -68,10 +83,18 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     if facts.files:
         packets = facts.packets_of(facts.files.block_bytes)
         rows.append(
-            ("BLOCK_BYTES", packets * facts.files.packet_bytes, "Size in bytes of the largest block of a file.")
+            (
+                "BLOCK_BYTES",
+                packets * facts.files.packet_bytes,
+                "Size in bytes of the largest block of a file.",
+            )
         )
         rows.append(
-            ("BLOCK_BITMAP_BYTES", -(-packets // 8), "Size in bytes of a bitmap for the packets of this block.")
+            (
+                "BLOCK_BITMAP_BYTES",
+                -(-packets // 8),
+                "Size in bytes of a bitmap for the packets of this block.",
+            )
         )
     return rows
 
@@ -79,9 +102,21 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
 def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
     """Return the sizes of buffers of a node with packets."""
     return [
-        ("LONGEST", form.longest, "Buffer size of a decoder in bytes: the longest message with header and trailer."),
-        ("LINE_BYTES", form.longest_line, "Largest size in bytes of an encoded message."),
-        ("SEQUENCES", form.sequences, "Number of sequence counters that a decoder or a sender needs."),
+        (
+            "LONGEST",
+            form.longest,
+            "Buffer size of a decoder in bytes: the longest message with header and trailer.",
+        ),
+        (
+            "LINE_BYTES",
+            form.longest_line,
+            "Largest size in bytes of an encoded message.",
+        ),
+        (
+            "SEQUENCES",
+            form.sequences,
+            "Number of sequence counters that a decoder or a sender needs.",
+        ),
         (
             "REQUEST_BYTES",
             form.longest_request,
@@ -96,10 +131,17 @@ def tables(link: LinkDescription) -> list[Table]:
 
 
 class _Tables:
-    """Tables of a node. Each method declares a table and returns the expression that refers to it."""
+    """Tables of a node.
+
+    Each method declares a table and returns the expression that refers to it.
+    """
 
     def __init__(self, link: LinkDescription) -> None:
-        self.link, self.facts_of_link, self.assumed = link, link.facts, Assumptions(link.facts)
+        self.link, self.facts_of_link, self.assumed = (
+            link,
+            link.facts,
+            Assumptions(link.facts),
+        )
         self.tables: list[Table] = []
 
     def all(self) -> list[Table]:
@@ -107,16 +149,37 @@ class _Tables:
         link, facts = self.link, self.facts_of_link
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
         codes = link.error_codes
-        longest = f"{facts.longest_telecommand}u, {facts.longest_reply}u, {facts.longest}u"
+        longest = (
+            f"{facts.longest_telecommand}u, {facts.longest_reply}u, {facts.longest}u"
+        )
         settings = f"{{{self.values('client', facts.client)}}}"
         rows = [
-            Row(self.array("nodes", "char *const", (f'"{name}"' for name in facts.owners)), "whose messages"),
+            Row(
+                self.array(
+                    "nodes", "char *const", (f'"{name}"' for name in facts.owners)
+                ),
+                "whose messages",
+            ),
             Row(f"{len(facts.owners)}u", "how many"),
             Row(boolean(facts.little), "byte order: little"),
-            Row(boolean(facts.node.bit_order == "msb0"), "bit 0 is the most significant one"),
-            Row(f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u", "ids of telemetry"),
-            Row(self.messages("telecommands", map(self.telecommand, telecommands)), "what can be sent"),
-            Row(self.messages("telemetry", (self.message(sent, "0u") for sent in telemetry)), "what can be requested"),
+            Row(
+                boolean(facts.node.bit_order == "msb0"),
+                "bit 0 is the most significant one",
+            ),
+            Row(
+                f"{facts.telemetry_ids.first}u, {facts.telemetry_ids.last}u",
+                "ids of telemetry",
+            ),
+            Row(
+                self.messages("telecommands", map(self.telecommand, telecommands)),
+                "what can be sent",
+            ),
+            Row(
+                self.messages(
+                    "telemetry", (self.message(sent, "0u") for sent in telemetry)
+                ),
+                "what can be requested",
+            ),
             Row(_count("telecommands", telecommands), "how many can be sent"),
             Row(_count("telemetry", telemetry), "how many can be requested"),
             Row(longest, "longest telecommand, reply, any"),
@@ -124,23 +187,40 @@ class _Tables:
             Row(or_none(facts.node.node_type), "node type"),
             Row(or_none(facts.node.interface_version), "interface version"),
             Row(settings, "ms for a reply, retries, ms between polls, ms of polling"),
-            Row(self.array("errors", "icd_error_code_t", map(_error_code, codes)), "error codes"),
+            Row(
+                self.array("errors", "icd_error_code_t", map(_error_code, codes)),
+                "error codes",
+            ),
             Row(f"{len(codes)}u, {facts.errors.get('none', 0)}u", "how many; no error"),
             Row(self.part("framing", facts.framing), "framing of the UART"),
-            Row(self.part("acknowledge", facts.acknowledge), "acknowledges on the UART"),
+            Row(
+                self.part("acknowledge", facts.acknowledge), "acknowledges on the UART"
+            ),
             Row(or_none(facts.i2c_address), "I2C address"),
-            Row(boolean(facts.i2c_repeated_start), "I2C: a read may follow its write without a stop"),
+            Row(
+                boolean(facts.i2c_repeated_start),
+                "I2C: a read may follow its write without a stop",
+            ),
             Row(or_none(facts.boot_ms), "boot time in ms"),
-            Row(self.named_step("polled", link.polled), "what is polled for an acknowledge"),
+            Row(
+                self.named_step("polled", link.polled),
+                "what is polled for an acknowledge",
+            ),
             Row(self.can(), "CAN"),
             Row(self.checksum(), "checksums of messages"),
             Row(self.crc16(), "CRC of files"),
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
-            Row(self.named_step("identification", link.identification), "identification"),
+            Row(
+                self.named_step("identification", link.identification), "identification"
+            ),
             Row(self.stream(), "envelope"),
         ]
-        assumed = ((key, why) for section, key, why in self.assumed.others() if not section.startswith("message "))
+        assumed = (
+            (key, why)
+            for section, key, why in self.assumed.others()
+            if not section.startswith("message ")
+        )
         self.add("link", "icd_link_t", rows, assumed)
         return self.tables
 
@@ -148,7 +228,10 @@ class _Tables:
         facts = self.facts_of_link
         yield Row(self.log_mask(), "mask of logs")
         yield Row(self.part("log_file", facts.log_file), "log files")
-        yield Row(self.part("log_message", facts.mask and facts.log_message), "unsolicited logs")
+        yield Row(
+            self.part("log_message", facts.mask and facts.log_message),
+            "unsolicited logs",
+        )
 
     def of_files(self) -> Iterator[Row]:
         facts = self.facts_of_link
@@ -165,30 +248,61 @@ class _Tables:
         """List rows that a program can omit, together with their tables."""
         first = len(self.tables)
         for row in rows:
-            yield row if row.value == "NULL" else row._replace(value=f"ICDGEN_OF_{what}({row.value})")
-        self.tables[first:] = [table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]]
+            yield (
+                row
+                if row.value == "NULL"
+                else row._replace(value=f"ICDGEN_OF_{what}({row.value})")
+            )
+        self.tables[first:] = [
+            table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]
+        ]
 
     def messages(self, name: str, rows: Iterable[Row]) -> str:
-        """Return the messages of a direction. A last row of zeros is there because a program can omit all others."""
+        """Return the messages of a direction.
+
+        A last row of zeros is there because a program can omit all others.
+        """
         messages = list(rows)
-        return self.array(name, "icd_message_t", [*messages, Row("{0u, 0u, 0u}", "the end")] if messages else ())
+        return self.array(
+            name,
+            "icd_message_t",
+            [*messages, Row("{0u, 0u, 0u}", "the end")] if messages else (),
+        )
 
     def message(self, sent: SentMessage, flags: str) -> Row:
         """Return the row of a message."""
         conditions = []
         if not any(sent.message is needed for needed in self.link.always_needed):
             node = self.facts_of_link.node.name.upper()
-            conditions = [f"!defined({node}_CHOSEN)", f"defined({node}_WITH_{self.link.name_of(sent.message).upper()})"]
+            conditions = [
+                f"!defined({node}_CHOSEN)",
+                f"defined({node}_WITH_{self.link.name_of(sent.message).upper()})",
+            ]
             if any(sent.message is needed for needed in self.link.in_procedures):
                 conditions.append("!defined(ICDGEN_NO_FILES)")
         return Row(
-            f"{{{sent.id}u, {flags}, {sent.message.length}u}}", plain(sent.message.name), " || ".join(conditions)
+            f"{{{sent.id}u, {flags}, {sent.message.length}u}}",
+            plain(sent.message.name),
+            " || ".join(conditions),
         )
 
-    def add(self, name: str, type: str, rows: Iterable[str | Row], assumed: Iterable[tuple[str, str]] = ()) -> str:
+    def add(
+        self,
+        name: str,
+        type: str,
+        rows: Iterable[str | Row],
+        assumed: Iterable[tuple[str, str]] = (),
+    ) -> str:
         """Declare a table, with a comment on assumed facts: their keys and reasons."""
         about = " ".join(f"Assumed {plain(f'{key}: {why}')}" for key, why in assumed)
-        self.tables.append(Table(comment([about], STEP) if about else "", type, name, list(map(str, rows))))
+        self.tables.append(
+            Table(
+                comment([about], STEP) if about else "",
+                type,
+                name,
+                list(map(str, rows)),
+            )
+        )
         return f"&{name}"
 
     def array(self, name: str, type: str, rows: Iterable[str | Row]) -> str:
@@ -202,10 +316,18 @@ class _Tables:
         return self.add(f"{name}[]", type, rows).strip("&[]") if rows else "NULL"
 
     def part(self, name: str, part: object, *further: Row) -> str:
-        """Declare the table of a part: its facts, then further rows. Return NULL for None."""
+        """Declare the table of a part: its facts, then further rows.
+
+        Return NULL for None.
+        """
         if part is None:
             return "NULL"
-        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *further], self.assumed.of_part(part))
+        return self.add(
+            name,
+            TYPES[type(part)],
+            [*self.facts(name, part), *further],
+            self.assumed.of_part(part),
+        )
 
     def facts(self, name: str, part: object) -> list[Row]:
         """Return a row for each declared fact."""
@@ -216,10 +338,20 @@ class _Tables:
                 step = self.step(f"{name}_{fact.name}", self.link.step(value))
                 rows.append(Row(f"{{{step}}}", plain(value.message.name)))
             elif fact.kind is Kind.ALLOWED:
-                allowed = self.numbers(f"{name}_{fact.name}", "uint8_t", (f"{number}u" for number in value), 16)
+                allowed = self.numbers(
+                    f"{name}_{fact.name}",
+                    "uint8_t",
+                    (f"{number}u" for number in value),
+                    16,
+                )
                 rows.append(Row(f"{allowed}, {len(value)}u", text))
             else:
-                rows.append(Row(spelled(fact, value), f"{text} in ms" if fact.kind is Kind.TIME else text))
+                rows.append(
+                    Row(
+                        spelled(fact, value),
+                        f"{text} in ms" if fact.kind is Kind.TIME else text,
+                    )
+                )
         return rows
 
     def values(self, name: str, part: object) -> str:
@@ -227,23 +359,36 @@ class _Tables:
         return ", ".join(row.value for row in self.facts(name, part))
 
     def step(self, name: str, step: StepDescription) -> str:
-        """Return the initialiser of a step without braces; its places and its initial frame are separate tables."""
+        """Return the initialiser of a step without braces.
+
+        Its places and its initial frame are separate tables.
+        """
         rows = [
-            Row(f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}", plain(field.model.name))
+            Row(
+                f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}",
+                plain(field.model.name),
+            )
             for role, field in step.places
         ]
         places = self.array(f"{name}_places", "icd_place_t", rows)
         initial_frame = "NULL"
         if any(step.initial_frame):
             initial_frame = self.numbers(
-                f"{name}_fresh", "uint8_t", (f"{byte:#04x}u" for byte in step.initial_frame), 16
+                f"{name}_fresh",
+                "uint8_t",
+                (f"{byte:#04x}u" for byte in step.initial_frame),
+                16,
             )
         ids = f"{or_none(step.message.telecommand_id)}, {or_none(step.message.telemetry_id)}"
         return f"{ids}, {step.message.length}u, {len(rows)}u, {places}, {initial_frame}"
 
     def named_step(self, name: str, step: StepDescription | None) -> str:
         """Declare the table of a single step."""
-        return self.add(name, "icd_step_t", [Row(self.step(name, step))]) if step else "NULL"
+        return (
+            self.add(name, "icd_step_t", [Row(self.step(name, step))])
+            if step
+            else "NULL"
+        )
 
     def telecommand(self, sent: SentMessage) -> Row:
         """Return the row of a telecommand, with a comment on assumed facts."""
@@ -253,22 +398,32 @@ class _Tables:
         flags += ["ICD_SETTING"] if sent.is_setting else []
         row = self.message(sent, " | ".join(flags) or "0u")
         why = self.assumed.why(f"message {message.name}", "acknowledge")
-        about = comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2).lstrip().replace("/**", "/*", 1)
+        about = (
+            comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2)
+            .lstrip()
+            .replace("/**", "/*", 1)
+        )
         return row._replace(value=f"{about}\n{STEP * 2}{row.value}") if why else row
 
     def can(self) -> str:
         can = self.link.can
         form = can and can.extended
-        if can is None or (form and self.link.joined_bytes > _MOST_PACKETS * form.data_bytes):
+        if can is None or (
+            form and self.link.joined_bytes > _MOST_PACKETS * form.data_bytes
+        ):
             return "NULL"
         types, extended_types = (
-            ", ".join(str(values.get(kind, -1)) for kind in CAN_KINDS) for values in (can.types, can.extended_types)
+            ", ".join(str(values.get(kind, -1)) for kind in CAN_KINDS)
+            for values in (can.types, can.extended_types)
         )
         return self.part(
             "can",
             can,
             *(
-                Row(f"{{{can.parts[role].bits}u, {can.parts[role].shift}u}}", f"{role}: bits, shift")
+                Row(
+                    f"{{{can.parts[role].bits}u, {can.parts[role].shift}u}}",
+                    f"{role}: bits, shift",
+                )
                 for role in CAN_PARTS
             ),
             Row(f"{{{types}}}", "types"),
@@ -277,48 +432,79 @@ class _Tables:
         )
 
     def crc(self, name: str, parameters: Crc, is_crc: bool = True) -> str:
-        """Return the initialiser of a CRC without braces; the table for whole bytes is separate."""
+        """Return the initialiser of a CRC without braces.
+
+        The table for whole bytes is separate.
+        """
         tables = ["NULL", "NULL"]
         if is_crc and parameters.width <= 16:
-            entries = (f"{value:#0{2 + -(-parameters.width // 4)}x}u" for value in byte_table(parameters))
+            entries = (
+                f"{value:#0{2 + -(-parameters.width // 4)}x}u"
+                for value in byte_table(parameters)
+            )
             bits = 8 if parameters.width <= 8 else 16
-            tables[bits // 8 - 1] = f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
+            tables[bits // 8 - 1] = (
+                f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
+            )
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
         return ", ".join((self.values(name, parameters), *tables))
 
     def checksum(self) -> str:
         checksum = self.facts_of_link.checksum
         return (
-            self.part("checksum", checksum, Row(f"{_CRC}{{{self.crc('crc8', checksum.crc)}}}")) if checksum else "NULL"
+            self.part(
+                "checksum", checksum, Row(f"{_CRC}{{{self.crc('crc8', checksum.crc)}}}")
+            )
+            if checksum
+            else "NULL"
         )
 
     def crc16(self) -> str:
         crc = self.facts_of_link.crc16
-        return self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', crc)}")]) if crc else "NULL"
+        return (
+            self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', crc)}")])
+            if crc
+            else "NULL"
+        )
 
     def stream(self) -> str:
         form = self.facts_of_link.stream
         if form is None:
             return "NULL"
-        fields = self.array("envelope", "icd_envelope_field_t", map(_field, form.fields))
+        fields = self.array(
+            "envelope", "icd_envelope_field_t", map(_field, form.fields)
+        )
         check = "NULL"
         if form.check:
             crc = self.crc("check", form.check.crc, form.check.kind == CRC)
             row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
             covered = f"{form.check.covered_from}u, {form.check.covered_trailer}u, {boolean(form.check.is_seeded)}"
-            check = self.add("check", "icd_check_form_t", [row, Row(covered, "covered")])
+            check = self.add(
+                "check", "icd_check_form_t", [row, Row(covered, "covered")]
+            )
         directions = (("sent", form.telecommands), ("received", form.telemetry))
-        rows = [self.array(name, "icd_stream_row_t", map(_packet_row, rows)) for name, rows in directions]
+        rows = [
+            self.array(name, "icd_stream_row_t", map(_packet_row, rows))
+            for name, rows in directions
+        ]
         delimiter = "packet" if form.delimited_by == PACKET else form.delimited_by
         sizes = f"ICD_DELIMITED_BY_{delimiter.upper()}, {form.header_bytes}u, {form.trailer_bytes}u"
         parts = [
             Row(sizes, "bytes of header, trailer"),
-            Row(f"{form.length_plus}, {boolean(form.per_id)}", "length outside the data, a sequence for each id"),
+            Row(
+                f"{form.length_plus}, {boolean(form.per_id)}",
+                "length outside the data, a sequence for each id",
+            ),
             Row(f"{fields}, {len(form.fields)}u", "fields"),
             Row(check, "checksum"),
-            Row(f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}", "messages"),
+            Row(
+                f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}",
+                "messages",
+            ),
         ]
-        return self.add("stream", "icd_stream_form_t", parts, self.assumed.of_section("stream"))
+        return self.add(
+            "stream", "icd_stream_form_t", parts, self.assumed.of_section("stream")
+        )
 
     def log_mask(self) -> str:
         mask = self.facts_of_link.mask
@@ -330,11 +516,14 @@ class _Tables:
             id, length = (row.id, row.length) if row else (None, mask.slot_bytes)
             text = f"bit {bit}" + (f": {plain(row.name)}" if row and row.name else "")
             rows.append(Row(f"{{{or_none(id)}, {length}u}}", text))
-        return self.part("log_mask", mask, Row(self.array("log_bits", "icd_log_bit_t", rows)))
+        return self.part(
+            "log_mask", mask, Row(self.array("log_bits", "icd_log_bit_t", rows))
+        )
 
     def time(self) -> str:
         rows = [
-            Row(f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name) for name, part in self.link.time
+            Row(f"{{{part.at}u, {part.bits}u, {part.factor}u, {part.offset}u}}", name)
+            for name, part in self.link.time
         ]
         return self.add("packed_time", "icd_time_form_t", rows) if rows else "NULL"
 
@@ -349,14 +538,23 @@ class _Tables:
         for field in self.link.map_pieces:
             message = field.message.model
             ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
-            rows.append(Row(f"{{{ids}, {message.length}u, {field.model.at // 8}u}}", plain(message.name)))
+            rows.append(
+                Row(
+                    f"{{{ids}, {message.length}u, {field.model.at // 8}u}}",
+                    plain(message.name),
+                )
+            )
         messages = self.array("hole_maps", "icd_hole_map_message_t", rows)
         further = Row(f"{len(rows)}u, {messages}", "messages")
         return self.part("hole_map", self.facts_of_link.hole_map, further)
 
     def files(self) -> str:
         files = self.facts_of_link.files
-        ids = ", ".join(or_none(files.packet_ids.get(bus)) for bus in BUSES) if files else ""
+        ids = (
+            ", ".join(or_none(files.packet_ids.get(bus)) for bus in BUSES)
+            if files
+            else ""
+        )
         return self.part("files", files, Row(f"{{{ids}}}", "ids of download packets"))
 
     def procedure(self, name: str) -> str:
@@ -372,7 +570,9 @@ def _field(field: EnvelopeField) -> Row:
     """Return the row of a field of packets."""
     values = ", ".join(f"{value:#x}u" for value in field.values)
     numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
-    return Row(f"{{ICD_ENVELOPE_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}")
+    return Row(
+        f"{{ICD_ENVELOPE_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
+    )
 
 
 def _packet_row(row: StreamRow) -> Row:
@@ -384,8 +584,14 @@ def _packet_row(row: StreamRow) -> Row:
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
     """Return the messages that the tables of the wire layer can store."""
-    return [sent for sent in messages if sent.id <= _MOST_ID and sent.message.length <= _MOST_LENGTH]
+    return [
+        sent
+        for sent in messages
+        if sent.id <= _MOST_ID and sent.message.length <= _MOST_LENGTH
+    ]
 
 
 def _count(name: str, messages: list[SentMessage]) -> str:
-    return f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
+    return (
+        f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
+    )

@@ -1,4 +1,5 @@
-"""Statements for members of a message that set initial values, and that test raw values against the bits of their fields.
+"""Statements for members of a message that set initial values, and that test raw values
+against the bits of their fields.
 
 Elements of arrays have the same statements in a loop.
 """
@@ -17,13 +18,24 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, Into
 
 _Lines = Callable[[FieldDescription, str, str], list[str]]
-"""Function that returns the lines for a field, given its names in C and in the ICD; empty if the field needs none."""
+"""Function that returns the lines for a field, given its names in C and in the ICD.
+
+Empty if the field needs none.
+"""
 
 
 def _statements(
-    field: FieldDescription, lines_of: _Lines, count: str, owner: str = "", of: str = "", depth: int = 1
+    field: FieldDescription,
+    lines_of: _Lines,
+    count: str,
+    owner: str = "",
+    of: str = "",
+    depth: int = 1,
 ) -> list[str]:
-    """Return the lines for a field; for an array in a loop over ``count`` elements, an expression in C."""
+    """Return the lines for a field.
+
+    For an array in a loop over ``count`` elements, an expression in C.
+    """
     name, member = of + field.model.name, owner + field.member
     if not field.count:
         return lines_of(field, member, name)
@@ -32,11 +44,16 @@ def _statements(
     if field.element_struct is None:
         lines = lines_of(field, member, name)
     else:
-        members = ((inner, f"{inner.count}u") for inner in field.element_struct.walk(Into.STRUCTS))
+        members = (
+            (inner, f"{inner.count}u")
+            for inner in field.element_struct.walk(Into.STRUCTS)
+        )
         lines = [
             line
             for inner, many in members
-            for line in _statements(inner, lines_of, many, f"{member}.", f"{name}[].", depth + 1)
+            for line in _statements(
+                inner, lines_of, many, f"{member}.", f"{name}[].", depth + 1
+            )
         ]
     if not lines or index == "0":
         return lines
@@ -55,27 +72,43 @@ def initial(message: Composite[Any]) -> list[str]:
 
 
 def _valid(field: FieldDescription, member: str, name: str) -> list[str]:
-    return [] if field.model.const is None else [f"message->{member} = {constants.only(field)};"]
+    return (
+        []
+        if field.model.const is None
+        else [f"message->{member} = {constants.only(field)};"]
+    )
 
 
 def misfits(message: MessageDescription, is_last_part: bool) -> list[str]:
-    """Return the statements that return the name of the first field whose raw value does not fit.
+    """Return the statements that return the name of the first field whose raw value
+    does not fit.
 
-    They test the fields of the last variable part, or all others: the count must be valid before its elements are tested.
+    They test the fields of the last variable part, or all others: the count must be
+    valid before its elements are tested.
     """
     return _tests(message, is_last_part, _named)
 
 
 def excess(message: MessageDescription) -> list[str]:
     """Return the statements that collect bits that do not fit in ``excess``."""
-    return [line for is_last_part in (False, True) for line in _tests(message, is_last_part, _gathered)]
+    return [
+        line
+        for is_last_part in (False, True)
+        for line in _tests(message, is_last_part, _gathered)
+    ]
 
 
-def _tests(message: MessageDescription, is_last_part: bool, lines_of: _Lines) -> list[str]:
+def _tests(
+    message: MessageDescription, is_last_part: bool, lines_of: _Lines
+) -> list[str]:
     lines = []
     for field in message.walk(Into.STRUCTS):
         if field.needs_range_check and field.is_in_last_part == is_last_part:
-            count = elements(message.last_part) if is_last_part and message.last_part else f"{field.count}u"
+            count = (
+                elements(message.last_part)
+                if is_last_part and message.last_part
+                else f"{field.count}u"
+            )
             lines += _statements(field, lines_of, count)
     return lines
 
@@ -83,7 +116,11 @@ def _tests(message: MessageDescription, is_last_part: bool, lines_of: _Lines) ->
 def _named(field: FieldDescription, member: str, name: str) -> list[str]:
     if not field.is_narrow:
         return []
-    return [f"if (({bits.excess(field, member)}) != 0u) {{", f"{STEP}return {literal(name)};", "}"]
+    return [
+        f"if (({bits.excess(field, member)}) != 0u) {{",
+        f"{STEP}return {literal(name)};",
+        "}",
+    ]
 
 
 def _gathered(field: FieldDescription, member: str, name: str) -> list[str]:

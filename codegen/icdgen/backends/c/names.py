@@ -1,4 +1,7 @@
-"""The C names of messages and enumerations. All names at file scope begin with the name of the declaring node, once."""
+"""The C names of messages and enumerations.
+
+All names at file scope begin with the name of the declaring node, once.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,9 @@ _HEADERS = """
     stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
     alloca endian features pthread sched strings unistd
     """.split()
-"""Of the language and the system: a node's header of that name would be found in their place."""
+"""Of the language and the system: a node's header of that name would be found in their
+place.
+"""
 
 RESERVED = frozenset("""
     auto break case char const continue default do double else enum extern float for goto if inline int long register
@@ -30,14 +35,19 @@ RESERVED = frozenset("""
     complex imaginary offsetof errno assert stdin stdout stderr setjmp
     unix linux i386 mips sparc
     """.split()) | {f"{name}.h" for name in _HEADERS}
-"""Words that can't be identifiers in C99 to C23 or C++11 to C++20, or that the usual headers and compilers define.
+"""Words that can't be identifiers in C99 to C23 or C++11 to C++20, or that the usual
+headers and compilers define.
 
-Member names are lower case, and every other name begins with the node's, so upper-case macros can't be met.
+Member names are lower case, and every other name begins with the node's, so upper-case
+macros can't be met.
 """
 
 
 def stem(one: Composite[Any] | EnumDescription) -> str:
-    """``demo_estimated_roll``: stem of the functions and the type; of ``DemoState`` ``demo_state``, for it has the node's name."""
+    """``demo_estimated_roll``: stem of the functions and the type.
+
+    Of ``DemoState`` ``demo_state``, for it has the node's name.
+    """
     prefix = f"{one.node.name}_"
     return one.name if one.name.startswith(prefix) else prefix + one.name
 
@@ -48,7 +58,10 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
 
 
 def reading(message: MessageDescription, name: str) -> str:
-    """The function that reads an element of an array of structs; ``name`` is that of `icdgen.describe.arrays`."""
+    """The function that reads an element of an array of structs.
+
+    ``name`` is that of `icdgen.describe.arrays`.
+    """
     return f"{stem(message)}_read_{name}"
 
 
@@ -77,15 +90,21 @@ def enumerator_of(direction: str, message: MessageDescription) -> str:
     return f"{direction}_is_{message.name}".upper()
 
 
-def selector(node: NodeDescription, direction: str, message: MessageDescription, id_name: str) -> str:
-    """Constant that selects a message in ``demo_telemetry_t``: that of its id, or an enumerator if messages share ids."""
+def selector(
+    node: NodeDescription, direction: str, message: MessageDescription, id_name: str
+) -> str:
+    """Constant that selects a message in ``demo_telemetry_t``: that of its id, or an
+    enumerator if messages share ids.
+    """
     if node.shares_ids(direction):
         return enumerator_of(f"{node.name}_{direction}", message)
     return constant(message, id_name)
 
 
 def getter(composite: Composite[Any], name: str) -> str:
-    """``demo_status_rate_deg_per_s``: the function that returns a value by its name in snake case."""
+    """``demo_status_rate_deg_per_s``: the function that returns a value by its name in
+    snake case.
+    """
     return f"{stem(composite)}_{name}"
 
 
@@ -95,7 +114,10 @@ def setter(composite: Composite[Any], name: str) -> str:
 
 
 def client_verbs(node: NodeDescription, direction: str) -> tuple[str, ...]:
-    """Actions of a client of the node with a message; each is a function. Only a client of a stream can ask and put."""
+    """Actions of a client of the node with a message; each is a function.
+
+    Only a client of a stream can ask and put.
+    """
     if direction == "telemetry":
         return "request", "receive"
     return ("send",) if node.has_client else ("send", "ask", "put")

@@ -1,4 +1,6 @@
-"""Expressions of physical values in double precision, and in whole thousandths or millionths of the unit."""
+"""Expressions of physical values in double precision, and in whole thousandths or
+millionths of the unit.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 
 
 def declarations(field: FieldDescription) -> Iterator[str]:
-    """List the lines at the start of the accessors in double precision: a calibration, or a scale of many digits."""
+    """List the lines at the start of the accessors in double precision: a calibration,
+    or a scale of many digits.
+    """
     if field.curve is not None:
         yield from _curve(field.curve)
     elif field.steps is not None and field.steps.is_wide:
@@ -48,14 +52,20 @@ def _wide_scale(steps: Steps) -> Iterator[str]:
     """List the declaration of a scale whose terms have more than 64 bits."""
     yield "static const icdgen_scale_t scale = {"
     for term in steps.terms:
-        parts = (f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32))
+        parts = (
+            f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(term, 32)
+        )
         yield f"    {{{{{', '.join(parts)}}}}},"
     yield "};"
 
 
 def int64(value: int) -> str:
     """Return the literal of a signed integer of 64 bits."""
-    return "INT64_MIN" if value == -INT64 - 1 else f"INT64_C({value})" if abs(value) > INT32 else str(value)
+    return (
+        "INT64_MIN"
+        if value == -INT64 - 1
+        else f"INT64_C({value})" if abs(value) > INT32 else str(value)
+    )
 
 
 def _limit(value: int, storage: Storage) -> str:
@@ -69,7 +79,10 @@ def _limit(value: int, storage: Storage) -> str:
 
 
 def _kind(storage: Storage, bits: int = 0) -> str:
-    """Return the end of the name of a function: ``u16``; with ``bits`` for integers of this width."""
+    """Return the end of the name of a function: ``u16``.
+
+    With ``bits`` for integers of this width.
+    """
     return f"{'i' if storage.signed else 'u'}{bits or storage.bits}"
 
 
@@ -91,19 +104,32 @@ def double_value(field: FieldDescription, raw: str) -> str:
 
 
 def double_setter(field: FieldDescription) -> tuple[str, ...]:
-    """Return the function that sets a raw value to the nearest one of ``value``, and its arguments behind the raw value."""
+    """Return the function that sets a raw value to the nearest one of ``value``, and
+    its arguments behind the raw value.
+    """
     storage, ends = field.storage, field.model.settable_raws
     limits = [_limit(end, storage) for end in ends]
     if field.curve is not None:
         if field.model.type == "float":
             return f"icdgen_set_curve_f{field.model.bits}", "value", "curve"
-        return f"icdgen_set_curve_{_kind(storage)}", "value", "curve", f"{len(field.curve.pieces)}u", *limits
+        return (
+            f"icdgen_set_curve_{_kind(storage)}",
+            "value",
+            "curve",
+            f"{len(field.curve.pieces)}u",
+            *limits,
+        )
     assert field.arithmetic is not None
     limits = limits if storage.signed else limits[1:]
     if field.arithmetic.steps.is_wide:
         return f"icdgen_wide_set_{_kind(storage)}", "value", "&scale", *limits
     *terms, is_negated = field.arithmetic.int64_terms
-    return f"icdgen_set_{_kind(storage)}", "-value" if is_negated else "value", *map(int64, terms), *limits
+    return (
+        f"icdgen_set_{_kind(storage)}",
+        "-value" if is_negated else "value",
+        *map(int64, terms),
+        *limits,
+    )
 
 
 def integer_value(access: IntegerAccess, storage: Storage, raw: str) -> str:
@@ -118,7 +144,11 @@ def _scaled(raw: str, factor: int, offset: int, bits: int, storage: Storage) -> 
 
 
 def _plus(value: str, offset: int, bits: int) -> str:
-    return f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})" if offset else value
+    return (
+        f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})"
+        if offset
+        else value
+    )
 
 
 def integer_range(access: IntegerAccess) -> list[str]:
@@ -130,7 +160,8 @@ def integer_range(access: IntegerAccess) -> list[str]:
 def integer_raw(access: IntegerAccess, storage: Storage) -> str:
     """Return the raw value of ``value`` in whole parts of the unit."""
     factor, offset, bits = access.scale.factor, access.scale.offset, access.setter_bits
-    # The support header rounds for positive divisors only, so a negative factor swaps the operands of the difference.
+    # The support header rounds for positive divisors only, so a negative factor swaps
+    # the operands of the difference.
     if factor > 0:
         value = _plus("value", -offset, bits)
     else:

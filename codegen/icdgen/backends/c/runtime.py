@@ -16,8 +16,13 @@ _GUARDED = re.compile(
 )
 
 
-def assembled(file: str, render: Renderer, replaced: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Return the text of a file with its parts. ``replaced`` are parts that depend on the ICD; the runtime has samples of them."""
+def assembled(
+    file: str, render: Renderer, replaced: Mapping[str, str] = MappingProxyType({})
+) -> str:
+    """Return the text of a file with its parts.
+
+    ``replaced`` are parts that depend on the ICD; the runtime has samples of them.
+    """
 
     def part(include: re.Match[str]) -> str:
         name = include["file"]

@@ -1,7 +1,8 @@
 """Shorter names for identifiers of C that compilers may confuse.
 
-C99 guarantees that compilers distinguish the first 63 characters of a name (5.2.4.1). Names with the same 63 characters are
-shortened and end with a digest of the long name. Other names, and other languages, keep the long names.
+C99 guarantees that compilers distinguish the first 63 characters of a name (5.2.4.1).
+Names with the same 63 characters are shortened and end with a digest of the long name.
+Other names, and other languages, keep the long names.
 """
 
 from __future__ import annotations
@@ -17,16 +18,25 @@ from icdgen.backends import Identifier
 SIGNIFICANT = 63
 _DIGITS = 8
 _LONG = re.compile(rf"\b[A-Za-z_]\w{{{SIGNIFICANT - 1},}}")
-_LONG_OR_INCLUDE = re.compile(rf"#include[^\n]*|{_LONG.pattern}")  # file names are not identifiers
+_LONG_OR_INCLUDE = re.compile(
+    rf"#include[^\n]*|{_LONG.pattern}"
+)  # file names are not identifiers
 
 
 def short_names(identifiers: Iterable[Identifier]) -> dict[str, str]:
-    """Return shorter names for all identifiers that are not unique in their first 63 characters."""
+    """Return shorter names for all identifiers that are not unique in their first 63
+    characters.
+    """
     alike: defaultdict[str, set[str]] = defaultdict(set)
     for identifier in identifiers:
         if len(identifier.text) >= SIGNIFICANT and _LONG.fullmatch(identifier.text):
             alike[identifier.text[:SIGNIFICANT]].add(identifier.text)
-    return {text: _short(text) for texts in alike.values() if len(texts) > 1 for text in texts}
+    return {
+        text: _short(text)
+        for texts in alike.values()
+        if len(texts) > 1
+        for text in texts
+    }
 
 
 def _short(text: str) -> str:
@@ -38,7 +48,10 @@ def _short(text: str) -> str:
 def with_short_names(
     files: Iterable[tuple[PurePosixPath, str]], identifiers: Iterable[Identifier]
 ) -> Iterator[tuple[PurePosixPath, str]]:
-    """List C files with shorter names. ``identifiers`` are all names that the headers declare."""
+    """List C files with shorter names.
+
+    ``identifiers`` are all names that the headers declare.
+    """
     short = short_names(identifiers)
     for path, text in files:
         # Few ICDs have such names, and the search takes longer than the text of a file.

@@ -25,7 +25,10 @@ def joined(terms: Sequence[str]) -> str:
 
 
 def either(tests: Sequence[str], operator: str = " || ") -> str:
-    """Return the disjunction of the tests; with ``&&`` as the operator their conjunction."""
+    """Return the disjunction of the tests.
+
+    With ``&&`` as the operator their conjunction.
+    """
     return operator.join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
 
 
@@ -53,9 +56,11 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
 
 
 def like(candidate: MessageOfId, depth: int = 3) -> str:
-    """Return the test whether a frame is that of a message, by its length and the bytes of its constants.
+    """Return the test whether a frame is that of a message, by its length and the bytes
+    of its constants.
 
-    Bytes behind the end of a shortened frame count as 0. ``depth`` is the indentation of the lines after the first.
+    Bytes behind the end of a shortened frame count as 0. ``depth`` is the indentation
+    of the lines after the first.
     """
     message = candidate.message
     tests = length_tests_of_frame(message.model.layout.lengths)
@@ -64,13 +69,20 @@ def like(candidate: MessageOfId, depth: int = 3) -> str:
         byte = f"buffer[{constant_byte.byte}]"
         if constant_byte.byte >= message.model.layout.shortest:
             byte = f"((length > {constant_byte.byte}u) ? {byte} : 0u)"
-        masked = byte if constant_byte.mask == 0xFF else f"({byte} & 0x{constant_byte.mask:02X}u)"
+        masked = (
+            byte
+            if constant_byte.mask == 0xFF
+            else f"({byte} & 0x{constant_byte.mask:02X}u)"
+        )
         terms.append(f"{masked} == 0x{constant_byte.value:02X}u")
     return either(terms, f" &&\n{STEP * depth}")
 
 
 def length_test(test: LengthTest, longest: str) -> str:
-    """Return the condition for a ``length`` that passes a test. ``longest`` is the macro of the longest."""
+    """Return the condition for a ``length`` that passes a test.
+
+    ``longest`` is the macro of the longest.
+    """
     if test.kind == "multiple":
         return f"{_remainder(test)} == 0u"
     operators = {"equal": "==", "at least": ">=", "at most": "<="}
@@ -78,7 +90,10 @@ def length_test(test: LengthTest, longest: str) -> str:
 
 
 def failed_length_test(test: LengthTest, longest: str) -> str:
-    """Return the condition for a ``length`` that fails a test. ``longest`` is the macro of the longest."""
+    """Return the condition for a ``length`` that fails a test.
+
+    ``longest`` is the macro of the longest.
+    """
     if test.kind == "multiple":
         return f"{_remainder(test)} != 0u"
     operators = {"equal": "!=", "at least": "<", "at most": ">"}
@@ -96,4 +111,6 @@ def _remainder(test: LengthTest) -> str:
 
 def head(returned: str, name: str, *parameters: str) -> str:
     """Return the head of a function."""
-    return bracketed(f"static inline {returned}{name}(", parameters, ")", WIDTH, last="")
+    return bracketed(
+        f"static inline {returned}{name}(", parameters, ")", WIDTH, last=""
+    )

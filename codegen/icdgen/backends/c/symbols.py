@@ -7,7 +7,13 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
-from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe import (
+    Description,
+    EnumDescription,
+    FieldDescription,
+    MessageDescription,
+    NodeDescription,
+)
 from icdgen.describe.accessors import accessors_of
 from icdgen.describe.arrays import all_struct_arrays
 from icdgen.describe.contained import contained_messages
@@ -19,7 +25,12 @@ FILE = "C names at file scope"
 FILES = "C header files"
 
 _STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
-_SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
+_SUPPORT = (
+    "ICDGEN_SHARED",
+    "icd_status_t",
+    "ICD_OK",
+    *(f"ICD_ERROR_{end}" for end in _STATUS),
+)
 _SIZES = (
     "LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "REQUEST_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES",
     "LINE_BYTES", "SEQUENCES",
@@ -28,7 +39,10 @@ _BUSES = ("uart", "i2c", "can")
 
 
 class CNames(NamingPolicy):
-    """Names in C. All names at file scope begin with that of the node; a role is the end of the name."""
+    """Names in C.
+
+    All names at file scope begin with that of the node; a role is the end of the name.
+    """
 
     reserved = names.RESERVED
 
@@ -48,11 +62,15 @@ class CNames(NamingPolicy):
             owner, source = f"{kind} of node `{node.name}`", node.model.source
             rare = ("which", "which_t") if node.shares_ids(kind) else ()
             for end in ("t", "name", "length", "size", "decode", "encode", *rare):
-                yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, source, f"{kind}_{end}")
+                yield Identifier(
+                    FILE, f"{node.name}_{kind}_{end}", owner, source, f"{kind}_{end}"
+                )
         if node.enums:
             owner = "the enumerations"
             yield Identifier(FILES, f"{node.name}/enums.h", owner, None)
-            yield Identifier(FILE, f"{node.name.upper()}_ENUMS_H", owner, None, "ENUMS_H")
+            yield Identifier(
+                FILE, f"{node.name.upper()}_ENUMS_H", owner, None, "ENUMS_H"
+            )
 
     def in_node(self, node: NodeDescription, part: Part) -> Symbols:
         if not isinstance(part, MessageDescription):
@@ -64,13 +82,19 @@ class CNames(NamingPolicy):
             yield part.identifier(f"members of {stem}_t", part.name)
             if node.is_linked:
                 for verb in names.client_verbs(node, direction):
-                    yield part.identifier(FILE, names.client_function(node.name, verb, part))
+                    yield part.identifier(
+                        FILE, names.client_function(node.name, verb, part)
+                    )
 
     def link(self, node: NodeDescription) -> Symbols:
         owner, source = f"the link of node `{node.name}`", node.model.source
         for file in ("link.h", "link.c", "client.h"):
             yield Identifier(FILES, f"{node.name}/{file}", owner, source)
-        kinds = [f"client_{bus}" for bus in _BUSES] if node.has_client else ["client_init", "sender_t", "sender_init"]
+        kinds = (
+            [f"client_{bus}" for bus in _BUSES]
+            if node.has_client
+            else ["client_init", "sender_t", "sender_init"]
+        )
         for end in ("link", "client_t", *kinds):
             yield Identifier(FILE, f"{node.name}_{end}", owner, source, end)
         for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
@@ -92,20 +116,31 @@ class CNames(NamingPolicy):
         if not isinstance(composite, MessageDescription):
             return
         for end in ("length", *(id.name for id in composite.ids)):
-            yield composite.identifier(FILE, names.constant(composite, end), end.upper())
-        rare = (*(("misfit",) if composite.is_narrow else ()), *(("size",) if composite.last_part else ()))
+            yield composite.identifier(
+                FILE, names.constant(composite, end), end.upper()
+            )
+        rare = (
+            *(("misfit",) if composite.is_narrow else ()),
+            *(("size",) if composite.last_part else ()),
+        )
         for end in ("decode", "encode", *rare):
             yield composite.identifier(FILE, f"{stem}_{end}", end)
         for array in all_struct_arrays(composite):
             yield composite.identifier(FILE, names.reading(composite, array.name))
             yield composite.identifier(FILE, names.writing(composite, array.name))
         last = composite.last_part
-        if last is not None and last.element_struct is not None and not composite.spread_parts:
+        if (
+            last is not None
+            and last.element_struct is not None
+            and not composite.spread_parts
+        ):
             yield composite.identifier(FILE, names.walking(composite, last.field.name))
         for part in contained_messages(composite):
             yield composite.identifier(FILE, f"{stem}_{names.part_name(part.message)}")
 
-    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
+    def fields(
+        self, composite: Composite[Any], fields: Iterable[FieldDescription]
+    ) -> Symbols:
         members = f"members of {names.stem(composite)}_t"
         for field in fields:
             if field.model.is_read_only:

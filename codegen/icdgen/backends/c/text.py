@@ -25,7 +25,10 @@ _MARKUP = re.compile(
 
 
 class _Command(str):
-    """Paragraph that starts with a command of documentation tools. Text of the ICD never becomes one."""
+    """Paragraph that starts with a command of documentation tools.
+
+    Text of the ICD never becomes one.
+    """
 
 
 FILE = _Command("@file")
@@ -33,7 +36,9 @@ FILE = _Command("@file")
 
 @lru_cache(maxsize=8192)
 def plain(text: str) -> str:
-    """Return one line that is safe in a block comment: without comment delimiters, trigraphs and control characters."""
+    """Return one line that is safe in a block comment: without comment delimiters,
+    trigraphs and control characters.
+    """
     text = lines.plain(text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
@@ -43,7 +48,10 @@ def plain(text: str) -> str:
 
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """Return `plain` text for a documentation comment. Only backticks are markup; commands and HTML of Doxygen are escaped."""
+    """Return `plain` text for a documentation comment.
+
+    Only backticks are markup; commands and HTML of Doxygen are escaped.
+    """
     return _MARKUP.sub(_escaped, plain(text))
 
 
@@ -53,7 +61,11 @@ def _escaped(match: re.Match[str]) -> str:
 
 
 def _spelled(paragraph: str) -> str:
-    command, space, text = paragraph.partition(" ") if isinstance(paragraph, _Command) else ("", "", paragraph)
+    command, space, text = (
+        paragraph.partition(" ")
+        if isinstance(paragraph, _Command)
+        else ("", "", paragraph)
+    )
     return command + space + prose(text)
 
 
@@ -62,17 +74,24 @@ def comment(paragraphs: Iterable[str], indent: str = "") -> str:
     paragraphs = [_spelled(p) for p in paragraphs if p]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
         return f"{indent}/** {tamed(paragraphs[0])} */"
-    return "\n".join([f"{indent}/**", *commented(paragraphs, WIDTH, f"{indent} * "), f"{indent} */"])
+    return "\n".join(
+        [f"{indent}/**", *commented(paragraphs, WIDTH, f"{indent} * "), f"{indent} */"]
+    )
 
 
 def described(paragraphs: Comment, indent: str = "") -> str:
     """Return the comment of a part of the ICD, with its errata as notes."""
-    return comment([" ".join((paragraphs.head, *paragraphs.details)), *noted(paragraphs)], indent)
+    return comment(
+        [" ".join((paragraphs.head, *paragraphs.details)), *noted(paragraphs)], indent
+    )
 
 
 def noted(paragraphs: Comment) -> list[str]:
     """Return the errata as notes of documentation tools."""
-    return [_Command(f"@note {paragraph.removeprefix('Note ')}") for paragraph in paragraphs.errata]
+    return [
+        _Command(f"@note {paragraph.removeprefix('Note ')}")
+        for paragraph in paragraphs.errata
+    ]
 
 
 @lru_cache(maxsize=4096)

@@ -37,5 +37,7 @@ def mask(value: int, bits: int) -> str:
 
 
 def cast(value: str, bits: int, signed: bool = False) -> str:
-    """Return a value converted to an integer of the width, by a macro that compiles without a warning in C++, too."""
+    """Return a value converted to an integer of the width, by a macro that compiles
+    without a warning in C++, too.
+    """
     return f"ICDGEN_{'I' if signed else 'U'}{bits}({value})"

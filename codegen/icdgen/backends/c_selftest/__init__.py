@@ -40,7 +40,9 @@ class CSelftestBackend:
 
         # The names must match those of the generated C package.
         prefixed = with_prefix(icd, self.packages.c_prefix)
-        return with_short_names(rows.files(prefixed, render), symbols(describe(prefixed), C_NAMES))
+        return with_short_names(
+            rows.files(prefixed, render), symbols(describe(prefixed), C_NAMES)
+        )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Return no identifiers: all names derive from names of the ``c`` backend."""

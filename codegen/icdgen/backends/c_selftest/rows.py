@@ -13,7 +13,12 @@ from icdgen.backends.c.text import literal, plain
 from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
-from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe import (
+    FieldDescription,
+    MessageDescription,
+    NodeDescription,
+    describe,
+)
 from icdgen.describe.accessors import Accessor, accessors_of
 from icdgen.describe.description import VariablePartDescription
 from icdgen.describe.nodes import Direction
@@ -62,9 +67,15 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     for name in render.runtime_files():
         yield PurePosixPath(name), f"/* {origin()} */\n{render.source(name)}"
     nodes = [node.name for node in icd.nodes]
-    yield PurePosixPath("icdgen_selftest_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes)
+    yield PurePosixPath("icdgen_selftest_nodes.c"), render(
+        "nodes.c.j2", origin=origin(), nodes=nodes
+    )
     for node in describe(icd).nodes:
-        text = render("node.c.j2", origin=origin(node.model, with_digest=True), **_Rows(icd, node).all())
+        text = render(
+            "node.c.j2",
+            origin=origin(node.model, with_digest=True),
+            **_Rows(icd, node).all(),
+        )
         yield PurePosixPath(f"nodes/{node.name}.c"), text
 
 
@@ -83,11 +94,17 @@ class _Rows:
             "names": list(self.names()),
             "messages": [
                 self.message(*message_and_vectors)
-                for message_and_vectors in zip(node.messages, self.vectors.messages, strict=True)
+                for message_and_vectors in zip(
+                    node.messages, self.vectors.messages, strict=True
+                )
             ],
-            "dispatchers": [self.dispatcher(direction, id_bits) for direction in node.directions],
+            "dispatchers": [
+                self.dispatcher(direction, id_bits) for direction in node.directions
+            ],
             "id_type": f"uint{id_bits}_t",
-            "longest": max((message.model.length for message in node.all_messages), default=0),
+            "longest": max(
+                (message.model.length for message in node.all_messages), default=0
+            ),
             "constant": names.constant,
             "literal": literal,
             "plain": plain,
@@ -102,19 +119,31 @@ class _Rows:
             if unknown is not None:
                 yield stem, _unsigned(unknown), "NULL"
 
-    def dispatcher(self, direction: Direction, id_bits: int) -> tuple[str, list[str], bool, list[str]]:
+    def dispatcher(
+        self, direction: Direction, id_bits: int
+    ) -> tuple[str, list[str], bool, list[str]]:
         """Return the name of a dispatcher, rows of ids with message lengths (-1 for
         unknown ids), whether ids are shared, and frames of shared ids.
         """
         ids = self.node.ids(direction.kind)
-        lengths = {entry.id: entry.first.message.model for entry in ids if not entry.is_shared}
+        lengths = {
+            entry.id: entry.first.message.model for entry in ids if not entry.is_shared
+        }
         shared = {entry.id for entry in ids if entry.is_shared}
-        unshared_ids = (id for id in test_ids((*lengths, *shared), id_bits) if id not in shared)
+        unshared_ids = (
+            id for id in test_ids((*lengths, *shared), id_bits) if id not in shared
+        )
         rows = [_id(id, lengths.get(id)) for id in unshared_ids]
-        frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
+        frames = [
+            _frame(row)
+            for row in self.vectors.shared
+            if row.direction == direction.kind
+        ]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
-    def message(self, message: MessageDescription, vectors: MessageVectors) -> dict[str, object]:
+    def message(
+        self, message: MessageDescription, vectors: MessageVectors
+    ) -> dict[str, object]:
         """Return a message with its vectors.
 
         Each has a reason and bytes: the frame, then the packed raw values.
@@ -122,36 +151,68 @@ class _Rows:
         used_bits = bytes(message.model.length)
         vectors = _plain(message, vectors)
         for row in vectors.rows:  # a bit that no encoded frame sets is reserved
-            used_bits = bytes(a | b for a, b in zip(used_bits, row.encoded.ljust(len(used_bits), b"\0"), strict=True))
+            used_bits = bytes(
+                a | b
+                for a, b in zip(
+                    used_bits, row.encoded.ljust(len(used_bits), b"\0"), strict=True
+                )
+            )
         tables: dict[tuple[int, ...], str] = {}
         fields = [self.field(field, vectors, tables) for field in _scalars(message)]
-        doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
+        doubles = (
+            f"UINT64_C(0x{double})"
+            for row in vectors.rows
+            for double in row.doubles.values()
+        )
         differ = len(message.model.layout.lengths) > 1
         return {
             "message": message,
             "stem": names.stem(message),
-            "vectors": [(plain(row.why), self.vector(row, fields)) for row in vectors.rows],
+            "vectors": [
+                (plain(row.why), self.vector(row, fields)) for row in vectors.rows
+            ],
             "vector_size": message.model.length + sum(field.packed for field in fields),
             "kept": _bytes(used_bits),
             "doubles": in_rows(doubles, NUMBERS_IN_ROW),
-            "texts": [f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
+            "texts": [
+                f"{_text(text)}," for row in vectors.rows for text in row.texts.values()
+            ],
             "fields": fields,
-            "lengths": in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW) if differ else [],
+            "lengths": (
+                in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW)
+                if differ
+                else []
+            ),
             "refused_lengths": vectors.lengths,
-            "tail": _tail(message, message.last_part, vectors) if message.last_part is not None else None,
+            "tail": (
+                _tail(message, message.last_part, vectors)
+                if message.last_part is not None
+                else None
+            ),
         }
 
     def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
-        data = bytearray(row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0"))
+        data = bytearray(
+            row.frame.ljust(
+                fields[0].field.message.model.length if fields else 0, b"\0"
+            )
+        )
         for field in fields:
             value = row.raw[field.field.model.name]
             # Negative values are packed in two's complement.
             bits = (1 << 8 * field.packed) - 1
-            data += value if isinstance(value, bytes) else (value & bits).to_bytes(field.packed, "little")
+            data += (
+                value
+                if isinstance(value, bytes)
+                else (value & bits).to_bytes(field.packed, "little")
+            )
         return _bytes(bytes(data))
 
     def field(
-        self, description: FieldDescription, vectors: MessageVectors, tables_by_line: dict[tuple[int, ...], str]
+        self,
+        description: FieldDescription,
+        vectors: MessageVectors,
+        tables_by_line: dict[tuple[int, ...], str],
     ) -> FieldRow:
         """Return the row of a field.
 
@@ -163,7 +224,11 @@ class _Rows:
         stem = f"{names.stem(description.message)}_selftest_{description.name}"
         # Elements of an array have equal tables, which would multiply the code size.
         tables = tables_by_line.setdefault(line, stem)
-        unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
+        unfit = [
+            v
+            for v in vectors.unfit.get(field.name, ())
+            if not is_bytes and storage.min <= v <= storage.max
+        ]
         settings = vectors.settings.get(field.name)
         accessors = {
             accessor.kind: _accessors(accessor, settings)
@@ -206,10 +271,18 @@ def _id(id: int, message: Message | None) -> str:
 
 def _frame(row: SharedRow) -> str:
     """Return the row of a frame with a shared id, and its expected status."""
-    octets = f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}" if row.frame else "NULL"
+    octets = (
+        f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}"
+        if row.frame
+        else "NULL"
+    )
     # A frame of no message has an unknown id for C, or a wrong length.
     refused = "ICD_ERROR_UNKNOWN_ID" if row.expected is None else "ICD_ERROR_LENGTH"
-    status, name = ("ICD_OK", literal(row.message)) if row.message is not None else (refused, "NULL")
+    status, name = (
+        ("ICD_OK", literal(row.message))
+        if row.message is not None
+        else (refused, "NULL")
+    )
     return f"{{{row.id}u, {len(row.frame)}u, {octets}, {status}, {name}}}"
 
 
@@ -218,21 +291,36 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     values, and other bits are 0.
     """
     if message.earlier_parts:  # the position of reserved bits varies between frames
-        return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
+        return replace(
+            vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows)
+        )
     if not message.optional_members:
         return vectors
-    absent: Raw = {field.model.name: field.model.initial_value for field in message.optional_members}
+    absent: Raw = {
+        field.model.name: field.model.initial_value
+        for field in message.optional_members
+    }
     scaled = [scalar.model for scalar in _scalars(message) if scalar.model.has_formula]
     rows = []
     for row in vectors.rows:
-        raw = {field.name: (absent | row.raw)[field.name] for field in scalars_in(message.model.layout)}
+        raw = {
+            field.name: (absent | row.raw)[field.name]
+            for field in scalars_in(message.model.layout)
+        }
         doubles = {
-            field.name: bits_of(codec.physical_double(field, _number(raw[field.name])) or 0.0) for field in scaled
+            field.name: bits_of(
+                codec.physical_double(field, _number(raw[field.name])) or 0.0
+            )
+            for field in scaled
         }
         rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
     always = {name: raws for name, raws in vectors.unfit.items() if name not in absent}
-    fresh = {field.name: field.initial_value for field in raw_fields_in(message.model.layout)}
-    return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
+    fresh = {
+        field.name: field.initial_value for field in raw_fields_in(message.model.layout)
+    }
+    return replace(
+        vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always
+    )
 
 
 def _scalars(message: MessageDescription) -> Iterator[FieldDescription]:
@@ -242,27 +330,44 @@ def _scalars(message: MessageDescription) -> Iterator[FieldDescription]:
     return (scalar for member in message.declared_members for scalar in member.scalars)
 
 
-def _tail(message: MessageDescription, tail: VariablePartDescription, vectors: MessageVectors) -> dict[str, object]:
+def _tail(
+    message: MessageDescription, tail: VariablePartDescription, vectors: MessageVectors
+) -> dict[str, object]:
     """Return the template values of a message of variable length."""
     return {
         "least": message.model.layout.shortest,
-        "counter": next(place for place, scalar in enumerate(_scalars(message)) if scalar.model is tail.counter.model),
+        "counter": next(
+            place
+            for place, scalar in enumerate(_scalars(message))
+            if scalar.model is tail.counter.model
+        ),
         "high": tail.model.high,
-        "frames": _bytes(b"".join(frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted)),
+        "frames": _bytes(
+            b"".join(
+                frame.ljust(message.model.length, b"\0") for frame in vectors.miscounted
+            )
+        ),
         "frame_lengths": list(map(len, vectors.miscounted)),
     }
 
 
 def _accessors(accessor: Accessor, settings: Settings | None) -> Accessors:
-    """Return accessors with test values. An overlay has no setter, and its ``settings`` are None."""
+    """Return accessors with test values.
+
+    An overlay has no setter, and its ``settings`` are None.
+    """
     if accessor.kind == "text":
         type, rows = "char", _text_rows(settings or [])
     elif accessor.kind == "integer":
         type, rows = f"int{accessor.integers.bits}_t", _integer_rows(accessor)
     else:
-        type, rows = "double", [] if settings is None else _double_rows(accessor.field, settings)
+        type, rows = "double", (
+            [] if settings is None else _double_rows(accessor.field, settings)
+        )
     stem = names.stem(accessor.field.declaration.message)
-    return Accessors(f"{stem}_{accessor.name}", f"{stem}_set_{accessor.name}", type, rows)
+    return Accessors(
+        f"{stem}_{accessor.name}", f"{stem}_set_{accessor.name}", type, rows
+    )
 
 
 def _text_rows(settings: Settings) -> list[str]:
@@ -273,7 +378,11 @@ def _text_rows(settings: Settings) -> list[str]:
     lines = []
     for text, raw in settings:
         assert not isinstance(raw, int)
-        octets = "NULL" if raw is None else f"(const uint8_t[]){{{', '.join(map(hex, raw))}}}"
+        octets = (
+            "NULL"
+            if raw is None
+            else f"(const uint8_t[]){{{', '.join(map(hex, raw))}}}"
+        )
         lines.append(f"{{{_text(text)}, {octets}}},")
     return lines
 
@@ -294,7 +403,9 @@ def _double_rows(field: FieldDescription, settings: Settings) -> list[str]:
     never = () if field.model.type == "float" else NEVER
     for bits, raw in [*settings, *((bits, None) for bits in never)]:
         assert not isinstance(raw, bytes)
-        lines.append(f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},")
+        lines.append(
+            f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},"
+        )
     return lines
 
 
@@ -312,7 +423,11 @@ def _integer_rows(accessor: Accessor) -> list[str]:
 
 def _unsigned(value: int) -> str:
     """Return the 64 bits of a raw value as a C literal."""
-    return f"{value}u" if 0 <= value < 1 << 16 else f"UINT64_C(0x{value & ((1 << 64) - 1):X})"
+    return (
+        f"{value}u"
+        if 0 <= value < 1 << 16
+        else f"UINT64_C(0x{value & ((1 << 64) - 1):X})"
+    )
 
 
 def _bytes(data: bytes) -> list[str]:

@@ -45,7 +45,10 @@ def of_code(relations: Relations, facts: Facts) -> list[Part]:
     """Return each fact that generated code uses, defaults included, by section of the
     ICD.
     """
-    why = {(assumption.section, assumption.key): assumption.why for assumption in facts.assumptions}
+    why = {
+        (assumption.section, assumption.key): assumption.why
+        for assumption in facts.assumptions
+    }
     parts = []
     for path, thing in facts.parts.items():
         if isinstance(thing, Crc):
@@ -56,20 +59,42 @@ def of_code(relations: Relations, facts: Facts) -> list[Part]:
             # Unknown facts have no row; the page lists what the ICD describes.
             if value is None or value == ():
                 continue
-            url = relations.links.message(value.message) if isinstance(value, Step) else ""
-            rows.append(Row(capitalized(fact.about), value_text(fact, value), why.get((path, fact.key), ""), url))
+            url = (
+                relations.links.message(value.message)
+                if isinstance(value, Step)
+                else ""
+            )
+            rows.append(
+                Row(
+                    capitalized(fact.about),
+                    value_text(fact, value),
+                    why.get((path, fact.key), ""),
+                    url,
+                )
+            )
         if rows:
             parts.append(_part(path, rows))
     return parts
 
 
-def with_others(relations: Relations, facts: Facts, parts: list[Part], section: Mapping[str, Any]) -> list[Part]:
+def with_others(
+    relations: Relations, facts: Facts, parts: list[Part], section: Mapping[str, Any]
+) -> list[Part]:
     """Return the facts of generated code, each section followed by its remaining
     content: names, units and texts.
     """
-    urls = {message.name: relations.links.message(message) for message in relations.icd.messages_of(facts.node)}
-    read = {f"{path}.{fact.key}" for path, thing in facts.parts.items() for fact in facts_of(thing)}
-    read |= {f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)}
+    urls = {
+        message.name: relations.links.message(message)
+        for message in relations.icd.messages_of(facts.node)
+    }
+    read = {
+        f"{path}.{fact.key}"
+        for path, thing in facts.parts.items()
+        for fact in facts_of(thing)
+    }
+    read |= {
+        f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)
+    }
     parts_by_anchor = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
     for path, key, form, value in _keys_with_values(schema.protocol(), section, ()):
         if ".".join((*path, key)) in read:
@@ -106,7 +131,11 @@ def _keys_with_values(
 
 def _about(form: dict[str, Any], key: str) -> str:
     meaning = schema.meaning(form).removesuffix(" (name of a message)")
-    return capitalized(key.replace("_", " ") if not meaning or meaning.startswith("name of a") else meaning)
+    return capitalized(
+        key.replace("_", " ")
+        if not meaning or meaning.startswith("name of a")
+        else meaning
+    )
 
 
 def _value_text(form: dict[str, Any], key: str, value: object) -> str:
@@ -121,7 +150,11 @@ def _entry(row: Mapping[str, Any]) -> Row:
 
 
 def _part(path: str, rows: list[Row]) -> Part:
-    return Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows)
+    return Part(
+        f"facts-{path.replace('.', '-')}",
+        path.replace(".", ": ").replace("_", " "),
+        rows,
+    )
 
 
 def value_text(fact: Fact, value: object) -> str:
@@ -142,5 +175,11 @@ def as_text(value: object) -> str:
     if isinstance(value, (tuple, list)):
         return ", ".join(as_text(item) for item in value)
     if isinstance(value, dict):
-        return ", ".join(f"{key} {as_text(item)}" for key, item in value.items() if key != "assumptions")
-    return f"{value:,}" if isinstance(value, int) else "" if value is None else str(value)
+        return ", ".join(
+            f"{key} {as_text(item)}"
+            for key, item in value.items()
+            if key != "assumptions"
+        )
+    return (
+        f"{value:,}" if isinstance(value, int) else "" if value is None else str(value)
+    )

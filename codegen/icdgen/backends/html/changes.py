@@ -15,7 +15,10 @@ from icdgen.icd.model import Enum, Message, Node
 def values(relations: Relations, previous: Side) -> dict[str, object]:
     """Return the values of the page."""
     comparison_report = report.make(previous, Side("this release", relations.icd))
-    sections = [(group, _url(relations, group.owner.after)) for group in groups(comparison_report.changes)]
+    sections = [
+        (group, _url(relations, group.owner.after))
+        for group in groups(comparison_report.changes)
+    ]
     return {"sections": sections, **html.shared(comparison_report)}
 
 

@@ -56,7 +56,9 @@ class Drawing:
     width: int = WIDTH
 
 
-def draw(message: Message, node: Node, links: Links, first: int = 0, end: int | None = None) -> Drawing | None:
+def draw(
+    message: Message, node: Node, links: Links, first: int = 0, end: int | None = None
+) -> Drawing | None:
     """Return the drawing of the bytes from ``first`` to before ``end`` (default: all);
     None for an empty range.
     """
@@ -73,7 +75,9 @@ def hatch(x: int, y: int, width: int, height: int) -> str:
     for start in range(x - height, x + width, step):
         left, right = max(start, x), min(start + height, x + width)
         if right > left:
-            path.append(f"M{left} {y + height - (left - start)}L{right} {y + height - (right - start)}")
+            path.append(
+                f"M{left} {y + height - (left - start)}L{right} {y + height - (right - start)}"
+            )
     return "".join(path)
 
 
@@ -89,16 +93,30 @@ def bytes_a_row(length: int, fields: Sequence[NodePlace]) -> int:
 
 
 class _Canvas:
-    def __init__(self, message: Message, node: Node, links: Links, first: int, end: int) -> None:
-        self.message, self.node, self.first, self.length = message, node, first, end - first
+    def __init__(
+        self, message: Message, node: Node, links: Links, first: int, end: int
+    ) -> None:
+        self.message, self.node, self.first, self.length = (
+            message,
+            node,
+            first,
+            end - first,
+        )
         self.repeats = links.repeats(message)
         inside = [
-            place for place in scalars_in(message.layout) if place.at < 8 * end and place.at + place.bits > 8 * first
+            place
+            for place in scalars_in(message.layout)
+            if place.at < 8 * end and place.at + place.bits > 8 * first
         ]
         self.across = bytes_a_row(self.length, inside)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
-            Shape(key, place.type, f"{clip(self._label(key), 200)}: {bit_range(place.at, place.bits)}", anchor)
+            Shape(
+                key,
+                place.type,
+                f"{clip(self._label(key), 200)}: {bit_range(place.at, place.bits)}",
+                anchor,
+            )
             for key, (place, anchor) in enumerate(
                 zip(scalars_in(message.layout), links.anchors(message), strict=True), 1
             )
@@ -122,14 +140,18 @@ class _Canvas:
             for place in scalars_in(self.message.layout)
             if place.conditions and layout.mask(place, self.node) & own_mask
         ]
-        return " / ".join([name, *(other for other in alternatives if other != field.name)][:4])
+        return " / ".join(
+            [name, *(other for other in alternatives if other != field.name)][:4]
+        )
 
     def _owners(self) -> list[int]:
         """Return the key of the field of each bit, in the order of drawing; 0 for
         reserved bits.
         """
         owner = [0] * (8 * self.message.length)
-        for shape, place in zip(self.shapes, scalars_in(self.message.layout), strict=True):
+        for shape, place in zip(
+            self.shapes, scalars_in(self.message.layout), strict=True
+        ):
             # Overlays share their bits with other fields; a counter of the rest has
             # none.
             if place.is_read_only or place.is_count:
@@ -149,11 +171,16 @@ class _Canvas:
         omitted rows.
         """
         step = 8 * self.across
-        every = [(at // 8, self.owner[at : at + step]) for at in range(0, len(self.owner), step)]
+        every = [
+            (at // 8, self.owner[at : at + step])
+            for at in range(0, len(self.owner), step)
+        ]
         grid: list[tuple[int, list[int]]] = []
         # Rows with a single owner are equal to their neighbors; other rows have unique
         # keys.
-        for _, group in groupby(every, key=lambda row: row[1][0] if len(set(row[1])) == 1 else -1 - row[0]):
+        for _, group in groupby(
+            every, key=lambda row: row[1][0] if len(set(row[1])) == 1 else -1 - row[0]
+        ):
             run = list(group)
             grid += run if len(run) <= _FEW else [run[0], (-1, run[0][1]), run[-1]]
         return grid, [first for first, _ in grid]
@@ -165,7 +192,10 @@ class _Canvas:
         msb0 = self.node.bit_order == "msb0"
         # Column numbers follow the bit numbering of the ICD.
         columns = [
-            (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))
+            (
+                LEFT + (column + 0.5) * self.cell,
+                str(column if msb0 else column // 8 * 8 + 7 - column % 8),
+            )
             for column in range(8 * min(self.across, self.length))
         ]
         gaps = [
@@ -173,10 +203,16 @@ class _Canvas:
             for gap in layout.gaps(self.message, self.node)
             if 8 * self.first <= gap.at < 8 * (self.first + self.length)
         ]
-        reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]))
+        reserved = Shape(
+            0,
+            "reserved",
+            "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]),
+        )
         reserved.rects = self._rects(0)
         rows = [
-            (self._y(i), str(self.first + at), str(8 * (self.first + at))) for i, at in enumerate(self.rows) if at >= 0
+            (self._y(i), str(self.first + at), str(8 * (self.first + at)))
+            for i, at in enumerate(self.rows)
+            if at >= 0
         ]
         plan = {
             "across": self.across, "cell": self.cell, "left": LEFT, "top": TOP, "row": self.row, "rows": self.rows,
@@ -211,9 +247,20 @@ class _Canvas:
             for owner, start, end in _runs(owners):
                 if owner != key:
                     continue
-                x, y, width = self._x(start), self._y(index), self._x(end) - self._x(start)
+                x, y, width = (
+                    self._x(start),
+                    self._y(index),
+                    self._x(end) - self._x(start),
+                )
                 # Joined rectangles show one name instead of one per row.
-                above = next((r for r in rectangles if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
+                above = next(
+                    (
+                        r
+                        for r in rectangles
+                        if r[0] == x and r[2] == width and r[1] + r[3] == y
+                    ),
+                    None,
+                )
                 if above:
                     above[3] += self.row
                 else:
@@ -228,10 +275,21 @@ class _Canvas:
         above: list[int] = []
         for index, (_, owners) in enumerate(self.grid):
             y = self._y(index)
-            path += (f"M{self._x(start)} {y}v{self.row}" for _, start, _ in _runs(owners) if start)
+            path += (
+                f"M{self._x(start)} {y}v{self.row}"
+                for _, start, _ in _runs(owners)
+                if start
+            )
             path.append(f"M{LEFT} {y}v{self.row}M{self._x(len(owners))} {y}v{self.row}")
-            differs = _runs(owner != owner_above for owner, owner_above in zip_longest(owners, above))
-            path += (f"M{self._x(start)} {y}H{self._x(end)}" for is_other, start, end in differs if is_other)
+            differs = _runs(
+                owner != owner_above
+                for owner, owner_above in zip_longest(owners, above)
+            )
+            path += (
+                f"M{self._x(start)} {y}H{self._x(end)}"
+                for is_other, start, end in differs
+                if is_other
+            )
             above = owners
         path.append(f"M{LEFT} {self._y(len(self.grid))}H{self._x(len(above))}")
         return "".join(path)

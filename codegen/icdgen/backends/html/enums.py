@@ -12,7 +12,10 @@ def values(relations: Relations, enum: Enum) -> dict[str, object]:
     return {
         "enum": enum,
         "node": relations.icd.node(enum.node),
-        "members": [(member, relations.links.anchor(enum, str(member.value))) for member in enum.members],
+        "members": [
+            (member, relations.links.anchor(enum, str(member.value)))
+            for member in enum.members
+        ],
         "users": relations.uses[enum.node, enum.name],
         "errata": errata_of_enum(enum),
     }

@@ -14,7 +14,18 @@ from icdgen_runtime.wire.stream import stream_encode
 from icdgen.describe.ids import pair_bytes
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message
-from icdgen.protocol.envelope import COBS, CRC, DATA, GIVEN, HDLC, LENGTH, PACKET, SLIP, Check, Stream
+from icdgen.protocol.envelope import (
+    COBS,
+    CRC,
+    DATA,
+    GIVEN,
+    HDLC,
+    LENGTH,
+    PACKET,
+    SLIP,
+    Check,
+    Stream,
+)
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
 from icdgen.wording import count
@@ -77,7 +88,10 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
         "plus": form.length_plus,
         "longest": form.longest,
         "given": GIVEN,
-        "fields": [{name: getattr(field, name) for name in _FIELD_KEYS} for field in form.fields],
+        "fields": [
+            {name: getattr(field, name) for name in _FIELD_KEYS}
+            for field in form.fields
+        ],
     }
     if form.check:
         script_data["check"] = _check(form.check)
@@ -85,12 +99,18 @@ def script_facts(form: Stream, message: Message | None = None) -> dict[str, obje
         script_data["id_pairs"] = size
     for direction in ("telecommand", "telemetry"):
         rows = [row for row in form.rows(direction) if ids is None or row.id in ids]
-        script_data[direction] = [[row.id, row.least, row.most, row.seed] for row in rows]
+        script_data[direction] = [
+            [row.id, row.least, row.most, row.seed] for row in rows
+        ]
     return script_data
 
 
 def _check(check: Check) -> dict[str, object]:
-    places = {"from": check.covered_from, "trailer": check.covered_trailer, "seeded": check.is_seeded}
+    places = {
+        "from": check.covered_from,
+        "trailer": check.covered_trailer,
+        "seeded": check.is_seeded,
+    }
     return {"kind": check.kind, "crc": crc_numbers(check.crc), **places}
 
 
@@ -104,20 +124,31 @@ def boxes(section: Mapping[str, Any]) -> list[tuple[str, str, float, str]]:
     the data.
     """
     form = section["stream"]
-    return [*_boxes(form.get("header", ())), ("data", "", 3.0, ""), *_boxes(form.get("trailer", ()))]
+    return [
+        *_boxes(form.get("header", ())),
+        ("data", "", 3.0, ""),
+        *_boxes(form.get("trailer", ())),
+    ]
 
 
 def _boxes(rows: Any) -> Iterator[tuple[str, str, float, str]]:
     for row in sorted(rows, key=lambda row: int(row["at"])):
         # The minimum width leaves room for the name of the role.
-        yield row["role"], f"{row['bits']} bits", max(1.0, row["bits"] / 16), f"{row['at']}"
+        yield row["role"], f"{row['bits']} bits", max(
+            1.0, row["bits"] / 16
+        ), f"{row['at']}"
 
 
 def places(section: Mapping[str, Any]) -> list[Place]:
     """Return each field, in order."""
     form = section["stream"]
     return [
-        Place(row["role"], f"{part}, {bit_range(row['at'], row['bits'])}", _about(row), _holds(row))
+        Place(
+            row["role"],
+            f"{part}, {bit_range(row['at'], row['bits'])}",
+            _about(row),
+            _holds(row),
+        )
         for part in ("header", "trailer")
         for row in sorted(form.get(part, ()), key=lambda row: int(row["at"]))
     ]
@@ -126,8 +157,16 @@ def places(section: Mapping[str, Any]) -> list[Place]:
 def _about(row: Mapping[str, Any]) -> str:
     about = _ROLES.get(row["role"], "is the sender's choice")
     if row["role"] == "length":
-        about += ": of header, data and trailer" if row.get("counts") == "message" else ": of the data"
-        about += f", {'+' if row['plus'] > 0 else '−'} {abs(row['plus'])}" if row.get("plus") else ""
+        about += (
+            ": of header, data and trailer"
+            if row.get("counts") == "message"
+            else ": of the data"
+        )
+        about += (
+            f", {'+' if row['plus'] > 0 else '−'} {abs(row['plus'])}"
+            if row.get("plus")
+            else ""
+        )
     if row["role"] == "sequence" and row.get("per") == "id":
         about += " of each id"
     return about + (f", {row['byte_order']} endian" if "byte_order" in row else "")
@@ -146,7 +185,11 @@ def _holds(row: Mapping[str, Any]) -> str:
 
 
 def _number(value: int | list[int]) -> str:
-    return " ".join(f"{byte:02X}" for byte in value) if isinstance(value, list) else f"{value} (0x{value:X})"
+    return (
+        " ".join(f"{byte:02X}" for byte in value)
+        if isinstance(value, list)
+        else f"{value} (0x{value:X})"
+    )
 
 
 def sums(section: Mapping[str, Any], node_facts: Facts) -> list[Sum]:
@@ -166,11 +209,15 @@ def sums(section: Mapping[str, Any], node_facts: Facts) -> list[Sum]:
             )
         ]
         rows += [
-            (key.replace("_", " ").capitalize(), _value(declaration[key])) for key in _PARAMETERS if key in declaration
+            (key.replace("_", " ").capitalize(), _value(declaration[key]))
+            for key in _PARAMETERS
+            if key in declaration
         ]
         rows.append(("Covers", _covered(covers)))
         if declaration.get("seeds"):
-            seeds = ", ".join(f"{message} {seed}" for message, seed in declaration["seeds"].items())
+            seeds = ", ".join(
+                f"{message} {seed}" for message, seed in declaration["seeds"].items()
+            )
             rows.append(("A byte after all others, by message", seeds))
         checksums.append(Sum(name, rows, form.crc if form and kind == CRC else None))
     return checksums
@@ -196,12 +243,22 @@ class Part(NamedTuple):
     title: str
 
 
-def packet(form: Stream, link: Any, id: int, direction: Direction, data: bytes) -> list[Part]:
+def packet(
+    form: Stream, link: Any, id: int, direction: Direction, data: bytes
+) -> list[Part]:
     """Return the parts of a message in its packet format, before byte stuffing."""
     # Without delimiter: byte stuffing would move the borders of the parts.
-    packet_bytes = stream_encode(link._replace(stream=link.stream._replace(delimited_by=PACKET)), id, data, direction)
+    packet_bytes = stream_encode(
+        link._replace(stream=link.stream._replace(delimited_by=PACKET)),
+        id,
+        data,
+        direction,
+    )
     head, end = form.header_bytes, len(packet_bytes) - form.trailer_bytes
-    before, behind = (", ".join(f.role for f in form.fields if f.in_trailer == where) for where in (False, True))
+    before, behind = (
+        ", ".join(f.role for f in form.fields if f.in_trailer == where)
+        for where in (False, True)
+    )
     parts = [
         Part("id", packet_bytes[:head], f"header: {before}"),
         Part("data", packet_bytes[head:end], f"data, {count(end - head, 'byte')}"),

@@ -33,25 +33,45 @@ class Group:
 def values(relations: Relations) -> dict[str, object]:
     """Return the values of the page: errata and notes of each node, in order."""
     groups = [_group(relations, node) for node in relations.icd.nodes if node.errata]
-    entries = [entry for group in groups for _, _, entries_of_kind in group.kinds for entry in entries_of_kind]
+    entries = [
+        entry
+        for group in groups
+        for _, _, entries_of_kind in group.kinds
+        for entry in entries_of_kind
+    ]
     return {
         "groups": groups,
         "messages": sorted({name for entry in entries for name in entry.messages}),
-        "levels": [level for level in _LEVELS if any(entry.erratum.confidence == level for entry in entries)],
+        "levels": [
+            level
+            for level in _LEVELS
+            if any(entry.erratum.confidence == level for entry in entries)
+        ],
     }
 
 
 def _group(relations: Relations, node: Node) -> Group:
-    errata = [_entry(relations, erratum) for erratum in node.errata if not erratum.is_note]
+    errata = [
+        _entry(relations, erratum) for erratum in node.errata if not erratum.is_note
+    ]
     notes = [_entry(relations, erratum) for erratum in node.errata if erratum.is_note]
-    return Group(node, [(f"{node.name}-errata", "Errata", errata), (f"{node.name}-notes", "Notes", notes)])
+    return Group(
+        node,
+        [
+            (f"{node.name}-errata", "Errata", errata),
+            (f"{node.name}-notes", "Notes", notes),
+        ],
+    )
 
 
 def _entry(relations: Relations, erratum: Erratum) -> Entry:
     # Equal ids of different nodes are distinguished by their titles.
     places = relations.places[erratum.id, erratum.title]
     return Entry(
-        erratum, places[:_FEW], places[_FEW:], list(dict.fromkeys(place.text.split(": ")[0] for place in places))
+        erratum,
+        places[:_FEW],
+        places[_FEW:],
+        list(dict.fromkeys(place.text.split(": ")[0] for place in places)),
     )
 
 
@@ -59,7 +79,12 @@ def changed(erratum: Erratum) -> list[tuple[str, str, str]]:
     """Return key, printed value and corrected value of each change of an erratum."""
     printed = dict(erratum.printed)
     return (
-        [(key, shown(printed.get(key)), shown(corrected)) for key, corrected in erratum.held] if erratum.changes else []
+        [
+            (key, shown(printed.get(key)), shown(corrected))
+            for key, corrected in erratum.held
+        ]
+        if erratum.changes
+        else []
     )
 
 

@@ -51,14 +51,25 @@ def examples(message: Message, node: Node) -> list[Example]:
     if not message.length:
         return []
     # Random bits show each field; a frame of ones shows the extreme values.
-    rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
+    rows = [
+        ("random 0", patterns.random_frame(message, "vector 0")),
+        ("all ones", b"\xff" * message.length),
+    ]
     results = []
     for why, frame in rows:
         # The frame has all elements, so that each field has a value.
         if message.layout.parts:
             frame = patterns.cut(message, node, frame, message.layout.parts[-1].most)
-        raw = codec.decode(node, message, frame) if len(scalars_in(message.layout)) <= _MOST else {}
-        cells = [_cell(field, raw.get(field.name)) for field in scalars_in(message.layout)] if raw else []
+        raw = (
+            codec.decode(node, message, frame)
+            if len(scalars_in(message.layout)) <= _MOST
+            else {}
+        )
+        cells = (
+            [_cell(field, raw.get(field.name)) for field in scalars_in(message.layout)]
+            if raw
+            else []
+        )
         results.append(Example(why, frame.hex(" ").upper(), frame, cells))
     return results
 
@@ -81,8 +92,15 @@ def _cell(field: NodePlace, raw: int | bytes | None) -> Cell:
         return Cell(_raw(field, raw), name)
     if field.type == "bool":
         return Cell(str(raw), "true" if raw else "false")
-    physical = codec.physical(field, raw) if field.curve is None else codec.value_double(field, raw)
-    return Cell(_raw(field, raw), "" if physical is None else number_text(field, physical).replace("-", MINUS))
+    physical = (
+        codec.physical(field, raw)
+        if field.curve is None
+        else codec.value_double(field, raw)
+    )
+    return Cell(
+        _raw(field, raw),
+        "" if physical is None else number_text(field, physical).replace("-", MINUS),
+    )
 
 
 def _raw(field: NodePlace, raw: int) -> str:

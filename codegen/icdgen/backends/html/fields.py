@@ -72,7 +72,9 @@ def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
     ]
     # Reserved bits of omitted elements are omitted too.
     for gap in layout.gaps(message, node):
-        field_rows += [FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)]
+        field_rows += [
+            FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)
+        ]
     return sorted(field_rows, key=lambda row: row.at)
 
 
@@ -81,7 +83,8 @@ def between(field_rows: list[FieldRow], section: Section) -> list[FieldRow | Fla
     inside = [
         row
         for row in field_rows
-        if row.key in section.keys or (not row.key and section.first * 8 <= row.at < section.end * 8)
+        if row.key in section.keys
+        or (not row.key and section.first * 8 <= row.at < section.end * 8)
     ]
     section_rows: list[FieldRow | FlagRow] = []
     for is_flag, group in groupby(inside, key=lambda row: row.is_flag):
@@ -90,9 +93,15 @@ def between(field_rows: list[FieldRow], section: Section) -> list[FieldRow | Fla
     return section_rows
 
 
-def _row(key: int, field: NodePlace, message: Message, links: Links, anchor: str) -> FieldRow:
+def _row(
+    key: int, field: NodePlace, message: Message, links: Links, anchor: str
+) -> FieldRow:
     # the formula describes a derived value completely
-    field_remarks = () if field.derived else remarks(field, texts.number, message if message.has_conditions else None)
+    field_remarks = (
+        ()
+        if field.derived
+        else remarks(field, texts.number, message if message.has_conditions else None)
+    )
     return FieldRow(
         key=key,
         at=field.at,

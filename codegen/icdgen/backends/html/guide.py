@@ -70,7 +70,10 @@ def pages() -> tuple[Page, ...]:
     documentation is not installed.
     """
     folder = shipped.docs()
-    paths = {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.md"))}
+    paths = {
+        path.relative_to(folder).with_suffix("").as_posix(): path
+        for path in sorted(folder.rglob("*.md"))
+    }
     if INDEX not in paths:
         return ()
     topics = topics_of(paths[INDEX].read_text("utf-8"))
@@ -86,9 +89,15 @@ def topics_of(index: str) -> dict[str, tuple[str, ...]]:
     """Return the pages of the index in order, with the topics after each link:
     ``[Link](link.md): SLIP, COBS; ...``.
     """
-    links = re.findall(r"\[([^\]]+)\]\(([^)#:]+)\.md\)(?::\s([^;\[\]]*?)(?=;|,?\s*\n-|,\s*\[|\n\n|\Z))?", index)
+    links = re.findall(
+        r"\[([^\]]+)\]\(([^)#:]+)\.md\)(?::\s([^;\[\]]*?)(?=;|,?\s*\n-|,\s*\[|\n\n|\Z))?",
+        index,
+    )
     return {
-        name: (title, *(" ".join(topic.split()) for topic in topics.split(",") if topic.strip()))
+        name: (
+            title,
+            *(" ".join(topic.split()) for topic in topics.split(",") if topic.strip()),
+        )
         for title, name, topics in links
     }
 
@@ -105,8 +114,18 @@ def files() -> Iterator[tuple[str, str]]:
     """Yield path and text of files that the pages show or link to."""
     folder = shipped.docs()
     for path in sorted(folder.rglob("*")):
-        if path.is_file() and path.suffix in (".yaml", ".c", ".h", ".py", ".rs", ".toml", ".txt"):
-            yield f"{FOLDER}/{path.relative_to(folder).as_posix()}", path.read_text("utf-8")
+        if path.is_file() and path.suffix in (
+            ".yaml",
+            ".c",
+            ".h",
+            ".py",
+            ".rs",
+            ".toml",
+            ".txt",
+        ):
+            yield f"{FOLDER}/{path.relative_to(folder).as_posix()}", path.read_text(
+                "utf-8"
+            )
 
 
 def anchor_of(title: str) -> str:
@@ -123,14 +142,18 @@ def _page(path: Path, name: str = "") -> Page:
     from markdown_it import MarkdownIt
 
     # The manual contains no HTML; disabling it makes its text safe.
-    reader = MarkdownIt("commonmark", {"html": False}).enable(["table", "strikethrough"])
+    reader = MarkdownIt("commonmark", {"html": False}).enable(
+        ["table", "strikethrough"]
+    )
     tokens = reader.parse(path.read_text("utf-8"))
     page = Page(name or path.stem, "")
     taken = set(_OF_EVERY_PAGE)
     for number, token in enumerate(tokens):
         if token.type == "heading_open":
             title = _plain(tokens[number + 1])
-            anchor = next(candidate for candidate in _anchors(title) if candidate not in taken)
+            anchor = next(
+                candidate for candidate in _anchors(title) if candidate not in taken
+            )
             taken.add(anchor)
             token.attrSet("id", anchor)
             page.sections.append(Section(title, anchor, int(token.tag[1:])))
@@ -145,14 +168,18 @@ def _page(path: Path, name: str = "") -> Page:
                 page.sections[-1].text += f" {token.content}"
     for section in page.sections:
         section.text = " ".join(section.text.split())
-    page.html = _folded(_tables_in_reach(reader.renderer.render(tokens, reader.options, {})))
+    page.html = _folded(
+        _tables_in_reach(reader.renderer.render(tokens, reader.options, {}))
+    )
     return page
 
 
 def _tables_in_reach(html: str) -> str:
     """Return the page with scrollable tables and code, also by keyboard."""
     numbers = count(1)
-    html = html.replace("<pre>", '<pre tabindex="0" data-copy>').replace("<th>", '<th scope="col">')
+    html = html.replace("<pre>", '<pre tabindex="0" data-copy>').replace(
+        "<th>", '<th scope="col">'
+    )
     html = re.sub(
         "<table>",
         lambda _: f'<section class="scroll wide-table" tabindex="0" aria-label="Table {next(numbers)}, scrollable"><table>',
@@ -167,13 +194,19 @@ def _folded(html: str) -> str:
         return html
     first, *sections = re.split(r"(?=<h2 )", html)
     folded_sections = [
-        re.sub(r"\A(<h2 .*?</h2>)", r"<summary>\1</summary>", section, flags=re.DOTALL) for section in sections
+        re.sub(r"\A(<h2 .*?</h2>)", r"<summary>\1</summary>", section, flags=re.DOTALL)
+        for section in sections
     ]
-    return first + "".join(f'<details class="fold">{section}</details>\n' for section in folded_sections)
+    return first + "".join(
+        f'<details class="fold">{section}</details>\n' for section in folded_sections
+    )
 
 
 def _plain(token: Token) -> str:
-    return "".join(child.content if child.type in ("text", "code_inline") else " " for child in token.children or ())
+    return "".join(
+        child.content if child.type in ("text", "code_inline") else " "
+        for child in token.children or ()
+    )
 
 
 def _mend_links(token: Token, path: Path) -> None:
@@ -191,7 +224,9 @@ def _mend_links(token: Token, path: Path) -> None:
                 continue
             child.attrSet("href", target)
         # A link without target loses both of its tags.
-        elif (child.type == "link_close" and not is_linked.pop()) or child.type == "image":
+        elif (
+            child.type == "link_close" and not is_linked.pop()
+        ) or child.type == "image":
             continue
         children.append(child)
     token.children = children

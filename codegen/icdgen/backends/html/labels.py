@@ -44,7 +44,9 @@ def _in_box(box: Box, name: str) -> list[Label]:
         if lines:
             top = y + height / 2 - (len(lines) - 1) * size * _LEADING / 2 + size * 0.36
             return [
-                Label(x + width // 2, round(top + index * size * _LEADING, 1), size, line)
+                Label(
+                    x + width // 2, round(top + index * size * _LEADING, 1), size, line
+                )
                 for index, line in enumerate(lines)
             ]
     return []

@@ -33,7 +33,10 @@ def slug(text: str, vocabulary: tuple[str, ...]) -> str:
     A long name is shortened and gets a checksum.
     """
     # A name without letters and digits has no words.
-    name = snake(words(text, vocabulary)) or f"{crc32(text.encode('utf-8', 'surrogatepass')):08x}"
+    name = (
+        snake(words(text, vocabulary))
+        or f"{crc32(text.encode('utf-8', 'surrogatepass')):08x}"
+    )
     # Some file systems limit names to 255 bytes, and paths to 260 characters.
     if len(name) > _LONGEST:
         return f"{name[:_LONGEST]}_{crc32(name.encode()):08x}"
@@ -46,18 +49,35 @@ class Links:
     def __init__(self, icd: Icd) -> None:
         self._pages: dict[tuple[str, str, str], str] = {}
         self._anchors: dict[int, dict[str, str]] = {}
-        self._repeats = {id(message): Repeats(message) for node in icd.nodes for message in node.messages}
+        self._repeats = {
+            id(message): Repeats(message)
+            for node in icd.nodes
+            for message in node.messages
+        }
         for node in icd.nodes:
             for message in node.messages:
-                self._anchors[id(message)] = _anchors_of_fields(message, self.repeats(message), node.vocabulary)
-            self._anchors.update((id(enum), _anchors_of_members(enum, node.vocabulary)) for enum in node.enums)
+                self._anchors[id(message)] = _anchors_of_fields(
+                    message, self.repeats(message), node.vocabulary
+                )
+            self._anchors.update(
+                (id(enum), _anchors_of_members(enum, node.vocabulary))
+                for enum in node.enums
+            )
             self._assign_pages(node, "message", "", node.messages)
             self._assign_pages(node, "enum", "enum-", node.enums)
 
-    def _assign_pages(self, node: Node, kind: str, prefix: str, things: tuple[Message, ...] | tuple[Enum, ...]) -> None:
+    def _assign_pages(
+        self,
+        node: Node,
+        kind: str,
+        prefix: str,
+        things: tuple[Message, ...] | tuple[Enum, ...],
+    ) -> None:
         taken: set[str] = set()
         for thing in things:
-            name = _free(prefix + slug(thing.identifier or thing.name, node.vocabulary), taken)
+            name = _free(
+                prefix + slug(thing.identifier or thing.name, node.vocabulary), taken
+            )
             self._pages[node.name, kind, thing.name] = f"{node.name}/{name}.html"
 
     def node(self, name: str) -> str:
@@ -88,7 +108,9 @@ class Links:
 
     def anchors(self, message: Message) -> list[str]:
         """Return the anchors of the fields of a message, in order."""
-        return [self.anchor(message, field.name) for field in scalars_in(message.layout)]
+        return [
+            self.anchor(message, field.name) for field in scalars_in(message.layout)
+        ]
 
     def field(self, message: Message, field: NodePlace) -> str:
         """Return the link to a field: ``demo/estimated_roll.html#field-roll_angle``."""
@@ -107,7 +129,9 @@ class Links:
         return f"{UNITS}#unit-{unit.identifier}"
 
 
-def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str, ...]) -> dict[str, str]:
+def _anchors_of_fields(
+    message: Message, repeats: Repeats, vocabulary: tuple[str, ...]
+) -> dict[str, str]:
     """Return the anchors by name of the field.
 
     If the page shows one element of an array, fields of other elements share its
@@ -115,10 +139,14 @@ def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str
     """
     taken: set[str] = set()
     anchors: dict[str, str] = {}
-    for field, leader, name in zip(scalars_in(message.layout), repeats.leaders, repeats.names, strict=True):
+    for field, leader, name in zip(
+        scalars_in(message.layout), repeats.leaders, repeats.names, strict=True
+    ):
         first = scalars_in(message.layout)[leader - 1]
         if first is field:
-            anchors[field.name] = _free("field-" + slug(field.identifier or name, vocabulary), taken)
+            anchors[field.name] = _free(
+                "field-" + slug(field.identifier or name, vocabulary), taken
+            )
         else:
             anchors[field.name] = anchors[first.name]
     return anchors
@@ -127,7 +155,10 @@ def _anchors_of_fields(message: Message, repeats: Repeats, vocabulary: tuple[str
 def _anchors_of_members(enum: Enum, vocabulary: tuple[str, ...]) -> dict[str, str]:
     """Return the anchors by value of the member."""
     taken: set[str] = set()
-    return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in enum.members}
+    return {
+        str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken)
+        for m in enum.members
+    }
 
 
 def _free(name: str, taken: set[str]) -> str:

@@ -23,16 +23,28 @@ def text(relations: Relations, compared: bool) -> str:
         "",
     ]
     for node in icd.nodes:
-        about = " ".join(filter(None, (node.summary, document(node) + "." if node.document else "")))
+        about = " ".join(
+            filter(None, (node.summary, document(node) + "." if node.document else ""))
+        )
         lines += [f"## {_line(node.title)}", "", *([_line(about), ""] if about else [])]
         lines += [f"- [Overview]({links.node(node.name)})"]
         for message in node.messages:
             ids = "/".join(id.text for id in relations.ids(message))
             about = f"{message.kind} {ids}, {length_text(message)}. {message.summary}".rstrip()
-            lines.append(f"- [{_line(message.name)}]({links.message(message)}): {_line(about)}")
-        lines += [f"- [{_line(enum.name)}]({links.enum(enum)}): enumeration" for enum in node.enums]
+            lines.append(
+                f"- [{_line(message.name)}]({links.message(message)}): {_line(about)}"
+            )
+        lines += [
+            f"- [{_line(enum.name)}]({links.enum(enum)}): enumeration"
+            for enum in node.enums
+        ]
         lines.append("")
-    lines += ["## Further", "", f"- [Errata]({ERRATA})", f"- [Units and types]({UNITS})"]
+    lines += [
+        "## Further",
+        "",
+        f"- [Errata]({ERRATA})",
+        f"- [Units and types]({UNITS})",
+    ]
     lines += [f"- [What changed]({CHANGES})"] if compared else []
     return "\n".join([*lines, "- [Everything as JSON](icd.json)", ""])
 

@@ -23,23 +23,30 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 
-def values(relations: Relations, node: Node, message: Message, render: Renderer) -> dict[str, Any]:
+def values(
+    relations: Relations, node: Node, message: Message, render: Renderer
+) -> dict[str, Any]:
     """Return the values of the page of a message that ``node`` declares."""
     described, in_c = describe(relations.icd).message(message), relations.in_c(message)
     repeats = relations.links.repeats(message)
     parts = sections.bands(relations, message)
     shares = parts or sections.shares(message)
     # A message with sections has a drawing for each of them.
-    pictures = [drawing.draw(message, node, relations.links, part.first, part.end) for part in parts] or [
-        drawing.draw(message, node, relations.links)
-    ]
+    pictures = [
+        drawing.draw(message, node, relations.links, part.first, part.end)
+        for part in parts
+    ] or [drawing.draw(message, node, relations.links)]
     drawings = [picture for picture in pictures if picture is not None]
     panels = sections.panels(message, repeats) if repeats.arrays else shares
     rows = fields.rows(message, node, relations.links)
     shown = examples(message, node)
     is_received = message.telemetry_id is not None
     # A telecommand shows its initial values.
-    data = shown[0].frame if shown and is_received else codec.encode(node, message, codec.initial_values(node, message))
+    data = (
+        shown[0].frame
+        if shown and is_received
+        else codec.encode(node, message, codec.initial_values(node, message))
+    )
     return {
         "message": message,
         "node": node,
@@ -51,7 +58,10 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "keyed": any(picture.keyed for picture in drawings),
         "rows": rows,
         "columns": fields.columns_of(rows),
-        "bands": [(part, fields.between(rows, part), picture) for part, picture in zip(parts, pictures, strict=False)],
+        "bands": [
+            (part, fields.between(rows, part), picture)
+            for part, picture in zip(parts, pictures, strict=False)
+        ],
         "shares": [(share, fields.between(rows, share)) for share in shares],
         "buses": wire.buses(message, relations.wire(message), data),
         "example_data": is_received and bool(data),
@@ -65,30 +75,77 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
     }
 
 
-def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
+def _facts(
+    relations: Relations, node: Node, message: Message
+) -> list[tuple[str, str, str]]:
     """Return label, text and link of each fact."""
     protocol = relations.icd.protocol_of(node) or {}
     reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
-    answer = next((candidate for candidate in relations.icd.messages_of(node) if candidate.name == reply), None)
+    answer = next(
+        (
+            candidate
+            for candidate in relations.icd.messages_of(node)
+            if candidate.name == reply
+        ),
+        None,
+    )
     # Packet formats have responses instead of acknowledges.
-    is_acknowledged = message.telecommand_id is not None and answer is None and "stream" not in protocol
-    source = [f"{word} {number}" for word, number in (("table", message.table), ("page", message.page)) if number]
+    is_acknowledged = (
+        message.telecommand_id is not None
+        and answer is None
+        and "stream" not in protocol
+    )
+    source = [
+        f"{word} {number}"
+        for word, number in (("table", message.table), ("page", message.page))
+        if number
+    ]
     facts = [
         ("Length", length_text(message), ""),
-        ("Fields", str(sum(not field.is_count for _, field in relations.shown_fields(message))), ""),
+        (
+            "Fields",
+            str(
+                sum(not field.is_count for _, field in relations.shown_fields(message))
+            ),
+            "",
+        ),
         *_open_parts(message),
         ("End", "trailing zeros may be omitted" if message.may_end_early else "", ""),
-        ("Reserved", f"last {count(message.reserved, 'byte')}" if message.reserved else "", ""),
+        (
+            "Reserved",
+            f"last {count(message.reserved, 'byte')}" if message.reserved else "",
+            "",
+        ),
         ("Id", sharing(describe(relations.icd).node(node).messages_by_id, message), ""),
         ("Group", message.group, ""),
-        ("Answered with", answer.name, relations.links.message(answer)) if answer else ("", "", ""),
-        ("Acknowledged", ("yes" if message.acknowledge else "no") if is_acknowledged else "", ""),
+        (
+            ("Answered with", answer.name, relations.links.message(answer))
+            if answer
+            else ("", "", "")
+        ),
+        (
+            "Acknowledged",
+            ("yes" if message.acknowledge else "no") if is_acknowledged else "",
+            "",
+        ),
         *(
-            ("Log mask", f"bit {row.bit}", relations.links.node(owner.name) + "#log-mask")
+            (
+                "Log mask",
+                f"bit {row.bit}",
+                relations.links.node(owner.name) + "#log-mask",
+            )
             for owner, row in relations.logged[message.node, message.name]
         ),
         ("Manual", ", ".join(source), ""),
-        ("Used by", ", ".join(speaker.title for speaker in relations.speakers[node.name] if speaker is not node), ""),
+        (
+            "Used by",
+            ", ".join(
+                speaker.title
+                for speaker in relations.speakers[node.name]
+                if speaker is not node
+            ),
+            "",
+        ),
     ]
     return [(label, text, url) for label, text, url in facts if text]
 
@@ -97,9 +154,15 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
     """Yield the limits of each variable-length part."""
     parts = message.layout.parts
     for part in parts:
-        until = "up to the end" if part.is_rest else f"as many as {count_text(part.counter, part.plus)} says"
+        until = (
+            "up to the end"
+            if part.is_rest
+            else f"as many as {count_text(part.counter, part.plus)} says"
+        )
         most = count(part.most, "element" if part.is_array else "byte")
-        yield "Variable end" if part is parts[-1] else "Variable part", f"{part.name}: up to {most}, {until}", ""
+        yield (
+            "Variable end" if part is parts[-1] else "Variable part"
+        ), f"{part.name}: up to {most}, {until}", ""
         for inner in part.inner:
             until = f"as many as {count_text(inner.counter, inner.plus)} says"
             text = f"{inner.name} in each of {part.name}: up to {count(inner.most, 'element')}, {until}"
@@ -107,17 +170,30 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
 
 
 def _plan(
-    relations: Relations, node: Node, message: Message, drawings: list[drawing.Drawing], panels: list[sections.Section]
+    relations: Relations,
+    node: Node,
+    message: Message,
+    drawings: list[drawing.Drawing],
+    panels: list[sections.Section],
 ) -> dict[str, object]:
     enums = {
-        field.enum.name: plan.enum_plan(field.enum) for field in scalars_in(message.layout) if field.enum is not None
+        field.enum.name: plan.enum_plan(field.enum)
+        for field in scalars_in(message.layout)
+        if field.enum is not None
     }
     repeats = relations.links.repeats(message)
     return {
         **plan.message_plan(message, node),
         "enums": enums,
         "drawings": [picture.plan for picture in drawings],
-        "sections": [{"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open} for s in panels if s.keys],
+        "sections": [
+            {"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open}
+            for s in panels
+            if s.keys
+        ],
         "leaders": repeats.leaders if repeats.arrays else None,
-        "wire": {**wire.page_facts(message, relations.wire(message)), "id_bytes": wire_ids.size(node.id_bits)},
+        "wire": {
+            **wire.page_facts(message, relations.wire(message)),
+            "id_bytes": wire_ids.size(node.id_bits),
+        },
     }

@@ -9,20 +9,30 @@ from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Nod
 from icdgen.icd.places import scalars_in
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
-_KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
+_KINDS = {
+    TELECOMMAND: "Telecommands",
+    TELEMETRY: "Telemetry",
+    CONFIGURATION: "Configuration",
+}
 _CONFIDENCE = ("certain", "likely", "open")
 
 
 def brief(relations: Relations, node: Node) -> dict[str, object]:
     """Return the values of a node that every page shows."""
-    return {"name": node.name, "title": texts.clip(node.title, 80), "url": relations.links.node(node.name)}
+    return {
+        "name": node.name,
+        "title": texts.clip(node.title, 80),
+        "url": relations.links.node(node.name),
+    }
 
 
 def home(relations: Relations) -> dict[str, object]:
     """Return the values of the home page."""
     icd = relations.icd
     messages = [message for node in icd.nodes for message in node.messages]
-    errata = [erratum for node in icd.nodes for erratum in node.errata if not erratum.is_note]
+    errata = [
+        erratum for node in icd.nodes for erratum in node.errata if not erratum.is_note
+    ]
     notes = sum(erratum.is_note for node in icd.nodes for erratum in node.errata)
     totals = [
         (f"{len(icd.nodes):,}", "nodes"),
@@ -34,13 +44,23 @@ def home(relations: Relations) -> dict[str, object]:
     ]
     # Telemetry with a scale shows raw and physical values.
     example = next(
-        (m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in scalars_in(m.layout))), None
+        (
+            m
+            for m in messages
+            if m.telemetry_id is not None
+            and any(f.has_formula for f in scalars_in(m.layout))
+        ),
+        None,
     )
     return {
         "totals": totals,
         "cards": [_card(relations, node) for node in icd.nodes],
-        "confidence": [(level, sum(e.confidence == level for e in errata)) for level in _CONFIDENCE],
-        "documents": list(dict.fromkeys(manual(node) for node in icd.nodes if node.document)),
+        "confidence": [
+            (level, sum(e.confidence == level for e in errata)) for level in _CONFIDENCE
+        ],
+        "documents": list(
+            dict.fromkeys(manual(node) for node in icd.nodes if node.document)
+        ),
         "example": relations.place(example) if example else None,
         "paste_example": _paste_example(relations, example),
     }
@@ -64,7 +84,10 @@ def _card(relations: Relations, node: Node) -> dict[str, object]:
         "facts": _facts(node),
         "includes": [relations.icd.node(name).title for name in node.includes],
         "counts": [
-            (sum(m.kind == kind for m in node.messages), title.lower() if kind != CONFIGURATION else "configuration")
+            (
+                sum(m.kind == kind for m in node.messages),
+                title.lower() if kind != CONFIGURATION else "configuration",
+            )
             for kind, title in _KINDS.items()
         ],
         **_decisions(node),
@@ -89,17 +112,30 @@ def _facts(node: Node) -> list[tuple[str, str]]:
 
 def values(relations: Relations, node: Node) -> dict[str, object]:
     """Return the values of the page of a node, and of the page with all its messages."""
-    used_messages = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
+    used_messages = sorted(
+        relations.icd.messages_of(node), key=lambda m: m.node != node.name
+    )
     rows = [_row(relations, node, message) for message in used_messages]
     # `reversed`: the first message of a shared id has precedence.
-    received = {m.telemetry_id: relations.place(m) for m in reversed(relations.icd.messages_of(node))}
-    numbering = f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
+    received = {
+        m.telemetry_id: relations.place(m)
+        for m in reversed(relations.icd.messages_of(node))
+    }
+    numbering = (
+        f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
+    )
     return {
         "node": node,
         "document": document(node),
-        "facts": [*_facts(node), ("Byte order", f"{node.byte_order}-endian"), ("Bit numbering", numbering)],
+        "facts": [
+            *_facts(node),
+            ("Byte order", f"{node.byte_order}-endian"),
+            ("Bit numbering", numbering),
+        ],
         "rows": rows,
-        "has_hex": any(id.hexadecimal for message in used_messages for id in relations.ids(message)),
+        "has_hex": any(
+            id.hexadecimal for message in used_messages for id in relations.ids(message)
+        ),
         "kinds": [
             (kind, title, count)
             for kind, title in _KINDS.items()
@@ -108,7 +144,12 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "groups": sorted({message.group for message in used_messages if message.group}),
         "loggable": [(row, received.get(row.id)) for row in node.loggable],
         "enums": [
-            (Place(enum.name, relations.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums
+            (
+                Place(enum.name, relations.links.enum(enum)),
+                len(enum.members),
+                enum.summary,
+            )
+            for enum in node.enums
         ],
         "included": [
             Place(included_node.title, relations.links.node(included_node.name))
@@ -130,7 +171,11 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
 def _row(relations: Relations, node: Node, message: Message) -> dict[str, object]:
     own = message.node == node.name
     ids = relations.ids(message)
-    mask = [row.bit for owner, row in relations.logged[message.node, message.name] if owner is node]
+    mask = [
+        row.bit
+        for owner, row in relations.logged[message.node, message.name]
+        if owner is node
+    ]
     return {
         "message": message,
         "url": relations.links.message(message),
@@ -140,7 +185,9 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
             for id in ids
         ],
         "bytes": (
-            message.length if len(message.layout.lengths) == 1 else f"{message.layout.shortest}\u2013{message.length}"
+            message.length
+            if len(message.layout.lengths) == 1
+            else f"{message.layout.shortest}\u2013{message.length}"
         ),
         "mask": mask,
         "of": "" if own else relations.icd.node(message.node).title,

@@ -23,16 +23,26 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
 
     Fields are in the order of the ICD.
     """
-    places = {field.name: place for place, field in enumerate(scalars_in(message.layout))}
-    fields = [_field(field, message, node, places) for field in scalars_in(message.layout)]
-    plan: dict[str, object] = {"name": message.name, "length": message.length, "fields": fields}
+    places = {
+        field.name: place for place, field in enumerate(scalars_in(message.layout))
+    }
+    fields = [
+        _field(field, message, node, places) for field in scalars_in(message.layout)
+    ]
+    plan: dict[str, object] = {
+        "name": message.name,
+        "length": message.length,
+        "fields": fields,
+    }
     if any(node.present_if for node in message.layout.fixed):
         plan["conditional"] = True
     if message.may_end_early:
         plan["endsEarly"] = True
     parts = message.layout.parts
     if message.layout.has_gaps:
-        plan["inner"] = [_part(part, places) for part in parts if part is not parts[-1] or part.inner]
+        plan["inner"] = [
+            _part(part, places) for part in parts if part is not parts[-1] or part.inner
+        ]
         plan["fewest"] = message.layout.shortest
     if parts:
         tail = parts[-1]
@@ -52,12 +62,17 @@ def _part(part: VariablePart, places: Mapping[str, int]) -> dict[str, object]:
         "most": part.most,
         "plus": part.plus,
     }
-    return plan | ({"nested": [_part(inner, places) for inner in part.inner]} if part.inner else {})
+    return plan | (
+        {"nested": [_part(inner, places) for inner in part.inner]} if part.inner else {}
+    )
 
 
 def enum_plan(enum: Enum) -> list[list[object]]:
     """Return value and name of each member, and the last value of a range."""
-    return [[integer(m.value), m.name, *([] if m.to is None else [integer(m.to)])] for m in enum.members]
+    return [
+        [integer(m.value), m.name, *([] if m.to is None else [integer(m.to)])]
+        for m in enum.members
+    ]
 
 
 def integer(value: int) -> int | str:
@@ -65,7 +80,9 @@ def integer(value: int) -> int | str:
     return value if abs(value) < EXACT_DOUBLE else str(value)
 
 
-def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, int]) -> dict[str, object]:
+def _field(
+    field: NodePlace, message: Message, node: Node, places: Mapping[str, int]
+) -> dict[str, object]:
     """Return the data of a field without inapplicable keys.
 
     ``places``: positions of the message's fields by name.
@@ -75,14 +92,21 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
     earlier = [part.node for part in variable[:-1]]
     element = field.steps[0].element
     is_initial = element is not None and any(
-        part.node is field.steps[0].node and element < part.fewest for part in variable if part.inner
+        part.node is field.steps[0].node and element < part.fewest
+        for part in variable
+        if part.inner
     )
     digits, base = digits_of(field), base_of(field)
     pieces = () if field.is_count or field.is_bytes else layout.pieces(field, node)
     # A lookup table may cover only a part of the raw range.
-    is_part = bool(curve) and field.is_invertible and field.settable_raws != (field.raw_min, field.raw_max)
+    is_part = (
+        bool(curve)
+        and field.is_invertible
+        and field.settable_raws != (field.raw_min, field.raw_max)
+    )
     limits = {
-        bound.key: [integer(bound.value.numerator), integer(bound.value.denominator)] for bound in bounds(field.limits)
+        bound.key: [integer(bound.value.numerator), integer(bound.value.denominator)]
+        for bound in bounds(field.limits)
     }
     plan: dict[str, object] = {
         "name": field.name,
@@ -93,9 +117,15 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
         "implied": field.is_count,
         "text": field.type == "text",
         "first": field.at // 8 if field.is_bytes else None,
-        "pieces": None if field.is_bytes else [[p.byte, p.shift, p.bits, p.at] for p in pieces],
+        "pieces": (
+            None
+            if field.is_bytes
+            else [[p.byte, p.shift, p.bits, p.at] for p in pieces]
+        ),
         "scale": [integer(term) for term in scaled.terms] if scaled else None,
-        "curve": [[start, list(terms)] for start, terms in curve.pieces] if curve else None,
+        "curve": (
+            [[start, list(terms)] for start, terms in curve.pieces] if curve else None
+        ),
         "oneWay": curve is not None and not field.is_invertible,
         "decimals": digits.decimals if digits else None,
         "digits": digits.significant if digits else None,
@@ -106,20 +136,39 @@ def _field(field: NodePlace, message: Message, node: Node, places: Mapping[str, 
         "enum": field.enum.name if field.enum else None,
         "const": None if field.const is None else integer(field.const),
         # Bits of floats
-        "special": [[integer(special.value), special.meaning] for special in field.special] or None,
+        "special": [
+            [integer(special.value), special.meaning] for special in field.special
+        ]
+        or None,
         "limits": limits or None,  # numerator and denominator of each
-        "when": [[places[condition.field], list(map(integer, condition.values))] for condition in field.conditions]
+        "when": [
+            [places[condition.field], list(map(integer, condition.values))]
+            for condition in field.conditions
+        ]
         or None,
         "derived": (
-            [[places[name] for name in how.fields], list(how.numbers), list(map(list, how.steps))] if how else None
+            [
+                [places[name] for name in how.fields],
+                list(how.numbers),
+                list(map(list, how.steps)),
+            ]
+            if how
+            else None
         ),
         # a new message stores it, although its part has no elements
         "inner": is_initial
-        or (field.name != field.steps[0].node.name and any(field.steps[0].node is node for node in earlier)),
+        or (
+            field.name != field.steps[0].node.name
+            and any(field.steps[0].node is node for node in earlier)
+        ),
         # variable-length bytes or text
         "isOpen": bool(variable)
         and field.is_bytes
         and field.scalar.length is not None
         and field.node is variable[-1].node,
     }
-    return {key: value for key, value in plan.items() if value is not None and value is not False}
+    return {
+        key: value
+        for key, value in plan.items()
+        if value is not None and value is not False
+    }

@@ -51,28 +51,51 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "lines": lines(section),
         "framing": _framing(node_facts),
         "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
-        "escaped_as": node_facts.framing and f"{node_facts.framing.escape:02X} {node_facts.framing.escaped:02X}",
+        "escaped_as": node_facts.framing
+        and f"{node_facts.framing.escape:02X} {node_facts.framing.escaped:02X}",
         "checks": [
-            *((name, _crc_rows(crc), f"0x{check:X}" if check is not None else "") for name, crc, check in checks),
-            *((checksum.name, [Row(*row) for row in checksum.rows], "") for checksum in sums),
+            *(
+                (name, _crc_rows(crc), f"0x{check:X}" if check is not None else "")
+                for name, crc, check in checks
+            ),
+            *(
+                (checksum.name, [Row(*row) for row in checksum.rows], "")
+                for checksum in sums
+            ),
         ],
         "calculator": (
-            texts.script_json([{"name": name, **envelopes.crc_numbers(crc)} for name, crc in computed])
+            texts.script_json(
+                [{"name": name, **envelopes.crc_numbers(crc)} for name, crc in computed]
+            )
             if computed
             else ""
         ),
         "identifier": _identifier(node_facts, section),
         "types": [
-            Row(f"{message_type['value']} · {message_type['name']}", message_type.get("summary", ""))
-            for message_type in section.get("can", {}).get("message_types", {}).get("values", ())
+            Row(
+                f"{message_type['value']} · {message_type['name']}",
+                message_type.get("summary", ""),
+            )
+            for message_type in section.get("can", {})
+            .get("message_types", {})
+            .get("values", ())
         ],
         "errors": errors(relations, node, node_facts, section),
         "acknowledges": sequences.acknowledges(relations, node, node_facts),
         "procedures": sequences.procedures(relations, node, node_facts),
-        "times": [(part, row) for part in parts for row in part.rows if row.value.endswith(" ms")],
+        "times": [
+            (part, row)
+            for part in parts
+            for row in part.rows
+            if row.value.endswith(" ms")
+        ],
         "parts": all_facts.with_others(relations, node_facts, parts, section),
         "assumptions": [
-            Row(f"{assumption.section}: {assumption.key.replace('_', ' ')}", as_text(assumption.value), assumption.why)
+            Row(
+                f"{assumption.section}: {assumption.key.replace('_', ' ')}",
+                as_text(assumption.value),
+                assumption.why,
+            )
             for assumption in node_facts.assumptions
         ],
     }
@@ -106,24 +129,43 @@ def _framing(node_facts: Facts) -> list[Box]:
     form = node_facts.framing
     if form is None:
         return []
-    pieces = [(f"{form.escape:02X}", "escape", 1), (f"{form.start:02X}", "start", 1), ("id", "", 1.4), ("data", "", 4)]
+    pieces = [
+        (f"{form.escape:02X}", "escape", 1),
+        (f"{form.start:02X}", "start", 1),
+        ("id", "", 1.4),
+        ("data", "", 4),
+    ]
     if node_facts.checksum and "uart" in node_facts.checksum.telecommand_buses:
-        pieces.append(("CRC", "" if "uart" in node_facts.checksum.telecommand_always else "optional", 1.4))
+        pieces.append(
+            (
+                "CRC",
+                "" if "uart" in node_facts.checksum.telecommand_always else "optional",
+                1.4,
+            )
+        )
     pieces += [(f"{form.escape:02X}", "escape", 1), (f"{form.end:02X}", "end", 1)]
     return _row([(text, about, share, "") for text, about, share in pieces])
 
 
-def _envelope(relations: Relations, node_facts: Facts, section: dict[str, Any]) -> dict[str, object]:
+def _envelope(
+    relations: Relations, node_facts: Facts, section: dict[str, Any]
+) -> dict[str, object]:
     """Return the description of the packet format; empty without one."""
     if node_facts.stream is None:
         return {}
-    urls = {message.name: relations.links.message(message) for message in relations.icd.messages_of(node_facts.node)}
+    urls = {
+        message.name: relations.links.message(message)
+        for message in relations.icd.messages_of(node_facts.node)
+    }
     replies = section["stream"].get("replies", {})
     return {
         "boxes": _row(envelopes.boxes(section)),
         "ends": envelopes.ENDS[node_facts.stream.delimited_by],
         "places": envelopes.places(section),
-        "replies": [Row(request, reply, "", urls.get(reply, "")) for request, reply in replies.items()],
+        "replies": [
+            Row(request, reply, "", urls.get(reply, ""))
+            for request, reply in replies.items()
+        ],
     }
 
 
@@ -140,8 +182,13 @@ def _row(pieces: list[tuple[str, str, float, str]]) -> list[Box]:
 def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
     if node_facts.can is None:
         return []
-    names = {row.get("role", row["name"]): row["name"] for row in section["can"]["identifier"]}
-    ordered: list[tuple[str, CanPart]] = sorted(node_facts.can.parts.items(), key=lambda item: -item[1].shift)
+    names = {
+        row.get("role", row["name"]): row["name"]
+        for row in section["can"]["identifier"]
+    }
+    ordered: list[tuple[str, CanPart]] = sorted(
+        node_facts.can.parts.items(), key=lambda item: -item[1].shift
+    )
     # The width of a box is proportional to its bits.
     return _row([
         (names.get(role, role), f"{part.bits} bits", part.bits, f"{part.shift + part.bits - 1} … {part.shift}")
@@ -149,9 +196,18 @@ def _identifier(node_facts: Facts, section: dict[str, Any]) -> list[Box]:
     ])  # fmt: skip
 
 
-def _checks(node_facts: Facts, section: dict[str, Any]) -> list[tuple[str, Crc, int | None]]:
-    candidates = (("crc8", node_facts.checksum and node_facts.checksum.crc), ("crc16", node_facts.crc16))
-    return [(f"CRC-{crc.width}", crc, section[key].get("check")) for key, crc in candidates if crc]
+def _checks(
+    node_facts: Facts, section: dict[str, Any]
+) -> list[tuple[str, Crc, int | None]]:
+    candidates = (
+        ("crc8", node_facts.checksum and node_facts.checksum.crc),
+        ("crc16", node_facts.crc16),
+    )
+    return [
+        (f"CRC-{crc.width}", crc, section[key].get("check"))
+        for key, crc in candidates
+        if crc
+    ]
 
 
 def _crc_rows(crc: Crc) -> list[Row]:
@@ -167,31 +223,47 @@ def errors(
 ) -> list[tuple[int, str, str, str]]:
     """Return code, name, role in the protocol, and link of each error."""
     name = section.get("errors", {}).get("enum")
-    enums = (enum for owner in (node, *relations.icd.included(node)) for enum in owner.enums)
+    enums = (
+        enum for owner in (node, *relations.icd.included(node)) for enum in owner.enums
+    )
     enum = next((candidate for candidate in enums if candidate.name == name), None)
     roles = {code: key.replace("_", " ") for key, code in node_facts.errors.items()}
     if enum is None:
         return [(code, role, "", "") for code, role in sorted(roles.items())]
     url = relations.links.enum(enum)
     return [
-        (m.value, m.name, roles.get(m.value, ""), f"{url}#{relations.links.anchor(enum, str(m.value))}")
+        (
+            m.value,
+            m.name,
+            roles.get(m.value, ""),
+            f"{url}#{relations.links.anchor(enum, str(m.value))}",
+        )
         for m in enum.members
     ]
 
 
-def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, str, Place]]:
+def entries(
+    relations: Relations, node: Node, url: str
+) -> Iterator[tuple[str, str, Place]]:
     """Yield the search entries of the page: words, title and place of each section."""
     node_facts, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
     for title, rows in lines(section):
         words = " ".join(f"{row.about} {row.value}" for row in rows)
-        yield f"line bus serial interface {words}", f"{title} settings", Place(node.title, f"{url}#lines")
+        yield f"line bus serial interface {words}", f"{title} settings", Place(
+            node.title, f"{url}#lines"
+        )
     checks = [
         *(name for name, _, _ in _checks(node_facts, section)),
         *(checksum.name for checksum in envelopes.sums(section, node_facts)),
     ]
     crc = "crc checksum polynomial init reflect calculator"
     sections = [
-        (node_facts.framing, "uart framing escape start end of message byte stuffing", "Framing", "framing"),
+        (
+            node_facts.framing,
+            "uart framing escape start end of message byte stuffing",
+            "Framing",
+            "framing",
+        ),
         (
             node_facts.stream,
             "envelope stream header trailer sync length sequence delimiter framing checksum",
@@ -199,12 +271,27 @@ def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, s
             "envelope",
         ),
         *(
-            (True, f"{crc} {checksum.replace('-', '').lower()}", f"{checksum} parameters and calculator", "checksums")
+            (
+                True,
+                f"{crc} {checksum.replace('-', '').lower()}",
+                f"{checksum} parameters and calculator",
+                "checksums",
+            )
             for checksum in checks
         ),
-        (node_facts.can, "can identifier bits message types", "CAN identifier", "identifier"),
+        (
+            node_facts.can,
+            "can identifier bits message types",
+            "CAN identifier",
+            "identifier",
+        ),
         (node_facts.errors, "error codes reasons nack", "Error codes", "errors"),
-        (True, "acknowledge ack nack handshake sequence", "Acknowledges", "acknowledges"),
+        (
+            True,
+            "acknowledge ack nack handshake sequence",
+            "Acknowledges",
+            "acknowledges",
+        ),
         *(
             (
                 True,

@@ -23,10 +23,17 @@ def index(relations: Relations) -> dict[str, Any]:
     message number of each id.
     """
     messages = [message for node in relations.icd.nodes for message in node.messages]
-    numbers = {(message.node, message.name): number for number, message in enumerate(messages)}
+    numbers = {
+        (message.node, message.name): number for number, message in enumerate(messages)
+    }
     return {
-        "messages": [[m.name, relations.links.message(m), m.length, m.node, *_tail(relations, m)] for m in messages],
-        "speakers": [_speaker(relations, node, numbers) for node in relations.icd.nodes],
+        "messages": [
+            [m.name, relations.links.message(m), m.length, m.node, *_tail(relations, m)]
+            for m in messages
+        ],
+        "speakers": [
+            _speaker(relations, node, numbers) for node in relations.icd.nodes
+        ],
     }
 
 
@@ -42,9 +49,20 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
         return [{"least": own.shortest, "step": own.lengths.step, "pieces": []}]
     tail, node = parts[-1], relations.icd.node(message.node)
     # A part up to the end of the frame has no counter.
-    counter = next((place for place in places_in(own) if place.name == tail.counter and not tail.is_rest), None)
+    counter = next(
+        (
+            place
+            for place in places_in(own)
+            if place.name == tail.counter and not tail.is_rest
+        ),
+        None,
+    )
     pieces = () if counter is None else layout.pieces(counter, node)
-    tail_data = {"least": own.shortest, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
+    tail_data = {
+        "least": own.shortest,
+        "step": tail.step,
+        "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces],
+    }
     return [tail_data | ({"low": tail.low} if tail.low else {})]
 
 
@@ -56,19 +74,32 @@ def script(relations: Relations) -> str:
     return f'"use strict";\nglobalThis.icdgenFrameIndex = {json.dumps(index(relations), separators=(",", ":"))};\n'
 
 
-def numbers_of(ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
+def numbers_of(
+    ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]
+) -> dict[str, Any]:
     """Return the message number of each id.
 
     For a shared id, each message has the bytes of its constants.
     """
     candidates = {
-        id: [(numbers[variant.message.node, variant.message.name], constant_bytes(variant)) for variant in variants]
+        id: [
+            (
+                numbers[variant.message.node, variant.message.name],
+                constant_bytes(variant),
+            )
+            for variant in variants
+        ]
         for id, variants in ids.items()
     }
-    return {str(id): messages if len(messages) > 1 else messages[0][0] for id, messages in candidates.items()}
+    return {
+        str(id): messages if len(messages) > 1 else messages[0][0]
+        for id, messages in candidates.items()
+    }
 
 
-def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
+def _speaker(
+    relations: Relations, node: Node, numbers: dict[tuple[str, str], int]
+) -> dict[str, Any]:
     node_facts, ids = facts.of(relations.icd, node), ids_of(relations.icd, node)
     speaker_data: dict[str, Any] = {
         "node": node.name,
@@ -77,7 +108,9 @@ def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], in
         "telemetry": numbers_of(ids.telemetry, numbers),
         "id_bytes": wire_ids.size(node.id_bits),
         "id_bits": node.id_bits,
-        "errors": {str(code): key.replace("_", " ") for key, code in node_facts.errors.items()},
+        "errors": {
+            str(code): key.replace("_", " ") for key, code in node_facts.errors.items()
+        },
     }
     speaker_data |= wire.framing_facts(node_facts)
     if node_facts.stream:

@@ -48,7 +48,11 @@ class Relations:
         # The prefix changes names in C only, so it is a second ICD.
         self._in_c = with_prefix(icd, self.packages.c_prefix)
         self.speakers: dict[str, list[Node]] = {
-            owner.name: [node for node in icd.nodes if node is owner or owner in icd.included(node)]
+            owner.name: [
+                node
+                for node in icd.nodes
+                if node is owner or owner in icd.included(node)
+            ]
             for owner in icd.nodes
         }
         # Fields of an enumeration type
@@ -57,7 +61,9 @@ class Relations:
         self.places: dict[tuple[str, str], list[Place]] = defaultdict(list)
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.contains: dict[tuple[str, str], list[Contained]] = defaultdict(list)
-        self.logged: dict[tuple[str, str], list[tuple[Node, Loggable]]] = defaultdict(list)
+        self.logged: dict[tuple[str, str], list[tuple[Node, Loggable]]] = defaultdict(
+            list
+        )
         self._spoken: dict[str, Speaker] = {}
         for node in icd.nodes:
             self._node(node)
@@ -65,20 +71,32 @@ class Relations:
     def in_c(self, message: Message) -> MessageDescription:
         """Return the message with the C prefix of its node."""
         name = self.packages.c_prefix + message.node
-        message_in_c = next(candidate for candidate in self._in_c.node(name).messages if candidate.name == message.name)
+        message_in_c = next(
+            candidate
+            for candidate in self._in_c.node(name).messages
+            if candidate.name == message.name
+        )
         return describe(self._in_c).message(message_in_c)
 
     def _node(self, node: Node) -> None:
-        used_messages = {message.name: message for message in self.icd.messages_of(node)}
+        used_messages = {
+            message.name: message for message in self.icd.messages_of(node)
+        }
         for message in node.messages:
-            self._errata(message.errata, Place(message.name, self.links.message(message)))
+            self._errata(
+                message.errata, Place(message.name, self.links.message(message))
+            )
             for name, field in self.shown_fields(message):
-                place = Place(f"{message.name}: {name}", self.links.field(message, field))
+                place = Place(
+                    f"{message.name}: {name}", self.links.field(message, field)
+                )
                 self._errata(field.errata, place)
                 if field.enum is not None:
                     self.uses[field.enum.node, field.enum.name].append(place)
                 if field.unit is not None:
-                    self.units.setdefault(field.unit.identifier, (field.unit, []))[1].append(place)
+                    self.units.setdefault(field.unit.identifier, (field.unit, []))[
+                        1
+                    ].append(place)
             for part in message.contains:
                 other = used_messages.get(part.message)
                 if other is not None:
@@ -91,14 +109,26 @@ class Relations:
             self._errata(enum.errata, Place(enum.name, url))
             for member in enum.members:
                 anchor = self.links.anchor(enum, str(member.value))
-                self._errata(member.errata, Place(f"{enum.name}: {member.name}", f"{url}#{anchor}"))
+                self._errata(
+                    member.errata,
+                    Place(f"{enum.name}: {member.name}", f"{url}#{anchor}"),
+                )
         # Log masks refer to frames by their telemetry id.
-        by_id = {m.telemetry_id: m for m in used_messages.values() if m.telemetry_id is not None}
+        by_id = {
+            m.telemetry_id: m
+            for m in used_messages.values()
+            if m.telemetry_id is not None
+        }
         for row in node.loggable:
             if row.id in by_id:
                 message = by_id[row.id]
                 self.logged[message.node, message.name].append((node, row))
-            self._errata(row.errata, Place(f"Log mask bit {row.bit}", self.links.node(node.name) + "#log-mask"))
+            self._errata(
+                row.errata,
+                Place(
+                    f"Log mask bit {row.bit}", self.links.node(node.name) + "#log-mask"
+                ),
+            )
 
     def _errata(self, errata: tuple[Erratum, ...], place: Place) -> None:
         for erratum in errata:
@@ -110,7 +140,9 @@ class Relations:
 
     def ids(self, message: Message) -> list[texts.Id]:
         """Return the ids of a message in the notation of its protocol."""
-        return texts.ids(message, self._speaker(self.icd.node(message.node)).facts.stream)
+        return texts.ids(
+            message, self._speaker(self.icd.node(message.node)).facts.stream
+        )
 
     def shown_fields(self, message: Message) -> list[tuple[str, NodePlace]]:
         """Return names and fields that the page of a message shows; of some arrays,
@@ -124,12 +156,16 @@ class Relations:
         """Return the description of the transmission of a message."""
         speakers = [self._speaker(node) for node in self.speakers[message.node]]
         declared = self._speaker(self.icd.node(message.node))
-        return Wire(*declared, [speaker for speaker in speakers if speaker.facts.checksum])
+        return Wire(
+            *declared, [speaker for speaker in speakers if speaker.facts.checksum]
+        )
 
     def _speaker(self, node: Node) -> Speaker:
         if node.name not in self._spoken:
             node_facts = facts.of(self.icd, node)
-            self._spoken[node.name] = Speaker(node_facts, self.icd.protocol_of(node), link_of(self.icd, node_facts))
+            self._spoken[node.name] = Speaker(
+                node_facts, self.icd.protocol_of(node), link_of(self.icd, node_facts)
+            )
         return self._spoken[node.name]
 
 

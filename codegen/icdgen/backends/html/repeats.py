@@ -17,7 +17,9 @@ from icdgen.icd.places import NodePlace, places_in, scalars_in
 _LONG = 16  # longer arrays of numbers are represented by one element
 
 _Array: TypeAlias = "tuple[tuple[int, int | None], ...]"
-"""Path to an array: identity of each node, and index of the element in each enclosing array."""
+"""Path to an array: identity of each node, and index of the element in each enclosing
+array.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +49,17 @@ class Repeats:
         scalars = scalars_in(message.layout)
         if not message.contains:  # a composite message has a section for each part
             self._add_arrays(message, scalars)
-        self.arrays = sorted(self._repeats.values(), key=lambda repeat: (repeat.first, -repeat.end))
+        self.arrays = sorted(
+            self._repeats.values(), key=lambda repeat: (repeat.first, -repeat.end)
+        )
         firsts = [self._first(scalar.steps) for scalar in scalars]
         keys = {scalar.name: key for key, scalar in enumerate(scalars, 1)}
-        # Key of the field of the first element that stands for each field, in the order of the fields.
+        # Key of the field of the first element that stands for each field, in the order
+        # of the fields.
         self.leaders = [keys[name_of_steps(steps)] for steps in firsts]
         self.names = [self._label(steps).removesuffix("[]") for steps in firsts]
-        # Name of the struct of the outermost array that each field is in, or of an array without structs; else empty.
+        # Name of the struct of the outermost array that each field is in, or of an
+        # array without structs; else empty.
         self.elements = [self._element(scalar.steps) for scalar in scalars]
 
     def is_shown(self, key: int) -> bool:
@@ -64,12 +70,27 @@ class Repeats:
         """Return first bit and length of each part of a run of bits, without omitted
         elements.
         """
-        ends = [8 * end for array in self.arrays for end in (array.first + array.step, array.end)]
-        cuts = [at, *sorted(end for end in set(ends) if at < end < at + bits), at + bits]
-        return [(start, end - start) for start, end in pairwise(cuts) if not self._is_skipped(start)]
+        ends = [
+            8 * end
+            for array in self.arrays
+            for end in (array.first + array.step, array.end)
+        ]
+        cuts = [
+            at,
+            *sorted(end for end in set(ends) if at < end < at + bits),
+            at + bits,
+        ]
+        return [
+            (start, end - start)
+            for start, end in pairwise(cuts)
+            if not self._is_skipped(start)
+        ]
 
     def _is_skipped(self, bit: int) -> bool:
-        return any(8 * (array.first + array.step) <= bit < 8 * array.end for array in self.arrays)
+        return any(
+            8 * (array.first + array.step) <= bit < 8 * array.end
+            for array in self.arrays
+        )
 
     def short(self, key: int) -> str:
         """Return the name of a field within its array: ``elev`` of
@@ -83,16 +104,30 @@ class Repeats:
         starts = sorted(scalar.at for scalar in scalars)
         for place in _arrays(places_in(message.layout)):
             node = place.node
-            variable = next((part for part in message.layout.counted_parts if part.node is node), None)
+            variable = next(
+                (part for part in message.layout.counted_parts if part.node is node),
+                None,
+            )
             # Short arrays of numbers are clearer with all elements.
-            if place.count < 2 or not (variable or place.struct is not None or place.count > _LONG):
+            if place.count < 2 or not (
+                variable or place.struct is not None or place.count > _LONG
+            ):
                 continue
             begin, end = place.at, place.at + place.width
             inside = bisect_left(starts, end) - bisect_left(starts, begin)
-            # If other fields share the place (alternatives, overlays), every element is shown.
-            if begin % 8 == place.bits % 8 == 0 and inside == sum(1 for _ in place.scalars()):
-                times = f"{variable.fewest} to {variable.most}" if variable else str(place.count)
-                label = ".".join(filter(None, (self._label(place.steps[:-1]), node.name)))
+            # If other fields share the place (alternatives, overlays), every element is
+            # shown.
+            if begin % 8 == place.bits % 8 == 0 and inside == sum(
+                1 for _ in place.scalars()
+            ):
+                times = (
+                    f"{variable.fewest} to {variable.most}"
+                    if variable
+                    else str(place.count)
+                )
+                label = ".".join(
+                    filter(None, (self._label(place.steps[:-1]), node.name))
+                )
                 self._repeats[_array(place.steps, len(place.steps) - 1)] = Repeat(
                     label, begin // 8, place.bits // 8, place.count, times
                 )
@@ -109,7 +144,11 @@ class Repeats:
     def _label(self, steps: tuple[PathStep, ...]) -> str:
         """Return the label of a place: ``satellites[].elev``."""
         return ".".join(
-            f"{step.node.name}[]" if _array(steps, depth) in self._repeats else name_of_steps((step,))
+            (
+                f"{step.node.name}[]"
+                if _array(steps, depth) in self._repeats
+                else name_of_steps((step,))
+            )
             for depth, step in enumerate(steps)
         )
 
@@ -117,7 +156,11 @@ class Repeats:
         for depth in range(len(steps)):
             if _array(steps, depth) in self._repeats:
                 is_struct = depth + 1 < len(steps)
-                return name_of_steps(steps[: depth + 1] if is_struct else (*steps[:depth], PathStep(steps[depth].node)))
+                return name_of_steps(
+                    steps[: depth + 1]
+                    if is_struct
+                    else (*steps[:depth], PathStep(steps[depth].node))
+                )
         return ""
 
 
@@ -132,4 +175,7 @@ def _arrays(places: tuple[NodePlace, ...]) -> Iterator[NodePlace]:
 
 def _array(steps: tuple[PathStep, ...], depth: int) -> _Array:
     """Return the path to the array that a step leads into."""
-    return (*((id(step.node), step.element) for step in steps[:depth]), (id(steps[depth].node), None))
+    return (
+        *((id(step.node), step.element) for step in steps[:depth]),
+        (id(steps[depth].node), None),
+    )

@@ -37,19 +37,51 @@ def entries(relations: Relations) -> Iterator[Entry]:
     """Yield nodes, messages, enumerations, units, fields, members and errata."""
     links = relations.links
     for node in relations.icd.nodes:
-        yield Entry("node", node.title, node.summary, node.name, "", (node.name,), links.node(node.name))
+        yield Entry(
+            "node",
+            node.title,
+            node.summary,
+            node.name,
+            "",
+            (node.name,),
+            links.node(node.name),
+        )
     for unit, _ in relations.units.values():
         about = f"unit {unit.identifier} {unit.summary}"
         phrases = (unit.symbol, unit.identifier)
-        yield Entry("unit", unit.symbol, unit.quantity, unit.identifier, about, phrases, links.unit(unit))
+        yield Entry(
+            "unit",
+            unit.symbol,
+            unit.quantity,
+            unit.identifier,
+            about,
+            phrases,
+            links.unit(unit),
+        )
     for node in relations.icd.nodes:
         if protocol.has_page(relations, node):
-            for words_, title, place in protocol.entries(relations, node, links.protocol(node.name)):
-                yield Entry("protocol", title, place.text, "", f"protocol {words_}", (), place.url)
+            for words_, title, place in protocol.entries(
+                relations, node, links.protocol(node.name)
+            ):
+                yield Entry(
+                    "protocol",
+                    title,
+                    place.text,
+                    "",
+                    f"protocol {words_}",
+                    (),
+                    place.url,
+                )
         if node.loggable:
             url = f"{links.node(node.name)}#log-mask"
             yield Entry(
-                "protocol", "Log mask", node.title, "", "protocol bits selection frames that are logged", (), url
+                "protocol",
+                "Log mask",
+                node.title,
+                "",
+                "protocol bits selection frames that are logged",
+                (),
+                url,
             )
         for message in node.messages:
             yield from _of_message(relations, node, message)
@@ -57,9 +89,19 @@ def entries(relations: Relations) -> Iterator[Entry]:
         for enum in node.enums:
             yield from _of_enum(relations, node, enum, enum.name in codes)
         for erratum in node.errata:
-            about = " ".join([*(f"table {table}" for table in erratum.tables), erratum.why])
+            about = " ".join(
+                [*(f"table {table}" for table in erratum.tables), erratum.why]
+            )
             title = f"{erratum.id} {erratum.title}"
-            yield Entry(erratum.label.lower(), title, node.title, "", about, (erratum.id,), links.erratum(erratum))
+            yield Entry(
+                erratum.label.lower(),
+                title,
+                node.title,
+                "",
+                about,
+                (erratum.id,),
+                links.erratum(erratum),
+            )
     for page in guide.pages():
         for section in page.sections[
             : 1 if page.name == guide.INDEX else None
@@ -67,7 +109,9 @@ def entries(relations: Relations) -> Iterator[Entry]:
             url = page.url if section.level == 1 else f"{page.url}#{section.anchor}"
             context = "guide" if section.level == 1 else f"guide · {page.title}"
             topics = page.topics if section.level == 1 else ()
-            yield Entry("guide", section.title, context, "", section.text, (), url, topics)
+            yield Entry(
+                "guide", section.title, context, "", section.text, (), url, topics
+            )
 
 
 def script(relations: Relations) -> str:
@@ -91,10 +135,16 @@ def script(relations: Relations) -> str:
 def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[Entry]:
     links = relations.links
     ids = relations.ids(message)
-    shown_ids = "/".join(f"{id.text} (0x{id.hexadecimal})" if id.hexadecimal else id.text for id in ids)
+    shown_ids = "/".join(
+        f"{id.text} (0x{id.hexadecimal})" if id.hexadecimal else id.text for id in ids
+    )
     own = _words(message, node)
     # Manuals and programs write ids in different ways.
-    phrases = [spelling for id in message.ids for spelling in (str(id), f"0x{id:02x}", f"{id:02x}h", f"id {id}")]
+    phrases = [
+        spelling
+        for id in message.ids
+        for spelling in (str(id), f"0x{id:02x}", f"{id:02x}h", f"id {id}")
+    ]
     for id in ids:
         phrases += [f"{message.kind if id.purpose == 'id' else id.purpose} {id.value}"]
         phrases += [] if id.hexadecimal else [id.text.lower()]
@@ -102,45 +152,97 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
         phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
     phrases += _table(message.table)
     speakers = " ".join(speaker.name for speaker in relations.speakers[node.name])
-    buses = " ".join(bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node))
+    buses = " ".join(
+        bus for bus in texts.BUSES if bus in relations.icd.protocol_of(node)
+    )
     about = f"{speakers} {message.group} {buses} {message.summary}"
     context = f"{message.kind} {shown_ids} · {node.title}"
-    yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message), message.aliases)
+    yield Entry(
+        "message",
+        message.name,
+        context,
+        own,
+        about,
+        tuple(phrases),
+        links.message(message),
+        message.aliases,
+    )
     for name, field in relations.shown_fields(message):
         unit = (
-            f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')} {field.unit.quantity}" if field.unit else ""
+            f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')} {field.unit.quantity}"
+            if field.unit
+            else ""
         )
         about = f"{node.name} {own} {unit} {field.summary}"
         context = f"{message.name} · {node.title}"
         url = links.field(message, field)
-        yield Entry("field", name, context, _words(field, node), about, (), url, field.aliases)
+        yield Entry(
+            "field", name, context, _words(field, node), about, (), url, field.aliases
+        )
 
 
 def _error_codes(relations: Relations, node: Node) -> set[str]:
     """Return the names of enumerations of the node that contain error codes of a
     protocol.
     """
-    protocols = [relations.icd.protocol_of(speaker) for speaker in relations.speakers[node.name]]
-    return {section["errors"]["enum"] for section in protocols if "enum" in section.get("errors", {})}
+    protocols = [
+        relations.icd.protocol_of(speaker) for speaker in relations.speakers[node.name]
+    ]
+    return {
+        section["errors"]["enum"]
+        for section in protocols
+        if "enum" in section.get("errors", {})
+    }
 
 
-def _of_enum(relations: Relations, node: Node, enum: Enum, is_error: bool) -> Iterator[Entry]:
-    links, own = relations.links, " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower()
+def _of_enum(
+    relations: Relations, node: Node, enum: Enum, is_error: bool
+) -> Iterator[Entry]:
+    links, own = (
+        relations.links,
+        " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower(),
+    )
     about = f"enum {node.name} {enum.summary}"
     phrases = tuple(_table(enum.table))
-    yield Entry("enumeration", enum.name, node.title, own, about, phrases, links.enum(enum), enum.aliases)
+    yield Entry(
+        "enumeration",
+        enum.name,
+        node.title,
+        own,
+        about,
+        phrases,
+        links.enum(enum),
+        enum.aliases,
+    )
     for member in enum.members:
         url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
         context = f"{enum.name} = {member.values} · {node.title}"
         about = f"{node.name} {own} {member.summary}"
-        phrases = (f"error {member.value}", f"error code {member.value}") if is_error else ()
-        yield Entry("member", member.name, context, _words(member, node), about, phrases, url, member.aliases)
+        phrases = (
+            (f"error {member.value}", f"error code {member.value}") if is_error else ()
+        )
+        yield Entry(
+            "member",
+            member.name,
+            context,
+            _words(member, node),
+            about,
+            phrases,
+            url,
+            member.aliases,
+        )
 
 
 def _words(thing: Message | NodePlace | Enum | Member, node: Node) -> str:
     """Return the words of an identifier, unless they equal the words of the name."""
-    identifier_words = " ".join(words(thing.identifier or thing.name, node.vocabulary)).lower()
-    return "" if identifier_words == " ".join(re.findall(r"[^\W_]+", thing.name)).lower() else identifier_words
+    identifier_words = " ".join(
+        words(thing.identifier or thing.name, node.vocabulary)
+    ).lower()
+    return (
+        ""
+        if identifier_words == " ".join(re.findall(r"[^\W_]+", thing.name)).lower()
+        else identifier_words
+    )
 
 
 def _table(table: int | None) -> list[str]:

@@ -42,24 +42,34 @@ class Section:
         """
         size = self.end - self.first
         place = (
-            f"{count(size, 'byte')} each, from byte {self.first}" if self.is_element else byte_range(self.first, size)
+            f"{count(size, 'byte')} each, from byte {self.first}"
+            if self.is_element
+            else byte_range(self.first, size)
         )
         is_in_title = not size or place == self.title.lower()
-        return count(len(self.keys), "field") if is_in_title else f"{place}, {count(len(self.keys), 'field')}"
+        return (
+            count(len(self.keys), "field")
+            if is_in_title
+            else f"{place}, {count(len(self.keys), 'field')}"
+        )
 
 
 def bands(relations: Relations, message: Message) -> list[Section]:
     """Return the contained messages or arrays and the bytes between them; empty if
     there are none.
     """
-    return _messages(relations, message) or _arrays(message, relations.links.repeats(message))
+    return _messages(relations, message) or _arrays(
+        message, relations.links.repeats(message)
+    )
 
 
 def _messages(relations: Relations, message: Message) -> list[Section]:
     """Return the contained messages and the bytes between them; empty if they overlap
     or are not aligned to bytes.
     """
-    parts = sorted(relations.contains[message.node, message.name], key=lambda part: part.at)
+    parts = sorted(
+        relations.contains[message.node, message.name], key=lambda part: part.at
+    )
     found_sections: list[Section] = []
     end = 0
     for part in parts:
@@ -68,8 +78,16 @@ def _messages(relations: Relations, message: Message) -> list[Section]:
             return []
         found_sections += _between(message, end, first)
         end = first + part.length
-        found_sections.append(Section(part.place.text, first, end, _keys(message, first, end), part.place.url))
-    return _folded(message, found_sections + _between(message, end, message.length)) if parts else []
+        found_sections.append(
+            Section(
+                part.place.text, first, end, _keys(message, first, end), part.place.url
+            )
+        )
+    return (
+        _folded(message, found_sections + _between(message, end, message.length))
+        if parts
+        else []
+    )
 
 
 def _arrays(message: Message, repeats: Repeats) -> list[Section]:
@@ -79,28 +97,48 @@ def _arrays(message: Message, repeats: Repeats) -> list[Section]:
     section_list = list(_around(message, list(repeats.arrays), 0, message.length, None))
     shown = {key for section in section_list for key in section.keys}
     remaining_keys = [
-        key for key in range(1, len(scalars_in(message.layout)) + 1) if repeats.is_shown(key) and key not in shown
+        key
+        for key in range(1, len(scalars_in(message.layout)) + 1)
+        if repeats.is_shown(key) and key not in shown
     ]
-    remaining_keys = [key for key in remaining_keys if not scalars_in(message.layout)[key - 1].is_count]
+    remaining_keys = [
+        key
+        for key in remaining_keys
+        if not scalars_in(message.layout)[key - 1].is_count
+    ]
     if remaining_keys:
-        section_list.append(Section("Derived values", message.length, message.length, remaining_keys))
-    return [replace(section, keys=[key for key in section.keys if repeats.is_shown(key)]) for section in section_list]
+        section_list.append(
+            Section("Derived values", message.length, message.length, remaining_keys)
+        )
+    return [
+        replace(section, keys=[key for key in section.keys if repeats.is_shown(key)])
+        for section in section_list
+    ]
 
 
-def _around(message: Message, arrays: list[Repeat], first: int, end: int, inside: Repeat | None) -> Iterator[Section]:
+def _around(
+    message: Message, arrays: list[Repeat], first: int, end: int, inside: Repeat | None
+) -> Iterator[Section]:
     """Yield the sections of the bytes from ``first`` to before ``end``.
 
     Processed arrays are removed from the list.
     """
-    title, is_element = (f"{inside.name} × {inside.times}", True) if inside else ("", False)
+    title, is_element = (
+        (f"{inside.name} × {inside.times}", True) if inside else ("", False)
+    )
 
     def between(start: int, stop: int) -> list[Section]:
-        return [replace(s, title=title or s.title, is_element=is_element) for s in _between(message, start, stop)]
+        return [
+            replace(s, title=title or s.title, is_element=is_element)
+            for s in _between(message, start, stop)
+        ]
 
     while arrays and arrays[0].first < end:
         array = arrays.pop(0)
         yield from between(first, array.first)
-        yield from _around(message, arrays, array.first, array.first + array.step, array)
+        yield from _around(
+            message, arrays, array.first, array.first + array.step, array
+        )
         first = array.end
     yield from between(first, end)
 
@@ -115,10 +153,26 @@ def shares(message: Message) -> list[Section]:
     section_list = []
     for start in range(0, len(keys), size):
         section_keys = keys[start : start + size]
-        fields = [place for key in section_keys if _has_bits(place := scalars_in(message.layout)[key - 1])]
-        fields = fields or [place for place in scalars_in(message.layout) if _has_bits(place)][-1:]
-        first, end = min(place.at for place in fields) // 8, -(-max(place.at + place.bits for place in fields) // 8)
-        section_list.append(Section(f"Fields {section_keys[0]} to {section_keys[-1]}", first, end, section_keys))
+        fields = [
+            place
+            for key in section_keys
+            if _has_bits(place := scalars_in(message.layout)[key - 1])
+        ]
+        fields = (
+            fields
+            or [place for place in scalars_in(message.layout) if _has_bits(place)][-1:]
+        )
+        first, end = min(place.at for place in fields) // 8, -(
+            -max(place.at + place.bits for place in fields) // 8
+        )
+        section_list.append(
+            Section(
+                f"Fields {section_keys[0]} to {section_keys[-1]}",
+                first,
+                end,
+                section_keys,
+            )
+        )
     return _folded(message, section_list)
 
 
@@ -128,14 +182,25 @@ def panels(message: Message, repeats: Repeats) -> list[Section]:
     """
     section_list: list[Section] = []
     for element, group in groupby(
-        range(1, len(scalars_in(message.layout)) + 1), key=lambda key: repeats.elements[key - 1]
+        range(1, len(scalars_in(message.layout)) + 1),
+        key=lambda key: repeats.elements[key - 1],
     ):
         keys = list(group)
-        fields = [place for key in keys if _has_bits(place := scalars_in(message.layout)[key - 1])]
+        fields = [
+            place
+            for key in keys
+            if _has_bits(place := scalars_in(message.layout)[key - 1])
+        ]
         first = min((place.at for place in fields), default=0) // 8
         end = -(-max((place.at + place.bits for place in fields), default=0) // 8)
         title = element or (
-            "Fields" if fields else "Count" if scalars_in(message.layout)[keys[0] - 1].is_count else "Derived values"
+            "Fields"
+            if fields
+            else (
+                "Count"
+                if scalars_in(message.layout)[keys[0] - 1].is_count
+                else "Derived values"
+            )
         )
         section_list.append(Section(title, first, end, keys, open=not element))
     return section_list
@@ -149,16 +214,23 @@ def _folded(message: Message, section_list: list[Section]) -> list[Section]:
     """Return the sections; those of a long message are folded, except the first."""
     if not _is_long(message):
         return section_list
-    return [replace(section, open=section is section_list[0]) for section in section_list]
+    return [
+        replace(section, open=section is section_list[0]) for section in section_list
+    ]
 
 
 def _is_long(message: Message) -> bool:
-    return sum(1 if place.type != "bool" else 0.25 for place in scalars_in(message.layout)) > _LONG
+    return (
+        sum(1 if place.type != "bool" else 0.25 for place in scalars_in(message.layout))
+        > _LONG
+    )
 
 
 def _between(message: Message, first: int, end: int) -> list[Section]:
     title = byte_range(first, end - first).capitalize()
-    return [Section(title, first, end, _keys(message, first, end))] if end > first else []
+    return (
+        [Section(title, first, end, _keys(message, first, end))] if end > first else []
+    )
 
 
 def _keys(message: Message, first: int, end: int) -> list[int]:
@@ -167,4 +239,8 @@ def _keys(message: Message, first: int, end: int) -> list[int]:
     """
     # The position of a derived value is the end of the message.
     last = 8 * end + (end == message.length)
-    return [key for key, place in enumerate(scalars_in(message.layout), 1) if 8 * first <= place.at < last]
+    return [
+        key
+        for key, place in enumerate(scalars_in(message.layout), 1)
+        if 8 * first <= place.at < last
+    ]

@@ -52,8 +52,15 @@ class Sequence:
     @property
     def placed(self) -> list[tuple[int, Arrow]]:
         """Arrows with their vertical positions."""
-        short = [Arrow(arrow.out, clip(arrow.text, _TEXT), clip(arrow.note, _NOTE), arrow.url) for arrow in self.arrows]
-        return [(TOP + ROW * (number + 1) - 16, arrow) for number, arrow in enumerate(short)]
+        short = [
+            Arrow(
+                arrow.out, clip(arrow.text, _TEXT), clip(arrow.note, _NOTE), arrow.url
+            )
+            for arrow in self.arrows
+        ]
+        return [
+            (TOP + ROW * (number + 1) - 16, arrow) for number, arrow in enumerate(short)
+        ]
 
 
 def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
@@ -65,13 +72,24 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
     if node_facts.framing:
         answer = "acknowledge: id and error code" if node_facts.acknowledge else ""
         arrows = [Arrow(True, "telecommand: id, parameters", waits)]
-        sequences.append(Sequence("UART, telecommand", node.title, arrows + ([Arrow(False, answer)] if answer else [])))
-        arrows = [Arrow(True, "request: id of the telemetry", waits), Arrow(False, "reply: id, data")]
+        sequences.append(
+            Sequence(
+                "UART, telecommand",
+                node.title,
+                arrows + ([Arrow(False, answer)] if answer else []),
+            )
+        )
+        arrows = [
+            Arrow(True, "request: id of the telemetry", waits),
+            Arrow(False, "reply: id, data"),
+        ]
         sequences.append(Sequence("UART, telemetry", node.title, arrows))
     if node_facts.i2c_address is not None:
         arrows = [Arrow(True, f"write to {node_facts.i2c_address:02X}: id, parameters")]
         if node_facts.polled:
-            polled, url = node_facts.polled, relations.links.message(node_facts.polled.message)
+            polled, url = node_facts.polled, relations.links.message(
+                node_facts.polled.message
+            )
             every = f"every {node_facts.client.poll_interval} ms, for {node_facts.client.poll_timeout} ms at most"
             arrows += [
                 Arrow(True, polled.message.name, every, url),
@@ -80,7 +98,9 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
         sequences.append(Sequence("I²C, telecommand", node.title, arrows))
     if node_facts.can:
         types = node_facts.can.types
-        telecommand_arrows = list(_on_can(types, "telecommand", "acknowledge", "refusal"))
+        telecommand_arrows = list(
+            _on_can(types, "telecommand", "acknowledge", "refusal")
+        )
         telemetry_arrows = list(_on_can(types, "request", "reply", "request_refusal"))
         sequences += [
             Sequence("CAN, telecommand", node.title, telecommand_arrows),
@@ -89,8 +109,14 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
     return sequences
 
 
-def _on_can(types: dict[str, int], sent: str, answer: str, refusal: str) -> Iterator[Arrow]:
-    for out, kind, note in ((True, sent, ""), (False, answer, ""), (False, refusal, "if it is refused")):
+def _on_can(
+    types: dict[str, int], sent: str, answer: str, refusal: str
+) -> Iterator[Arrow]:
+    for out, kind, note in (
+        (True, sent, ""),
+        (False, answer, ""),
+        (False, refusal, "if it is refused"),
+    ):
         if kind in types:
             yield Arrow(out, f"{kind.replace('_', ' ')}: type {types[kind]}", note)
 
@@ -98,18 +124,33 @@ def _on_can(types: dict[str, int], sent: str, answer: str, refusal: str) -> Iter
 def procedures(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
     """Return the steps of each procedure of the ICD, in order."""
     sequences = []
-    for name, procedure in (node_facts.files.procedures if node_facts.files else {}).items():
+    for name, procedure in (
+        node_facts.files.procedures if node_facts.files else {}
+    ).items():
         arrows = [
             *_steps(relations, procedure),
-            *(_packets(relations, node_facts) if isinstance(procedure, Download) else []),
+            *(
+                _packets(relations, node_facts)
+                if isinstance(procedure, Download)
+                else []
+            ),
         ]
-        sequences.append(Sequence(f"File {name}", node.title, arrows, _limits(procedure)))
+        sequences.append(
+            Sequence(f"File {name}", node.title, arrows, _limits(procedure))
+        )
     for title, operation in (
         ("Program copy", node_facts.program_copy),
         ("Program information", node_facts.program_information),
     ):
         if operation is not None:
-            sequences.append(Sequence(title, node.title, list(_steps(relations, operation)), _limits(operation)))
+            sequences.append(
+                Sequence(
+                    title,
+                    node.title,
+                    list(_steps(relations, operation)),
+                    _limits(operation),
+                )
+            )
     return sequences
 
 
@@ -135,11 +176,21 @@ def _packets(relations: Relations, node_facts: Facts) -> Iterator[Arrow]:
     buses: dict[int, list[str]] = defaultdict(list)
     for bus, id in files.packet_ids.items():
         buses[id].append(BUSES[bus])
-    ids_by_bus = "; ".join(f"id {id} on {', '.join(names)}" for id, names in buses.items())
-    message = next((node_facts.telemetry[id] for id in buses if id in node_facts.telemetry), None)
+    ids_by_bus = "; ".join(
+        f"id {id} on {', '.join(names)}" for id, names in buses.items()
+    )
+    message = next(
+        (node_facts.telemetry[id] for id in buses if id in node_facts.telemetry), None
+    )
     url = relations.links.message(message) if message else ""
-    counter = f"{count(files.counter_bytes, 'byte')} of counter, " if files.counter_bytes else ""
-    yield Arrow(False, message.name if message else "packets of the file", ids_by_bus, url)
+    counter = (
+        f"{count(files.counter_bytes, 'byte')} of counter, "
+        if files.counter_bytes
+        else ""
+    )
+    yield Arrow(
+        False, message.name if message else "packets of the file", ids_by_bus, url
+    )
     note = f"{counter}{count(files.packet_bytes, 'byte')} of the file each"
     yield Arrow(False, "… one packet after another", note, url)
 

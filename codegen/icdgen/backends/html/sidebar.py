@@ -30,15 +30,25 @@ class Group(NamedTuple):
     all: str
 
 
-def of_node(relations: Relations, node: Node, render: Renderer) -> Callable[[str], object]:
+def of_node(
+    relations: Relations, node: Node, render: Renderer
+) -> Callable[[str], object]:
     """Return a function that returns the sidebar of a page: the group of the page is
     unfolded, other groups are loaded by `script`.
     """
     from markupsafe import Markup
 
-    head = render("sidebar.html.j2", node=node, protocol=protocol.has_page(relations, node), contents=contents(node))
+    head = render(
+        "sidebar.html.j2",
+        node=node,
+        protocol=protocol.has_page(relations, node),
+        contents=contents(node),
+    )
     group_texts = [
-        [render("sidebar-group.html.j2", group=group, number=number, open=is_open) for is_open in (False, True)]
+        [
+            render("sidebar-group.html.j2", group=group, number=number, open=is_open)
+            for is_open in (False, True)
+        ]
         for number, group in enumerate(_groups(relations, node))
     ]
 
@@ -46,8 +56,18 @@ def of_node(relations: Relations, node: Node, render: Renderer) -> Callable[[str
         # The current page is found by its link in the rendered group.
         target = f'href="{html.escape(PurePosixPath(url).name)}">'
         # Only the open group contains links: pages would otherwise grow with the ICD.
-        shown = [head, *(unfolded if f"<li><a {target}" in unfolded else folded for folded, unfolded in group_texts)]
-        return Markup("".join(shown).replace(f"<li><a {target}", f'<li><a aria-current="page" {target}', 1))
+        shown = [
+            head,
+            *(
+                unfolded if f"<li><a {target}" in unfolded else folded
+                for folded, unfolded in group_texts
+            ),
+        ]
+        return Markup(
+            "".join(shown).replace(
+                f"<li><a {target}", f'<li><a aria-current="page" {target}', 1
+            )
+        )
 
     return of_page
 
@@ -59,7 +79,10 @@ def contents(node: Node) -> str:
 
 def script(relations: Relations, node: Node) -> str:
     """Return the links of each group as a script, relative to the pages of the node."""
-    data = [[[link.text, link.url] for link in group.links] for group in _groups(relations, node)]
+    data = [
+        [[link.text, link.url] for link in group.links]
+        for group in _groups(relations, node)
+    ]
     return f'"use strict";\nglobalThis.icdgenContents = {json.dumps(data, separators=(",", ":"))};\n'
 
 
@@ -67,14 +90,26 @@ def _groups(relations: Relations, node: Node) -> list[Group]:
     """Return the groups of a node; groups of included nodes come last."""
     groups: dict[str, list[Place]] = defaultdict(list)
     for message in node.messages:
-        groups[message.group or _OTHER].append(Place(message.name, _within(relations.links.message(message), node)))
-    group_list = [Group(title, links, "index.html#messages") for title, links in groups.items()]
+        groups[message.group or _OTHER].append(
+            Place(message.name, _within(relations.links.message(message), node))
+        )
+    group_list = [
+        Group(title, links, "index.html#messages") for title, links in groups.items()
+    ]
     if node.enums:
-        enums = [Place(enum.name, _within(relations.links.enum(enum), node)) for enum in node.enums]
+        enums = [
+            Place(enum.name, _within(relations.links.enum(enum), node))
+            for enum in node.enums
+        ]
         group_list.append(Group("Enumerations", enums, "index.html#enumerations"))
     for other in relations.icd.included(node):
-        links = [Place(message.name, _within(relations.links.message(message), node)) for message in other.messages]
-        group_list.append(Group(other.title, links, _within(relations.links.node(other.name), node)))
+        links = [
+            Place(message.name, _within(relations.links.message(message), node))
+            for message in other.messages
+        ]
+        group_list.append(
+            Group(other.title, links, _within(relations.links.node(other.name), node))
+        )
     return group_list
 
 

@@ -47,7 +47,16 @@ _LOADED = (
         "errata.js",
         "copy.js",
     ),
-    *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "envelopes.js", "given.js", "recognize.js"),
+    *(
+        "codec.js",
+        "frames.js",
+        "packets.js",
+        "pasted.js",
+        "stream.js",
+        "envelopes.js",
+        "given.js",
+        "recognize.js",
+    ),
     *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
 )
 
@@ -81,7 +90,9 @@ def files(
     def page(path: str, template: str, **values: object) -> tuple[PurePosixPath, str]:
         # Relative paths: the site works from any folder and without server.
         root = "../" * path.count("/")
-        return PurePosixPath(path), render(template, **{"root": root, "path": path, **common, **values})
+        return PurePosixPath(path), render(
+            template, **{"root": root, "path": path, **common, **values}
+        )
 
     yield page(HOME, "home.html.j2", **nodes.home(relations))
     yield page(ERRATA, "errata.html.j2", **errata.values(relations))
@@ -94,12 +105,27 @@ def files(
         sidebar_of = sidebar.of_node(relations, node, render)
         url = relations.links.node(node.name)
         yield PurePosixPath(sidebar.contents(node)), sidebar.script(relations, node)
-        yield page(url, "node.html.j2", sidebar=sidebar_of(url), **nodes.values(relations, node))
+        yield page(
+            url,
+            "node.html.j2",
+            sidebar=sidebar_of(url),
+            **nodes.values(relations, node),
+        )
         if protocol.has_page(relations, node):
             url = relations.links.protocol(node.name)
-            yield page(url, "protocol.html.j2", sidebar=sidebar_of(url), **protocol.values(relations, node))
-        shown = [messages.values(relations, node, message, render) for message in node.messages]
-        for before, values, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
+            yield page(
+                url,
+                "protocol.html.j2",
+                sidebar=sidebar_of(url),
+                **protocol.values(relations, node),
+            )
+        shown = [
+            messages.values(relations, node, message, render)
+            for message in node.messages
+        ]
+        for before, values, after in zip(
+            [None, *shown], shown, [*shown[1:], None], strict=False
+        ):
             yield page(
                 values["url"],
                 "message.html.j2",
@@ -108,10 +134,20 @@ def files(
                 sidebar=sidebar_of(values["url"]),
                 **values,
             )
-        yield page(relations.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(relations, node))
+        yield page(
+            relations.links.printed(node.name),
+            "print.html.j2",
+            shown=shown,
+            **nodes.values(relations, node),
+        )
         for enum in node.enums:
             url = relations.links.enum(enum)
-            yield page(url, "enum.html.j2", sidebar=sidebar_of(url), **enums.values(relations, enum))
+            yield page(
+                url,
+                "enum.html.j2",
+                sidebar=sidebar_of(url),
+                **enums.values(relations, enum),
+            )
     yield from _guide(page, render)
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
@@ -133,6 +169,13 @@ def _guide(page: _Page, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]
         return
     for guide_page in guide_pages:
         root = "../" * guide_page.url.count("/")
-        sidebar = Markup(render("guide-sidebar.html.j2", groups=guide.groups(), name=guide_page.name, root=root))
+        sidebar = Markup(
+            render(
+                "guide-sidebar.html.j2",
+                groups=guide.groups(),
+                name=guide_page.name,
+                root=root,
+            )
+        )
         yield page(guide_page.url, "guide.html.j2", page=guide_page, sidebar=sidebar)
     yield from ((PurePosixPath(path), text) for path, text in guide.files())

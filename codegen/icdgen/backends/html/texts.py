@@ -43,16 +43,24 @@ def physical_range(field: NodePlace) -> str:
     """Return the range of physical values by type and limits; empty if it equals the
     raw range.
     """
-    if field.type in ("uint", "int") and not (field.has_formula or field.limits or field.unit):
+    if field.type in ("uint", "int") and not (
+        field.has_formula or field.limits or field.unit
+    ):
         return ""
-    return span(*("" if bound is None else number(bound) for bound in allowed_ends(field)))
+    return span(
+        *("" if bound is None else number(bound) for bound in allowed_ends(field))
+    )
 
 
 def type_name(field: NodePlace) -> str:
     """Return the type of a field: ``uint16``, ``float32``, ``bytes``, ``derived``."""
     if field.derived is not None:
         return "derived"
-    return f"{field.type}{field.bits}" if field.type in ("uint", "int", "float") else field.type
+    return (
+        f"{field.type}{field.bits}"
+        if field.type in ("uint", "int", "float")
+        else field.type
+    )
 
 
 class Id(NamedTuple):
@@ -60,7 +68,9 @@ class Id(NamedTuple):
 
     purpose: str
     value: int
-    text: str  # the notation of the protocol: ``146``, or ``0A 04`` if a header has class and number as two bytes
+    # The notation of the protocol: ``146``, or ``0A 04`` if a header has class and
+    # number as two bytes.
+    text: str
     hexadecimal: str  # ``92``; empty if the text is hexadecimal
 
 
@@ -71,7 +81,10 @@ def ids(message: Message, form: Stream | None) -> list[Id]:
     else:
         values = [("id", message.id or 0)]
     is_hexadecimal = bool(pair_bytes(form))
-    return [Id(purpose, id, id_text(form, id), "" if is_hexadecimal else f"{id:02X}") for purpose, id in values]
+    return [
+        Id(purpose, id, id_text(form, id), "" if is_hexadecimal else f"{id:02X}")
+        for purpose, id in values
+    ]
 
 
 def capitalized(text: str) -> str:

@@ -26,7 +26,9 @@ def values(relations: Relations) -> dict[str, object]:
     """
     quantities: dict[str, list[dict[str, object]]] = defaultdict(list)
     for unit, uses in relations.units.values():
-        quantities[unit.quantity].append({"unit": unit, "uses": uses[:_FEW], "more": uses[_FEW:]})
+        quantities[unit.quantity].append(
+            {"unit": unit, "uses": uses[:_FEW], "more": uses[_FEW:]}
+        )
     counts: dict[str, int] = defaultdict(int)
     widths: dict[str, set[int]] = defaultdict(set)
     for node in relations.icd.nodes:
@@ -36,7 +38,10 @@ def values(relations: Relations) -> dict[str, object]:
                 widths[field.type].add(field.bits)
     return {
         "quantities": sorted(quantities.items()),
-        "types": [(name, text, counts[name], _widths(name, widths[name])) for name, text in _TYPES.items()],
+        "types": [
+            (name, text, counts[name], _widths(name, widths[name]))
+            for name, text in _TYPES.items()
+        ],
         "numberings": _numberings(relations),
     }
 

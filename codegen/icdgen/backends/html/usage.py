@@ -15,7 +15,11 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _ZEROS = {"bool": "false", "float": "0.0"}
-_LANGUAGES = (("C", "c", "usage.c.j2"), ("Python", "python", "usage.py.j2"), ("Rust", "rust", "usage.rs.j2"))
+_LANGUAGES = (
+    ("C", "c", "usage.c.j2"),
+    ("Python", "python", "usage.py.j2"),
+    ("Rust", "rust", "usage.rs.j2"),
+)
 
 
 class Snippet(NamedTuple):
@@ -30,7 +34,10 @@ class Snippet(NamedTuple):
 
 
 def snippets(
-    message: MessageDescription, in_c: MessageDescription, packages: Packages, render: Renderer
+    message: MessageDescription,
+    in_c: MessageDescription,
+    packages: Packages,
+    render: Renderer,
 ) -> list[Snippet]:
     """Return a snippet for each language: reception, transmission, or both.
 
@@ -40,7 +47,13 @@ def snippets(
     of_c = _values(in_c, packages)
     of_other_languages = _values(message, packages)
     return [
-        Snippet(name, key, render(template, **(of_c if key == "c" else of_other_languages)).rstrip("\n"))
+        Snippet(
+            name,
+            key,
+            render(template, **(of_c if key == "c" else of_other_languages)).rstrip(
+                "\n"
+            ),
+        )
         for name, key, template in _LANGUAGES
     ]
 
@@ -67,6 +80,12 @@ def _values(message: MessageDescription, packages: Packages) -> dict[str, object
     }
 
 
-def names(message: MessageDescription, in_c: MessageDescription) -> list[tuple[str, str]]:
+def names(
+    message: MessageDescription, in_c: MessageDescription
+) -> list[tuple[str, str]]:
     """Return the name of the message's type in each language."""
-    return [("C", C_NAMES.symbol(in_c, "t")), ("Python", message.camel_name), ("Rust", message.camel_name)]
+    return [
+        ("C", C_NAMES.symbol(in_c, "t")),
+        ("Python", message.camel_name),
+        ("Rust", message.camel_name),
+    ]

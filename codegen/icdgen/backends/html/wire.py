@@ -84,7 +84,11 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
     facts: dict[str, object] = {
         "ids": list(message.ids),
         "id_bits": wire.facts.node.id_bits,
-        "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
+        "id": (
+            message.telecommand_id
+            if message.telecommand_id is not None
+            else message.telemetry_id
+        ),
         "command": message.telecommand_id is not None,
         "telemetry": message.telemetry_id,
         "crc": [crc_facts(speaker.facts) for speaker in wire.checked],
@@ -106,7 +110,9 @@ def framing_facts(facts: Facts) -> dict[str, object]:
     framing = facts.framing
     if framing is None:
         return {}
-    framing_data: dict[str, object] = {"framing": [framing.escape, framing.start, framing.end, framing.escaped]}
+    framing_data: dict[str, object] = {
+        "framing": [framing.escape, framing.start, framing.end, framing.escaped]
+    }
     if not framing.escapes_id:
         framing_data["plain_id"] = True
     if framing.ignores_other:
@@ -155,7 +161,9 @@ def _hex(data: bytes) -> str:
 
 
 def _data(data: bytes) -> list[Chunk]:
-    return [Chunk("data", _hex(data), f"data, {count(len(data), 'byte')}")] if data else []
+    return (
+        [Chunk("data", _hex(data), f"data, {count(len(data), 'byte')}")] if data else []
+    )
 
 
 def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
@@ -164,7 +172,11 @@ def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
         form = speaker.facts.checksum
         assert form is not None
         # The first node with a checksum on this bus stands for all.
-        if bus in (form.telecommand_buses if direction == "telecommand" else form.telemetry_buses):
+        if bus in (
+            form.telecommand_buses
+            if direction == "telecommand"
+            else form.telemetry_buses
+        ):
             return speaker
     return None
 
@@ -173,7 +185,9 @@ def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
     form = speaker.facts.checksum
     assert form is not None
     optional = speaker.section["crc8"][direction].get("optional")
-    return Chunk("crc", _hex(sent), f"CRC-{form.crc.width}" + (", optional" if optional else ""))
+    return Chunk(
+        "crc", _hex(sent), f"CRC-{form.crc.width}" + (", optional" if optional else "")
+    )
 
 
 def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
@@ -181,18 +195,31 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
     if form is None:
         return None
     lines: list[Line] = []
-    ids: dict[Direction, int | None] = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
+    ids: dict[Direction, int | None] = {
+        "telecommand": message.telecommand_id,
+        "telemetry": message.telemetry_id,
+    }
     for direction, id in ids.items():
         if id is not None:
             parts = envelopes.packet(form, wire.link, id, direction, data)
             lines.append(
-                Line(direction.capitalize(), [Chunk(part.kind, _hex(part.data), part.title) for part in parts])
+                Line(
+                    direction.capitalize(),
+                    [Chunk(part.kind, _hex(part.data), part.title) for part in parts],
+                )
             )
             sent = stream_encode(wire.link, id, data, direction)
             # Byte stuffing changed the bytes, so they are shown a second time.
             if sent != b"".join(part.data for part in parts):
-                lines.append(Line("in wire order", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
-    return Bus("Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines)
+                lines.append(
+                    Line(
+                        "in wire order",
+                        [Chunk("data", _hex(sent), "stuffed, between delimiters")],
+                    )
+                )
+    return Bus(
+        "Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines
+    )
 
 
 def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
@@ -200,24 +227,45 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
         return None
     lines = []
     if message.telecommand_id is not None:
-        lines.append(Line("Telecommand", _framed(wire.link, message.telecommand_id, data)))
+        lines.append(
+            Line("Telecommand", _framed(wire.link, message.telecommand_id, data))
+        )
         checked = _check(wire, "telecommand", "uart")
         if checked:
-            lines.append(Line("with CRC", _framed(wire.link, message.telecommand_id, data, checked)))
+            lines.append(
+                Line(
+                    "with CRC",
+                    _framed(wire.link, message.telecommand_id, data, checked),
+                )
+            )
     if message.telemetry_id is not None:
         lines.append(Line("Request", _framed(wire.link, message.telemetry_id, b"")))
         lines.append(Line("Answer", _framed(wire.link, message.telemetry_id, data)))
     return Bus("UART", _uart_note(wire.section["uart"], wire.facts.framing), lines)
 
 
-def _framed(link: Link, id: int, data: bytes, checked: Speaker | None = None) -> list[Chunk]:
+def _framed(
+    link: Link, id: int, data: bytes, checked: Speaker | None = None
+) -> list[Chunk]:
     """Return the transmitted bytes, split at the borders of id, data and checksum."""
     body = i2c_write(checked.link if checked else link, id, data, checked is not None)
     line = uart_encode(link, body)
-    # A part begins at the position of the end of message if only the preceding parts were sent.
-    ends = [2, *(len(uart_encode(link, body[:size])) - 2 for size in (1, 1 + len(data), len(body)))]
-    start, id_sent, data_sent, check_sent = (line[at:to] for at, to in zip([0, *ends], ends, strict=False))
-    chunks = [Chunk("frame", _hex(start), "start of message"), Chunk("id", _hex(id_sent), f"id {id}")]
+    # A part begins at the position of the end of message if only the preceding parts
+    # were sent.
+    ends = [
+        2,
+        *(
+            len(uart_encode(link, body[:size])) - 2
+            for size in (1, 1 + len(data), len(body))
+        ),
+    ]
+    start, id_sent, data_sent, check_sent = (
+        line[at:to] for at, to in zip([0, *ends], ends, strict=False)
+    )
+    chunks = [
+        Chunk("frame", _hex(start), "start of message"),
+        Chunk("id", _hex(id_sent), f"id {id}"),
+    ]
     chunks += _data(data_sent)
     if checked:
         chunks.append(_crc_chunk(check_sent, checked, "telecommand"))
@@ -228,7 +276,9 @@ def _uart_note(section: dict[str, Any], framing: Framing) -> str:
     parts = [f"{section['baud_rate']:,} baud"] if "baud_rate" in section else []
     if {"data_bits", "parity", "stop_bits"} <= section.keys():
         parity = section["parity"]
-        parts.append(f"{section['data_bits']}{'N' if parity == 'none' else parity[0].upper()}{section['stop_bits']}")
+        parts.append(
+            f"{section['data_bits']}{'N' if parity == 'none' else parity[0].upper()}{section['stop_bits']}"
+        )
     within = "id and data" if framing.escapes_id else "the data"
     doubled = f"{framing.escape:02X} within {within} is sent as {framing.escape:02X} {framing.escaped:02X}"
     return ", ".join(parts) + (". " if parts else "") + doubled + "."
@@ -246,7 +296,9 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
         lines += _with_crc(wire, "telecommand", message.telecommand_id, data, sent)
     if message.telemetry_id is not None:
         how = "repeated start" if wire.facts.i2c_repeated_start else "stop and start"
-        restart = Chunk("note", how, " or ".join(wire.section["i2c"].get("telemetry_request", [])))
+        restart = Chunk(
+            "note", how, " or ".join(wire.section["i2c"].get("telemetry_request", []))
+        )
         read = Chunk("frame", f"{address << 1 | 1:02X}", "address, read")
         answer = [write, _id(message.telemetry_id), restart, read, *_data(data)]
         lines.append(Line("Request and answer", answer))
@@ -258,11 +310,16 @@ def _id(id: int) -> Chunk:
     return Chunk("id", f"{id:02X}", f"id {id}")
 
 
-def _with_crc(wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk]) -> Iterator[Line]:
+def _with_crc(
+    wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk]
+) -> Iterator[Line]:
     checked = _check(wire, direction, "i2c")
     if checked:
         checked_bytes = i2c_write(checked.link, id, data, True)
-        yield Line("with CRC", [*sent, _crc_chunk(checked_bytes[1 + len(data) :], checked, direction)])
+        yield Line(
+            "with CRC",
+            [*sent, _crc_chunk(checked_bytes[1 + len(data) :], checked, direction)],
+        )
 
 
 def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
@@ -275,8 +332,15 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
         sent = CanMessage("telecommand", message.telecommand_id, 0, node, data)
         lines += _packets(wire, form, sent, "Telecommand")
     if message.telemetry_id is not None:
-        lines += _packets(wire, form, CanMessage("request", message.telemetry_id, 0, node), "Request")
-        lines += _packets(wire, form, CanMessage("reply", message.telemetry_id, node, 0, data), "Answer")
+        lines += _packets(
+            wire, form, CanMessage("request", message.telemetry_id, 0, node), "Request"
+        )
+        lines += _packets(
+            wire,
+            form,
+            CanMessage("reply", message.telemetry_id, node, 0, data),
+            "Answer",
+        )
     bits = sum(part.bits for part in form.parts.values())
     note = f"{bits}-bit identifiers. Your own address stands as 0: put it in its place."
     return Bus("CAN", note, lines) if lines else None
@@ -292,24 +356,38 @@ def _packets(wire: Wire, form: Can, message: CanMessage, label: str) -> Iterator
     except (TooLongError, UnsupportedError):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
-        yield Line(label, [_identifier(wire, form, packets[0].id), *_data(packets[0].data)])
+        yield Line(
+            label, [_identifier(wire, form, packets[0].id), *_data(packets[0].data)]
+        )
         return
     assert form.extended is not None
     for index, packet in enumerate(packets):
         if 2 <= index < len(packets) - 1:
             if index == 2:
-                yield Line("", [Chunk("note", f"… {count(len(packets) - 3, 'more packet')}", "")])
+                yield Line(
+                    "",
+                    [Chunk("note", f"… {count(len(packets) - 3, 'more packet')}", "")],
+                )
             continue
         left_at = form.extended.left_at
         left = Chunk("crc", _hex(packet.data[left_at:]), "packets left")
-        chunks = [_identifier(wire, form, packet.id), *_data(packet.data[:left_at]), left]
+        chunks = [
+            _identifier(wire, form, packet.id),
+            *_data(packet.data[:left_at]),
+            left,
+        ]
         yield Line(f"{label} {index + 1}/{len(packets)}", chunks)
 
 
 def _identifier(wire: Wire, form: Can, id: int) -> Chunk:
-    parts = {role: id >> part.shift & (1 << part.bits) - 1 for role, part in form.parts.items()}
+    parts = {
+        role: id >> part.shift & (1 << part.bits) - 1
+        for role, part in form.parts.items()
+    }
     rows = wire.section["can"]["message_types"]["values"]
     name = next(row["name"] for row in rows if row["value"] == parts["type"])
     addressing = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
     bits = sum(part.bits for part in form.parts.values())
-    return Chunk("id", f"{id:0{(bits + 3) // 4}X}", f"{name}: type {parts['type']}, {addressing}")
+    return Chunk(
+        "id", f"{id:0{(bits + 3) // 4}X}", f"{name}: type {parts['type']}, {addressing}"
+    )

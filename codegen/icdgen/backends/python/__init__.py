@@ -1,4 +1,6 @@
-"""Python backend: an installable, typed package with a subpackage per node and a module per message or enumeration."""
+"""Python backend: an installable, typed package with a subpackage per node and a module
+per message or enumeration.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +22,17 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _RUNTIME = PurePosixPath("icdgen_runtime")
-"""Package as which the code that all nodes share is developed. Generated packages contain its modules."""
+"""Package as which the code that all nodes share is developed.
+
+Generated packages contain its modules.
+"""
 
 
 class PythonBackend:
-    """Backend of ``icdgen --lang python``. The name in ``packages`` is the import name of the generated package."""
+    """Backend of ``icdgen --lang python``.
+
+    The name in ``packages`` is the import name of the generated package.
+    """
 
     name = "python"
     reserved = names.RESERVED
@@ -39,7 +47,10 @@ class PythonBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List the files of the project, then of the package, then of each node."""
-        from icdgen.backends.python import literals, nodes  # imported late: rules on names do not need them
+        from icdgen.backends.python import (
+            literals,
+            nodes,
+        )  # imported late: rules on names do not need them
         from icdgen.describe.links import links_of
         from icdgen.link_calls import link_call
 
@@ -57,7 +68,9 @@ class PythonBackend:
         linked = links_of(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
         yield PurePosixPath("README.md"), render("README.md.j2", **common)
-        yield root / "__init__.py", render("package.py.j2", public=nodes.public(description.nodes), **common)
+        yield root / "__init__.py", render(
+            "package.py.j2", public=nodes.public(description.nodes), **common
+        )
         yield root / "py.typed", ""
         for name in render.runtime_files(str(_RUNTIME)):
             path = PurePosixPath(name).relative_to(_RUNTIME)
@@ -67,21 +80,33 @@ class PythonBackend:
             folder = root / node.name
             shared = {**common, "origin": origin(node.model), "node": node}
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
-            yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.of_node(node))
+            yield folder / "__init__.py", render(
+                "node.py.j2", **digested, **nodes.of_node(node)
+            )
             if node.name in linked:
                 yield folder / "_link.py", render(
-                    "link.py.j2", **shared, link=literals.expression(link_call(linked[node.name]))
+                    "link.py.j2",
+                    **shared,
+                    link=literals.expression(link_call(linked[node.name])),
                 )
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **nodes.bases(node, description), **shared)
+            yield folder / "__init__.py", render(
+                "types.py.j2", **nodes.bases(node, description), **shared
+            )
             for enum in node.enums:
-                yield folder / f"{names.module_name(enum)}.py", render("enum.py.j2", enum=enum, **shared)
+                yield folder / f"{names.module_name(enum)}.py", render(
+                    "enum.py.j2", enum=enum, **shared
+                )
             for struct in node.structs:
                 path = folder / f"{names.module_name(struct)}.py"
-                yield path, render("struct.py.j2", m=struct, **nodes.of_composite(struct), **shared)
+                yield path, render(
+                    "struct.py.j2", m=struct, **nodes.of_composite(struct), **shared
+                )
             for message in node.messages:
                 path = folder / f"{names.module_name(message)}.py"
-                yield path, render("message.py.j2", m=message, **shared, **nodes.of_message(message))
+                yield path, render(
+                    "message.py.j2", m=message, **shared, **nodes.of_message(message)
+                )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the generated files declare, for the rules on names."""

@@ -21,13 +21,19 @@ from icdgen.icd.curve import Curve
 from icdgen.icd.model import Special
 
 _WIDTH = 120
-"""Columns of a declaration: wider than `text.WIDTH`, because its call is easier to read on one line."""
+"""Columns of a declaration: wider than `text.WIDTH`, because its call is easier to read
+on one line.
+"""
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 
 def annotation(field: FieldDescription) -> str:
     """Return the type of the attribute."""
-    return f"tuple[{_annotation(field)}, ...]" if field.count else _optional(field, _annotation(field))
+    return (
+        f"tuple[{_annotation(field)}, ...]"
+        if field.count
+        else _optional(field, _annotation(field))
+    )
 
 
 def _optional(field: FieldDescription, note: str) -> str:
@@ -66,7 +72,11 @@ def _default(field: FieldDescription) -> str:
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
     if field.enum is None:
-        return str(bool(value)) if kind == "bool" else "0.0" if kind == "float" else str(value)
+        return (
+            str(bool(value))
+            if kind == "bool"
+            else "0.0" if kind == "float" else str(value)
+        )
     name, member = PYTHON_NAMES.symbol(field.enum, "class"), field.enum.member(value)
     return f"{name}.{constant_name(member.name)}" if member else f"{name}({value})"
 
@@ -82,34 +92,58 @@ def _keywords(field: FieldDescription) -> list[str]:
     if field.is_in_last_part and field.enum is not None:
         items.append(f"enum={PYTHON_NAMES.symbol(field.enum, 'class')}")
     if field.needs:
-        needs = (f'("{need.field.name}", ({", ".join(map(str, need.values))},))' for need in field.needs)
+        needs = (
+            f'("{need.field.name}", ({", ".join(map(str, need.values))},))'
+            for need in field.needs
+        )
         items.append(f"when=({', '.join(needs)},)")
     if place.unit:
         items.append(f"unit={literal(place.unit.symbol)}")
     if place.const is not None:
         items.append(f"const={place.const}")
     if place.special:
-        pairs = [f"({special_value(special, place.bits)}, {literal(special.meaning)})" for special in place.special]
+        pairs = [
+            f"({special_value(special, place.bits)}, {literal(special.meaning)})"
+            for special in place.special
+        ]
         items.append(exploded("special=(", pairs, ")", " " * 8))
-    items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(place, key)))
-    items += (f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}" for bound in field.bounds)
+    items += (
+        f'{key}="{value}"'
+        for key in ("byte_order", "bit_order")
+        if (value := getattr(place, key))
+    )
+    items += (
+        f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}"
+        for bound in field.bounds
+    )
     return items
 
 
 def constant(value: Constant, field: FieldDescription) -> str:
     """Return the literal of a constant of the field."""
-    return special_value(value, field.model.bits) if value.number else number(value.value)
+    return (
+        special_value(value, field.model.bits) if value.number else number(value.value)
+    )
 
 
 def special_value(value: Special | Constant, bits: int) -> str:
-    """Return the literal of a special raw value; for a float the value that the attribute has."""
+    """Return the literal of a special raw value.
+
+    For a float the value that the attribute has.
+    """
     if value.number in floats.NAMED:
         return f'float("{value.number}")'
-    return repr(floats.value_of(int(value.value), bits)) if value.number else str(value.value)
+    return (
+        repr(floats.value_of(int(value.value), bits))
+        if value.number
+        else str(value.value)
+    )
 
 
 def declaration(field: FieldDescription) -> str:
-    """Return the declaration of a field: ``control_mode: ConModeSelect = _base.field(...)``."""
+    """Return the declaration of a field: ``control_mode: ConModeSelect =
+    _base.field(...)``.
+    """
     place = field.model
     if field.struct is not None:
         items = [
@@ -132,13 +166,19 @@ def declaration(field: FieldDescription) -> str:
 
 
 def inner(message: MessageDescription) -> list[str]:
-    """Return the items of ``INNER``: variable parts after which frames differ from the longest one."""
+    """Return the items of ``INNER``: variable parts after which frames differ from the
+    longest one.
+    """
     return [f"({_placed_part(part)})" for part in message.spread_parts]
 
 
 def nested(message: MessageDescription) -> list[str]:
     """Return the items of ``NESTED``: variable-length arrays in the elements of a part."""
-    return [f'("{part.field.name}", {_placed_part(inner)})' for part in message.variable_parts for inner in part.inner]
+    return [
+        f'("{part.field.name}", {_placed_part(inner)})'
+        for part in message.variable_parts
+        for inner in part.inner
+    ]
 
 
 def _placed_part(part: VariablePartDescription) -> str:
@@ -148,7 +188,9 @@ def _placed_part(part: VariablePartDescription) -> str:
 
 
 def open_part(part: VariablePartDescription) -> str:
-    """Return ``_base.Tail(...)``: the attributes of a variable part and its counter, and sizes."""
+    """Return ``_base.Tail(...)``: the attributes of a variable part and its counter,
+    and sizes.
+    """
     counter = "" if part.is_rest else part.counter.name
     plus = f", {part.model.plus}" if part.model.plus else ""
     return f'_base.Tail("{part.field.name}", "{counter}", {part.model.step}, {part.model.most}{plus})'
@@ -169,15 +211,26 @@ def view_info(field: FieldDescription) -> str:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
     if field.curve is not None:
         pieces = _pieces(field.curve)
-        listed = exploded("(", pieces, ")", " " * 12) if len(pieces) > 1 else f"({pieces[0]},)"
+        listed = (
+            exploded("(", pieces, ")", " " * 12)
+            if len(pieces) > 1
+            else f"({pieces[0]},)"
+        )
         items += [f'physical="{field.physical_name}"', f"curve={listed}"]
     if field.enum is not None:
         items.append(f"enum={PYTHON_NAMES.symbol(field.enum, 'class')}")
     if place.derived is not None:
         operands = (operand for _, operand in derived(field).fields)
-        attributes = tuple(operand.physical_name if operand.is_scaled else operand.name for operand in operands)
+        attributes = tuple(
+            operand.physical_name if operand.is_scaled else operand.name
+            for operand in operands
+        )
         steps = tuple(tuple(step) for step in place.derived.steps)
-        items.append(f"derived=({attributes!r}, {place.derived.numbers!r}, {steps!r})".replace("'", '"'))
+        items.append(
+            f"derived=({attributes!r}, {place.derived.numbers!r}, {steps!r})".replace(
+                "'", '"'
+            )
+        )
     return f"_base.FieldInfo({', '.join(items)})"
 
 
@@ -201,22 +254,47 @@ def accessors(field: FieldDescription) -> Iterator[tuple[str, str]]:
     """List the declarations of the physical value of a field, with their comments."""
     for accessor in accessors_in_python(field):
         if accessor.kind == "text":
-            yield _text(field), f"{accessor.comment} A byte that is none reads as U+FFFD."
+            yield _text(
+                field
+            ), f"{accessor.comment} A byte that is none reads as U+FFFD."
         else:
-            yield _scaled(field) if accessor.scale is None else _whole(accessor, accessor.scale), accessor.comment
+            yield (
+                _scaled(field)
+                if accessor.scale is None
+                else _whole(accessor, accessor.scale)
+            ), accessor.comment
 
 
 def _scaled(field: FieldDescription) -> str:
-    """Return the declaration of a physical value: ``estimated_roll_angle_deg: float = _base.scaled(...)``."""
+    """Return the declaration of a physical value: ``estimated_roll_angle_deg: float =
+    _base.scaled(...)``.
+    """
     curve, steps, first = field.curve, field.steps, _double(field.initial_physical)
-    first, note = (_repeated(field, first), "tuple[float, ...]") if field.count else (first, _optional(field, "float"))
+    first, note = (
+        (_repeated(field, first), "tuple[float, ...]")
+        if field.count
+        else (first, _optional(field, "float"))
+    )
     if curve is not None:
         items = [*_pieces(curve), f"default={first}"]
-        if field.is_settable and field.model.settable_raws != (field.model.raw_min, field.model.raw_max):
+        if field.is_settable and field.model.settable_raws != (
+            field.model.raw_min,
+            field.model.raw_max,
+        ):
             items.append(f"ends={field.model.settable_raws}")
-        return _statement(field.physical_name, note, "curve" if field.is_settable else "curve_only", items)
+        return _statement(
+            field.physical_name,
+            note,
+            "curve" if field.is_settable else "curve_only",
+            items,
+        )
     assert steps is not None
-    return _statement(field.physical_name, note, "scaled", [*map(str, steps.terms), f"default={first}"])
+    return _statement(
+        field.physical_name,
+        note,
+        "scaled",
+        [*map(str, steps.terms), f"default={first}"],
+    )
 
 
 def _pieces(curve: Curve) -> list[str]:
@@ -232,24 +310,45 @@ def _double(value: float) -> str:
 def _text(field: FieldDescription) -> str:
     """Return the declaration of a text: ``version_text: str = _base.text(...)``."""
     first = _repeated(field, '""') if field.count else '""'
-    return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
+    return _statement(
+        field.physical_name,
+        "tuple[str, ...]" if field.count else "str",
+        "text",
+        [f"default={first}"],
+    )
 
 
 def _whole(accessor: Accessor, scale: IntegerScale) -> str:
-    """Return the declaration of whole parts of the unit: ``estimated_roll_angle_mdeg: int = _base.whole(...)``."""
-    note = "tuple[int, ...]" if accessor.field.count else _optional(accessor.field, "int")
-    return _statement(accessor.name, note, "whole", [str(scale.factor), str(scale.offset)])
+    """Return the declaration of whole parts of the unit: ``estimated_roll_angle_mdeg:
+    int = _base.whole(...)``.
+    """
+    note = (
+        "tuple[int, ...]" if accessor.field.count else _optional(accessor.field, "int")
+    )
+    return _statement(
+        accessor.name, note, "whole", [str(scale.factor), str(scale.offset)]
+    )
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:
-    """Return ``name: note = _base.call(items)`` on one line, or with the items on lines of their own if it is too long."""
+    """Return ``name: note = _base.call(items)`` on one line, or with the items on lines
+    of their own if it is too long.
+    """
     head, inner = f"{name}: {note} = _base.{call}(", ", ".join(items)
     if "\n" in inner or len(inner) + 8 > _WIDTH:
         return exploded(head, items, ")", STEP)
     line = f"{head}{inner})"
-    return line if len(line) + len(STEP) <= _WIDTH else f"{head}\n{STEP * 2}{inner}\n{STEP})"
+    return (
+        line
+        if len(line) + len(STEP) <= _WIDTH
+        else f"{head}\n{STEP * 2}{inner}\n{STEP})"
+    )
 
 
 def number(exact: Fraction | int) -> str:
     """Return the literal of a whole number, or of the nearest float."""
-    return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)
+    return (
+        str(exact.numerator)
+        if exact.denominator == 1
+        else repr(exact.numerator / exact.denominator)
+    )

@@ -12,14 +12,19 @@ from icdgen.link_calls import Call, Commented, Verbatim
 
 
 def expression(value: object) -> str:
-    """Return the source of a value: calls and mappings with one item per line, tuples on one line."""
+    """Return the source of a value: calls and mappings with one item per line, tuples
+    on one line.
+    """
     return written(_spelled(value), _note)
 
 
 def _note(text: str, indent: str) -> str:
     first, *continued = wrapped(prose(sentence(text)), WIDTH - len(indent) - 4)
-    # Continued lines are indented, so that none can be read as an instruction to a tool (`# type: ignore`).
-    return "\n".join([f"{indent}# {first}", *(f"{indent}#   {line}" for line in continued)])
+    # Continued lines are indented, so that none can be read as an instruction to a tool
+    # (`# type: ignore`).
+    return "\n".join(
+        [f"{indent}# {first}", *(f"{indent}#   {line}" for line in continued)]
+    )
 
 
 def _spelled(value: object) -> str | Brackets:
@@ -28,13 +33,27 @@ def _spelled(value: object) -> str | Brackets:
     if isinstance(value, str):
         return literal(value)
     if isinstance(value, Call):
-        items = [*map(_item, value.positional), *(_item(item, f"{key}=") for key, item in value.keywords.items())]
+        items = [
+            *map(_item, value.positional),
+            *(_item(item, f"{key}=") for key, item in value.keywords.items()),
+        ]
         return Brackets(f"{value.name}(", tuple(items), ")", value.is_flat)
     if isinstance(value, Mapping):
-        return Brackets("{", tuple(_item(item, f"{_spelled(key)}: ") for key, item in value.items()), "}")
+        return Brackets(
+            "{",
+            tuple(_item(item, f"{_spelled(key)}: ") for key, item in value.items()),
+            "}",
+        )
     if isinstance(value, Sequence):
-        is_flat = not any(isinstance(item, Call | Mapping | Commented) for item in value)
-        return Brackets("(", tuple(map(_item, value)), ",)" if is_flat and len(value) == 1 else ")", is_flat)
+        is_flat = not any(
+            isinstance(item, Call | Mapping | Commented) for item in value
+        )
+        return Brackets(
+            "(",
+            tuple(map(_item, value)),
+            ",)" if is_flat and len(value) == 1 else ")",
+            is_flat,
+        )
     return repr(value)
 
 

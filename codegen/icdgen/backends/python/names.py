@@ -16,9 +16,20 @@ RESERVED = frozenset(keyword.kwlist)
 # What generated classes declare or refer to besides the names of the fields.
 IN_MESSAGE = {
     **dict.fromkeys(
-        ("as_dict", "decode_many", "decode_table", "from_bytes", "from_dict", "from_json"), "the method `{}`"
+        (
+            "as_dict",
+            "decode_many",
+            "decode_table",
+            "from_bytes",
+            "from_dict",
+            "from_json",
+        ),
+        "the method `{}`",
     ),
-    **dict.fromkeys(("from_part", "from_physical", "iter_parts", "to_bytes", "to_json"), "the method `{}`"),
+    **dict.fromkeys(
+        ("from_part", "from_physical", "iter_parts", "to_bytes", "to_json"),
+        "the method `{}`",
+    ),
     **dict.fromkeys(("bool", "bytes", "float", "int", "str", "tuple"), "Python's `{}`"),
     **dict.fromkeys(("self", "cls"), "the parameter `{}`"),
     **dict.fromkeys(
@@ -26,7 +37,9 @@ IN_MESSAGE = {
         "the attribute `{}`",
     ),
 }
-IN_PACKAGE = dict.fromkeys(("getattr", "globals", "import_module", "sorted"), "the function `{}`")
+IN_PACKAGE = dict.fromkeys(
+    ("getattr", "globals", "import_module", "sorted"), "the function `{}`"
+)
 IN_PACKAGE["wire"] = "the package `wire`"
 
 TYPES = "_types"  # the subpackage of a node that holds its messages and enumerations
@@ -34,7 +47,10 @@ _LONGEST = 200  # characters of a module's name, for the sake of file systems
 
 
 def accessors_in_python(field: FieldDescription) -> Iterator[Accessor]:
-    """List the accessors of a physical value. Classes have no integers of read-only values."""
+    """List the accessors of a physical value.
+
+    Classes have no integers of read-only values.
+    """
     if field.model.is_read_only:
         return accessors_of(field, "double")
     return accessors_of(field, "text", "double", "integer", "long integer")
@@ -48,11 +64,16 @@ def module_name(one: Composite[Any] | EnumDescription) -> str:
 
 
 def home(one: Composite[Any] | EnumDescription, node: str, up: str) -> str:
-    """The module, as one that stands ``up`` dots below the package imports it; ``node`` is that one's node."""
+    """The module, as one that stands ``up`` dots below the package imports it.
+
+    ``node`` is that one's node.
+    """
     start = "." if one.node.name == node else f"{up}{one.node.name}."
     return f"{start}{TYPES}.{module_name(one)}"
 
 
 def constant_name(name: str) -> str:
-    """Return the name of an attribute of a class that does not change: ``IDLE``, ``TIMEOUT_NO_TIMEOUT``."""
+    """Return the name of an attribute of a class that does not change: ``IDLE``,
+    ``TIMEOUT_NO_TIMEOUT``.
+    """
     return name.upper()

@@ -1,4 +1,6 @@
-"""Values for the templates of the package, of nodes and of messages, in addition to the description."""
+"""Values for the templates of the package, of nodes and of messages, in addition to the
+description.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,13 @@ from icdgen.backends.python import names
 from icdgen.backends.python.fields import constant
 from icdgen.backends.python.symbols import PYTHON_NAMES
 from icdgen.backends.python.text import docstring, literal, paragraph
-from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, StructDescription
+from icdgen.describe import (
+    Description,
+    EnumDescription,
+    MessageDescription,
+    NodeDescription,
+    StructDescription,
+)
 from icdgen.describe.comments import sentence
 from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
@@ -28,22 +36,35 @@ _OF_PACKAGE = (
 
 def of_node(node: NodeDescription) -> dict[str, object]:
     """Return the modules and names that can be imported from a node, and its docstring."""
-    declared = [(names.home(part, node.name, ".."), PYTHON_NAMES.symbol(part, "class")) for part in node.usable]
+    declared = [
+        (names.home(part, node.name, ".."), PYTHON_NAMES.symbol(part, "class"))
+        for part in node.usable
+    ]
     declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),
-        "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared),
-        "public": sorted({*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}),
+        "imports": sorted(
+            f"from {home} import {name} as {name}" for home, name in declared
+        ),
+        "public": sorted(
+            {*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}
+        ),
         "homes": [(name, home) for home, name in sorted(declared)],
         "telecommands": _by_id(node, "telecommand"),
-        "enums": [(part.model.name, PYTHON_NAMES.symbol(part, "class")) for part in node.enums],
+        "enums": [
+            (part.model.name, PYTHON_NAMES.symbol(part, "class")) for part in node.enums
+        ],
         "telemetry": _by_id(node, "telemetry"),
     }
 
 
 def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
-    """Return the ids of a direction, each with a literal: the class of its message, or a row for each message that shares it."""
-    return sorted((under_id.id, _candidates(under_id)) for under_id in node.ids(direction))
+    """Return the ids of a direction, each with a literal: the class of its message, or
+    a row for each message that shares it.
+    """
+    return sorted(
+        (under_id.id, _candidates(under_id)) for under_id in node.ids(direction)
+    )
 
 
 def _candidates(under: MessagesOfId) -> str:
@@ -51,9 +72,14 @@ def _candidates(under: MessagesOfId) -> str:
         return literal(PYTHON_NAMES.symbol(under.first.message, "class"))
     rows = []
     for candidate in under.messages:
-        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in candidate.constant_bytes)
+        signs = "".join(
+            f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), "
+            for sign in candidate.constant_bytes
+        )
         name = PYTHON_NAMES.symbol(candidate.message, "class")
-        rows.append(f"({literal(name)}, {_lengths(candidate.message.model)}, ({signs.rstrip(' ')})),")
+        rows.append(
+            f"({literal(name)}, {_lengths(candidate.message.model)}, ({signs.rstrip(' ')})),"
+        )
     return "(\n        " + "\n        ".join(rows) + "\n    )"
 
 
@@ -64,7 +90,10 @@ def _lengths(message: Message) -> str:
 
 def _facts(node: Node) -> list[str]:
     """Return the names of the constants that only some nodes have."""
-    optional = {"NODE_TYPE": node.node_type, "INTERFACE_VERSION": node.interface_version}
+    optional = {
+        "NODE_TYPE": node.node_type,
+        "INTERFACE_VERSION": node.interface_version,
+    }
     return [name for name, value in optional.items() if value is not None]
 
 
@@ -81,7 +110,10 @@ def listing(names: Iterable[str]) -> str:
 def bases(node: NodeDescription, description: Description) -> dict[str, object]:
     """Return the included nodes of a node, as the bases of its class."""
     included = [other.name for other in reversed(description.icd.included(node.model))]
-    return {"included": included, "bases": f"({', '.join(f'_{name}' for name in included)})" if included else ""}
+    return {
+        "included": included,
+        "bases": f"({', '.join(f'_{name}' for name in included)})" if included else "",
+    }
 
 
 def mapping(pairs: Sequence[tuple[str, str]]) -> str:
@@ -97,8 +129,15 @@ def literals(pairs: Iterable[tuple[str | int, str]]) -> str:
 def _documentation(node: Node) -> list[str]:
     source = dict(node.document)
     cited = [source[key] for key in ("document", "version", "date") if key in source]
-    cited[-1:] = [f"{last}, section {source['section']}" if "section" in source else last for last in cited[-1:]]
-    paragraphs = [sentence(node.title), sentence(node.summary), sentence(f"From {', '.join(cited)}") if cited else ""]
+    cited[-1:] = [
+        f"{last}, section {source['section']}" if "section" in source else last
+        for last in cited[-1:]
+    ]
+    paragraphs = [
+        sentence(node.title),
+        sentence(node.summary),
+        sentence(f"From {', '.join(cited)}") if cited else "",
+    ]
     paragraphs += (
         f"Missing: {message.kind} {message.id}, {sentence(message.name)} {sentence(message.why)}"
         for message in node.missing
@@ -107,18 +146,31 @@ def _documentation(node: Node) -> list[str]:
 
 
 def of_message(message: MessageDescription) -> dict[str, object]:
-    """Return the values for a message, among them the messages that it contains, in the order of the frame."""
-    parts = [(begin, part.message) for part in contained_messages(message) for begin in part.positions]
+    """Return the values for a message, among them the messages that it contains, in the
+    order of the frame.
+    """
+    parts = [
+        (begin, part.message)
+        for part in contained_messages(message)
+        for begin in part.positions
+    ]
     return {**of_composite(message), "parts": sorted(parts, key=lambda part: part[0])}
 
 
 def of_composite(composite: Composite[Any]) -> dict[str, object]:
-    """Return the imports of enumerations and structs for a message or struct, and the constants of its fields."""
-    used_by: tuple[EnumDescription | StructDescription, ...] = (*composite.enums, *composite.structs)
+    """Return the imports of enumerations and structs for a message or struct, and the
+    constants of its fields.
+    """
+    used_by: tuple[EnumDescription | StructDescription, ...] = (
+        *composite.enums,
+        *composite.structs,
+    )
     return {
         "imports": sorted(_import(used, composite) for used in used_by),
         "constants": [
-            (value, constant(value, field)) for field in composite.declared_members for value in field.constants
+            (value, constant(value, field))
+            for field in composite.declared_members
+            for value in field.constants
         ],
     }
 

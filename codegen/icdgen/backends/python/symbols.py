@@ -17,7 +17,10 @@ from icdgen.naming import DEVICES
 
 
 class PythonNames(NamingPolicy):
-    """Names in a package. Names that the code uses itself are declared only where a name of the ICD is equal."""
+    """Names in a package.
+
+    Names that the code uses itself are declared only where a name of the ICD is equal.
+    """
 
     reserved = names.RESERVED
 
@@ -29,7 +32,9 @@ class PythonNames(NamingPolicy):
         scope = f"package {self._package}"
         yield node.identifier(scope, node.name)
         if node.name in names.IN_PACKAGE:
-            yield Identifier(scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None)
+            yield Identifier(
+                scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None
+            )
         for name in DEVICES:
             yield Identifier(self._files(node.name), name, "a device of Windows", None)
 
@@ -47,22 +52,40 @@ class PythonNames(NamingPolicy):
 
     def composite(self, composite: Composite[Any]) -> Symbols:
         yield self._class(composite, composite.node.name)
-        if not isinstance(composite.model, Message):  # messages have files in every language
-            yield composite.identifier(self._files(composite.node.name), names.module_name(composite))
+        if not isinstance(
+            composite.model, Message
+        ):  # messages have files in every language
+            yield composite.identifier(
+                self._files(composite.node.name), names.module_name(composite)
+            )
 
-    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
+    def fields(
+        self, composite: Composite[Any], fields: Iterable[FieldDescription]
+    ) -> Symbols:
         scope = self._members(composite)
         for field in fields:
             values = (
-                () if field.model.is_count else (field.name, *(each.name for each in names.accessors_in_python(field)))
+                ()
+                if field.model.is_count
+                else (
+                    field.name,
+                    *(each.name for each in names.accessors_in_python(field)),
+                )
             )
-            for text in (*values, *(names.constant_name(constant.name) for constant in field.constants)):
+            for text in (
+                *values,
+                *(names.constant_name(constant.name) for constant in field.constants),
+            ):
                 yield field.identifier(scope, text)
                 if text in names.IN_MESSAGE:
-                    yield Identifier(scope, text, names.IN_MESSAGE[text].format(text), None)
+                    yield Identifier(
+                        scope, text, names.IN_MESSAGE[text].format(text), None
+                    )
 
     def _class(self, part: Part, node: str) -> Identifier:
-        return part.identifier(f"module {self._package}.{node}", part.camel_name, "class")
+        return part.identifier(
+            f"module {self._package}.{node}", part.camel_name, "class"
+        )
 
     def _files(self, node: str) -> str:
         return f"files of {self._package}.{node}"

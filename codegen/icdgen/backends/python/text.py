@@ -9,19 +9,32 @@ from icdgen.backends.lines import wrapped
 
 WIDTH = 88
 
-_PLAIN = re.compile(r"[ -!#-\[\]-~]*\Z")  # printable ASCII without double quote and backslash
-# In both a backslash takes the meaning from what follows: of inline markup, and of what begins a list, a directive, a field.
-_MARKUP = re.compile(r"[\\`]|<(?=[A-Za-z/!?])|(?<![^\s'\"(\[{</:-])[*_|](?=\S)|(?<=\w)_(?!\w)|\|(?=_)")
-_BLOCK = re.compile(r"\A(\(?(?:[0-9]+|[A-Za-z#])(?=[.)] )|(?=[-+*\u2022] |\.\. |>>>|:|[=#]+ ))")
+_PLAIN = re.compile(
+    r"[ -!#-\[\]-~]*\Z"
+)  # printable ASCII without double quote and backslash
+# In both a backslash takes the meaning from what follows: of inline markup, and of what
+# begins a list, a directive, a field.
+_MARKUP = re.compile(
+    r"[\\`]|<(?=[A-Za-z/!?])|(?<![^\s'\"(\[{</:-])[*_|](?=\S)|(?<=\w)_(?!\w)|\|(?=_)"
+)
+_BLOCK = re.compile(
+    r"\A(\(?(?:[0-9]+|[A-Za-z#])(?=[.)] )|(?=[-+*\u2022] |\.\. |>>>|:|[=#]+ ))"
+)
 _ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t", "\\": "\\\\"}
 
 
 def literal(text: str) -> str:
-    """Return a string literal, in double quotes unless single quotes need fewer escapes."""
+    """Return a string literal, in double quotes unless single quotes need fewer
+    escapes.
+    """
     if _PLAIN.match(text):
         return f'"{text}"'
     quote = "'" if text.count('"') > text.count("'") else '"'
-    return quote + "".join(f"\\{quote}" if c == quote else _character(c) for c in text) + quote
+    return (
+        quote
+        + "".join(f"\\{quote}" if c == quote else _character(c) for c in text)
+        + quote
+    )
 
 
 def _character(c: str) -> str:
@@ -30,21 +43,32 @@ def _character(c: str) -> str:
     if c.isprintable():
         return c
     code = ord(c)
-    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    return (
+        f"\\x{code:02x}"
+        if code < 0x100
+        else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    )
 
 
 def prose(text: str) -> str:
-    """Return text for a docstring on one line, with escapes for quotes and for markup of reStructuredText and Markdown."""
+    """Return text for a docstring on one line, with escapes for quotes and for markup
+    of reStructuredText and Markdown.
+    """
     return _spelled([" ".join(text.split())])
 
 
 def paragraph(text: str) -> str:
-    """Return `prose` of a paragraph of a description, in which text in backticks is code."""
+    """Return `prose` of a paragraph of a description, in which text in backticks is
+    code.
+    """
     return _spelled(text.split("`"))
 
 
 def _spelled(parts: list[str]) -> str:
-    parts[::2] = [part if part.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", part) for part in parts[::2]]
+    parts[::2] = [
+        part if part.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", part)
+        for part in parts[::2]
+    ]
     text = _BLOCK.sub(r"\g<1>\\", "`".join(parts))
     if _PLAIN.match(text):
         return text
@@ -52,13 +76,18 @@ def _spelled(parts: list[str]) -> str:
 
 
 def docstring(indent: int, paragraphs: Iterable[str]) -> str:
-    """Return paragraphs of `prose` between triple quotes; the first line has no indentation."""
+    """Return paragraphs of `prose` between triple quotes.
+
+    The first line has no indentation.
+    """
     pad = " " * indent
     first, *further = paragraphs
     if not further and (len(first) + 6 + indent <= WIDTH or " " not in first):
         return f'"""{first}"""'
     blocks = [f'"""{first}', *further]
-    text = f"\n\n{pad}".join(f"\n{pad}".join(wrapped(block, WIDTH - indent)) for block in blocks)
+    text = f"\n\n{pad}".join(
+        f"\n{pad}".join(wrapped(block, WIDTH - indent)) for block in blocks
+    )
     return f'{text}\n{pad}"""'
 
 

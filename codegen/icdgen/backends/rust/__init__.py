@@ -1,4 +1,6 @@
-"""Rust backend: a `no_std` crate for all nodes, with a module per node and a file per message."""
+"""Rust backend: a `no_std` crate for all nodes, with a module per node and a file per
+message.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,10 @@ class RustBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List the files of the crate."""
-        from icdgen.backends.rust import messages, nodes  # imported late: rules on names do not need them
+        from icdgen.backends.rust import (
+            messages,
+            nodes,
+        )  # imported late: rules on names do not need them
         from icdgen.backends.rust.examples import client_example
         from icdgen.describe.links import links_of
 
@@ -53,27 +58,44 @@ class RustBackend:
             "id_bits": description.id_bits,
             **_functions(),
         }
-        has_tails = any(message.layout.sequence for node in icd.nodes for message in node.messages)
+        has_tails = any(
+            message.layout.sequence for node in icd.nodes for message in node.messages
+        )
         links = links_of(description)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        of_crate = {"has_tails": has_tails, "nodes": icd.nodes, "summary": nodes.summary, "wired": bool(links)}
+        of_crate = {
+            "has_tails": has_tails,
+            "nodes": icd.nodes,
+            "summary": nodes.summary,
+            "wired": bool(links),
+        }
         yield PurePosixPath("src/lib.rs"), render("lib.rs.j2", **of_crate, **common)
         yield from _runtime("src/support", render, self.crate)
         for node in description.nodes:
             folder = PurePosixPath("src") / node.name
             digested = {**common, "origin": origin(node.model, with_digest=True)}
             link = links.get(node.name)
-            about = nodes.about(node, client_example(node, link, self.crate) if link else [])
+            about = nodes.about(
+                node, client_example(node, link, self.crate) if link else []
+            )
             functions = {"about": about, "typed": nodes.typed, "guarded": nodes.guarded}
-            yield folder / "mod.rs", render("node.rs.j2", node=node, **functions, **digested)
+            yield folder / "mod.rs", render(
+                "node.rs.j2", node=node, **functions, **digested
+            )
             shared = {**common, "origin": origin(node.model)}
             if node.enums:
-                yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)
+                yield folder / "enums.rs", render(
+                    "enums.rs.j2", enums=node.enums, **shared
+                )
             for struct in node.structs:
-                text = render("struct.rs.j2", m=struct, **messages.of_composite(struct), **shared)
+                text = render(
+                    "struct.rs.j2", m=struct, **messages.of_composite(struct), **shared
+                )
                 yield folder / f"{struct.name}.rs", text
             for message in node.messages:
-                text = render("message.rs.j2", m=message, **messages.values(message), **shared)
+                text = render(
+                    "message.rs.j2", m=message, **messages.values(message), **shared
+                )
                 yield folder / f"{message.name}.rs", text
         if links:
             yield from _wire(links, render, common)
@@ -86,8 +108,18 @@ class RustBackend:
 def _functions() -> dict[str, object]:
     """Return the functions with which templates spell names and text."""
     from icdgen.backends.rust import text, types
-    from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of, texts
-    from icdgen.backends.rust.examples import direction_example, enum_example, message_example
+    from icdgen.backends.rust.accessors import (
+        accessors,
+        curve_of,
+        field_row,
+        scale_of,
+        texts,
+    )
+    from icdgen.backends.rust.examples import (
+        direction_example,
+        enum_example,
+        message_example,
+    )
     from icdgen.backends.rust.messages import imports
     from icdgen.backends.rust.physical import big_parts, derived_statements
     from icdgen.describe.comments import sentence, words
@@ -111,16 +143,22 @@ def _wire(
 
     yield from _runtime("src/wire", render, str(common["crate"]))
     folder = PurePosixPath(LINKS)
-    yield folder / "mod.rs", render("links.rs.j2", nodes=list(linked), sizes=links.sizes(linked.values()), **common)
+    yield folder / "mod.rs", render(
+        "links.rs.j2", nodes=list(linked), sizes=links.sizes(linked.values()), **common
+    )
     for name, link in linked.items():
-        yield folder / f"{name}.rs", render("node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node))
+        yield folder / f"{name}.rs", render(
+            "node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node)
+        )
 
 
-def _runtime(folder: str, render: Renderer, crate: str) -> Iterator[tuple[PurePosixPath, str]]:
+def _runtime(
+    folder: str, render: Renderer, crate: str
+) -> Iterator[tuple[PurePosixPath, str]]:
     """List the files that are the same for every ICD.
 
-    The runtime is developed as a crate of its own, with links of a sample ICD that are left out here. Examples in its
-    documentation get the name of the generated crate.
+    The runtime is developed as a crate of its own, with links of a sample ICD that are
+    left out here. Examples in its documentation get the name of the generated crate.
     """
     for name in render.runtime_files(folder):
         if not name.startswith(LINKS):

@@ -1,4 +1,6 @@
-"""Accessors of physical values in double and single precision and in whole parts of the unit, and fields as data."""
+"""Accessors of physical values in double and single precision and in whole parts of the
+unit, and fields as data.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ from icdgen.describe.description import Composite
 
 
 class AccessorCode(NamedTuple):
-    """Code of the getter of a physical number, and of the setter if ``raw`` is not empty."""
+    """Code of the getter of a physical number, and of the setter if ``raw`` is not
+    empty.
+    """
 
     name: str
     type: str
@@ -36,13 +40,20 @@ class AccessorCode(NamedTuple):
 
 def accessors(field: FieldDescription) -> list[AccessorCode]:
     """Return the accessors of a field with a scale or calibration."""
-    return [_code(accessor) for accessor in accessors_in_rust(field) if accessor.kind != "text"]
+    return [
+        _code(accessor)
+        for accessor in accessors_in_rust(field)
+        if accessor.kind != "text"
+    ]
 
 
 def texts(composite: Composite[Any]) -> list[Accessor]:
     """Return the accessors of texts, those of arrays first."""
     accessors = [
-        accessor for field in composite.members for accessor in accessors_in_rust(field) if accessor.kind == "text"
+        accessor
+        for field in composite.members
+        for accessor in accessors_in_rust(field)
+        if accessor.kind == "text"
     ]
     return sorted(accessors, key=lambda accessor: not accessor.field.count)
 
@@ -53,33 +64,60 @@ def _code(accessor: Accessor) -> AccessorCode:
         return AccessorCode(accessor.name, "f32", accessor.comment, single(field))
     if accessor.kind == "integer":
         type, refused = f"i{accessor.integers.bits}", "if it does not fit"
-        value, raw = integer_value(field, accessor.integers), integer_raw(field, accessor.integers)
+        value, raw = integer_value(field, accessor.integers), integer_raw(
+            field, accessor.integers
+        )
     else:
         type, value, raw = "f64", double_value(field), double_raw(field)
         refused = (
-            "if it is beyond the values of the field, or" if field.curve is not None else "if it does not fit or is"
+            "if it is beyond the values of the field, or"
+            if field.curve is not None
+            else "if it does not fit or is"
         )
         refused += " not finite"
     if not accessor.is_settable:
         return AccessorCode(accessor.name, type, accessor.comment, value)
-    of_element, no_element = ("an element of ", ", or if there is no such element") if field.count else ("", "")
+    of_element, no_element = (
+        ("an element of ", ", or if there is no such element")
+        if field.count
+        else ("", "")
+    )
     what = f"Set {of_element}{accessor.title} to the nearest raw value, ties to even"
-    return AccessorCode(accessor.name, type, accessor.comment, value, raw, what, f"{refused}{no_element}.")
+    return AccessorCode(
+        accessor.name,
+        type,
+        accessor.comment,
+        value,
+        raw,
+        what,
+        f"{refused}{no_element}.",
+    )
 
 
 def scale_of(field: FieldDescription) -> str:
-    """Return the constant of a field with a scale, or of a field whose type can store values that do not fit."""
+    """Return the constant of a field with a scale, or of a field whose type can store
+    values that do not fit.
+    """
     terms = field.steps.terms if field.steps else (1, 0, 1)
     place = field.model
-    numbers = [f"({', '.join(map(integer, row))})" for row in ((place.raw_min, place.raw_max), terms)]
-    return _constant(scale_name(field), "Scale", [string(place.name), string(field.allowed_text), *numbers])
+    numbers = [
+        f"({', '.join(map(integer, row))})"
+        for row in ((place.raw_min, place.raw_max), terms)
+    ]
+    return _constant(
+        scale_name(field),
+        "Scale",
+        [string(place.name), string(field.allowed_text), *numbers],
+    )
 
 
 def _constant(name: str, type: str, items: list[str]) -> str:
     """Return ``const NAME: Scale = Scale::new(...);``, wrapped as rustfmt does."""
     call = f"{type}::new("
     if len(f"{STEP}{call}{', '.join(items)});") <= WIDTH:
-        return assigned(f"const {name}: {type} =", f"{call}{', '.join(items)})", ";", "")
+        return assigned(
+            f"const {name}: {type} =", f"{call}{', '.join(items)})", ";", ""
+        )
     return exploded(f"const {name}: {type} = {call}", items, ");")
 
 
@@ -87,9 +125,18 @@ def curve_of(field: FieldDescription) -> str:
     """Return the constant of a field with a calibration."""
     assert field.curve is not None
     place = field.model
-    ends = place.settable_raws if place.type != "float" and place.is_invertible else (0, 0)
-    pieces = [f"({double(start)}, &[{', '.join(map(double, terms))}])" for start, terms in field.curve.pieces]
-    listed = "\n".join(["", *(f"{STEP}{piece}," for piece in pieces), ""]) if len(pieces) > 1 else pieces[0]
+    ends = (
+        place.settable_raws if place.type != "float" and place.is_invertible else (0, 0)
+    )
+    pieces = [
+        f"({double(start)}, &[{', '.join(map(double, terms))}])"
+        for start, terms in field.curve.pieces
+    ]
+    listed = (
+        "\n".join(["", *(f"{STEP}{piece}," for piece in pieces), ""])
+        if len(pieces) > 1
+        else pieces[0]
+    )
     items = f"{string(place.name)}, {string(field.allowed_text)}, ({', '.join(map(integer, ends))}), &[{listed}]"
     return f"#[rustfmt::skip]\nconst {curve_name(field)}: Curve = Curve::new({items});"
 
@@ -103,14 +150,18 @@ def field_row(field: FieldDescription) -> str:
     if field.is_text:
         chain.append(".text()")
     if field.struct is not None:
-        chain.append(f".fields({struct_path(field.struct, field.message.node)}::FIELDS)")
+        chain.append(
+            f".fields({struct_path(field.struct, field.message.node)}::FIELDS)"
+        )
     if place.unit is not None:
         chain.append(f".unit({string(place.unit.symbol)})")
     if field.bounds:
         limits = [f'("{bound.key}", {double(bound.double)})' for bound in field.bounds]
         chain.append(f".limits(&[{', '.join(limits)}])")
     if field.steps is not None:
-        chain.append(f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{scale_name(field)})")
+        chain.append(
+            f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{scale_name(field)})"
+        )
     if field.curve is not None:
         chain.append(f".curve(&{curve_name(field)})")
     line = "".join(chain)

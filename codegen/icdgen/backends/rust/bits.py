@@ -16,13 +16,19 @@ _ARRAY_WIDTH = 60
 RAW = "raw"
 """Variable with the value of an optional field."""
 FLAGS_FROM = 4
-"""Number of flags of a byte from which on code reads them from the table of the support module."""
+"""Number of flags of a byte from which on code reads them from the table of the support
+module.
+"""
 
 
-def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: str = "") -> str:
-    """Return the expression of the raw value, over ``bytes``, in a line with an indentation of ``depth`` steps.
+def reading(
+    field: FieldDescription, tables: set[int], depth: int = 3, within: str = ""
+) -> str:
+    """Return the expression of the raw value, over ``bytes``, in a line with an
+    indentation of ``depth`` steps.
 
-    ``tables`` are the bytes with variables ``flags_N``. ``within`` is the prefix of functions for elements.
+    ``tables`` are the bytes with variables ``flags_N``. ``within`` is the prefix of
+    functions for elements.
     """
     helper = helper_of(field)
     if helper:
@@ -32,13 +38,19 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
     if field.model.is_count:
         return "0"
     if field.count:
-        return _array(field, depth) if field.is_copied else _listed(field, tables, depth)
+        return (
+            _array(field, depth) if field.is_copied else _listed(field, tables, depth)
+        )
     place, row = field.model, field.pieces
     if place.is_bytes:
         return f"array(bytes, {place.at // 8})"
     if place.type == "bool":
         byte, shift = row[0].byte, row[0].shift
-        return f"flags_{byte}[{shift}]" if byte in tables else f"bytes[{byte}] & {mask(1 << shift)} != 0"
+        return (
+            f"flags_{byte}[{shift}]"
+            if byte in tables
+            else f"bytes[{byte}] & {mask(1 << shift)} != 0"
+        )
     size = holding(place.bits)
     if field.is_word:
         return _whole(field, size)
@@ -53,14 +65,31 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3, within: s
 
 def _called(field: FieldDescription, helper: str, within: str, depth: int) -> str:
     target = f"{own_name(field)}: "
-    arguments = ("bytes", str(field.model.at // 8), f"Self::{reader(within + field.name)}")
-    return bracketed(f"{target}{helper}(", arguments, ")", WIDTH - 1, STEP * depth).removeprefix(target)
+    arguments = (
+        "bytes",
+        str(field.model.at // 8),
+        f"Self::{reader(within + field.name)}",
+    )
+    return bracketed(
+        f"{target}{helper}(", arguments, ")", WIDTH - 1, STEP * depth
+    ).removeprefix(target)
 
 
-def _struct(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int, within: str) -> str:
+def _struct(
+    field: FieldDescription,
+    struct: StructDescription,
+    tables: set[int],
+    depth: int,
+    within: str,
+) -> str:
     pad, (row,) = STEP * depth, field.instances
-    lines = (f"{pad}{STEP}{own_name(member)}: {reading(member, tables, depth + 1, within)},\n" for member in row)
-    return f"{struct_path(struct, field.message.using_node)} {{\n{''.join(lines)}{pad}}}"
+    lines = (
+        f"{pad}{STEP}{own_name(member)}: {reading(member, tables, depth + 1, within)},\n"
+        for member in row
+    )
+    return (
+        f"{struct_path(struct, field.message.using_node)} {{\n{''.join(lines)}{pad}}}"
+    )
 
 
 def _array(field: FieldDescription, depth: int) -> str:
@@ -95,7 +124,11 @@ def _whole(field: FieldDescription, size: int) -> str:
     if size > 8:
         value = f"{_word(field)}::from_{field.order}_bytes(take!(bytes[{first}; {size // 8}]))"
     else:
-        value = f"i8::from_le_bytes([bytes[{first}]])" if field.model.is_signed else f"bytes[{first}]"
+        value = (
+            f"i8::from_le_bytes([bytes[{first}]])"
+            if field.model.is_signed
+            else f"bytes[{first}]"
+        )
     return _typed(field, value, size)
 
 
@@ -108,7 +141,9 @@ def _typed(field: FieldDescription, value: str, size: int) -> str:
     """Return an integer of ``size`` bits as the type of the field."""
     if field.model.type != "enum":
         return value
-    wider = value if size == field.storage.bits else f"{integer_type(field)}::from({value})"
+    wider = (
+        value if size == field.storage.bits else f"{integer_type(field)}::from({value})"
+    )
     return f"Coded::from_raw({wider})"
 
 
@@ -116,12 +151,17 @@ def _finished(field: FieldDescription, value: str, size: int) -> str:
     """Return an unsigned integer of ``size`` bits as the type of the field."""
     if field.model.type == "float":
         return f"f{size}::from_bits({value})"
-    return _typed(field, _signed(field, value, size) if field.model.is_signed else value, size)
+    return _typed(
+        field, _signed(field, value, size) if field.model.is_signed else value, size
+    )
 
 
 def _signed(field: FieldDescription, value: str, size: int) -> str:
-    """Return an unsigned integer of ``size`` bits as a signed one, with the sign of the field extended."""
-    # Shifting the sign bit to the top and back extends it: `>>` of a signed integer is arithmetic in Rust.
+    """Return an unsigned integer of ``size`` bits as a signed one, with the sign of the
+    field extended.
+    """
+    # Shifting the sign bit to the top and back extends it: `>>` of a signed integer is
+    # arithmetic in Rust.
     unused = size - field.model.bits
     if size == 8:
         shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
@@ -148,11 +188,17 @@ def _parenthesised(text: str) -> str:
 def _placed(piece: Piece, size: int) -> str:
     """Return a run of bits at its place in a value of ``size`` bits."""
     value = _one_byte(piece) if size == 8 else f"u{size}::from({_one_byte(piece)})"
-    return f"{_parenthesised(value) if size == 8 else value} << {piece.at}" if piece.at else value
+    return (
+        f"{_parenthesised(value) if size == 8 else value} << {piece.at}"
+        if piece.at
+        else value
+    )
 
 
 def fitting(field: FieldDescription) -> list[str]:
-    """Return the statements that return an error if the raw value does not fit the field."""
+    """Return the statements that return an error if the raw value does not fit the
+    field.
+    """
     member = f"self.{field_name(field)}"
     if field.struct is not None and not field.count:
         return [f"{member}.fit()?;"]
@@ -166,22 +212,35 @@ def fitting(field: FieldDescription) -> list[str]:
     if not field.count:
         return [f"{scale_name(field)}.fit({_source(field)}{raw})?;"]
     values = f"{member}().iter().copied()" if field.is_in_last_part else member
-    return [f"for value in {values} {{", f"{STEP}{scale_name(field)}.fit(value{raw})?;", "}"]
+    return [
+        f"for value in {values} {{",
+        f"{STEP}{scale_name(field)}.fit(value{raw})?;",
+        "}",
+    ]
 
 
 def _source(field: FieldDescription, owner: str = "self") -> str:
-    """Return the expression to write: the member, or the variable with the value of an optional field."""
+    """Return the expression to write: the member, or the variable with the value of an
+    optional field.
+    """
     name = field_name(field)
     return RAW if field.model.conditions else f"{owner}.{name}" if owner else name
 
 
-def writing(field: FieldDescription, owner: str = "self", within: str = "") -> list[str]:
-    """Return the statements that write the raw value into ``bytes``, without bits that do not fit the field."""
+def writing(
+    field: FieldDescription, owner: str = "self", within: str = ""
+) -> list[str]:
+    """Return the statements that write the raw value into ``bytes``, without bits that
+    do not fit the field.
+    """
     if field.model.is_count:
         return []
     helper = helper_of(field)
     if helper:
-        values, function = f"&{owner}.{field_name(field)}", f"Self::{writer(within + field.name)}"
+        values, function = (
+            f"&{owner}.{field_name(field)}",
+            f"Self::{writer(within + field.name)}",
+        )
         arguments = ("&mut bytes", str(field.model.at // 8), values, function)
         return [bracketed(f"put_{helper}(", arguments, ");", WIDTH, STEP * 2)]
     if field.count:
@@ -216,13 +275,29 @@ def _put_run(field: FieldDescription, source: str) -> list[str]:
     if place.type == "uint" and place.bits == 8:
         return [f"put_array(&mut bytes, {first}, &{source});"]
     to_bytes = f"to_{field.order}_bytes"
-    word = f"|value| value.raw().{to_bytes}()" if place.type == "enum" else f"{_word(field)}::{to_bytes}"
+    word = (
+        f"|value| value.raw().{to_bytes}()"
+        if place.type == "enum"
+        else f"{_word(field)}::{to_bytes}"
+    )
     word = "|octets| octets" if place.is_bytes else word
-    return [bracketed("put_words(", ("&mut bytes", str(first), f"&{source}", word), ");", WIDTH, STEP * 2)]
+    return [
+        bracketed(
+            "put_words(",
+            ("&mut bytes", str(first), f"&{source}", word),
+            ");",
+            WIDTH,
+            STEP * 2,
+        )
+    ]
 
 
 def _put_whole(field: FieldDescription, source: str) -> list[str]:
-    first, size, is_enum = field.model.at // 8, field.storage.bits, field.model.type == "enum"
+    first, size, is_enum = (
+        field.model.at // 8,
+        field.storage.bits,
+        field.model.type == "enum",
+    )
     if size == 8 and not field.model.is_signed:
         return [f"bytes[{first}] = {source}{'.raw()' if is_enum else ''};"]
     copied = f"put!({'value' if is_enum else source}.to_{field.order}_bytes() => bytes[{first}; {size // 8}]);"
@@ -230,7 +305,8 @@ def _put_whole(field: FieldDescription, source: str) -> list[str]:
 
 
 def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
-    # If all runs start at whole bytes of the value, its bytes in memory are the parts, without shifts.
+    # If all runs start at whole bytes of the value, its bytes in memory are the parts,
+    # without shifts.
     if size > 8 and all(piece.at % 8 == 0 for piece in row):
         return [
             f"let value = {source}.to_le_bytes();",

@@ -1,4 +1,8 @@
-"""Optional fields: the method that returns whether a field is present, and the code that depends on it. Absent is `None`."""
+"""Optional fields: the method that returns whether a field is present, and the code
+that depends on it.
+
+Absent is `None`.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,9 @@ from icdgen.describe.description import Need
 
 
 def conditional(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for the template per optional field: ``decode`` sets the member, ``encode`` writes it into ``bytes``."""
+    """Return the values for the template per optional field: ``decode`` sets the
+    member, ``encode`` writes it into ``bytes``.
+    """
     return [
         {
             "name": has(field),
@@ -32,7 +38,11 @@ def conditional(message: MessageDescription) -> list[dict[str, object]]:
 def _read(field: FieldDescription) -> str:
     value = f"Some({bits.reading(field, set())})"
     line = f"{STEP * 3}message.{field_name(field)} = {value};"
-    return line if "\n" in value else assigned(f"message.{field_name(field)} =", value, ";", STEP * 3)
+    return (
+        line
+        if "\n" in value
+        else assigned(f"message.{field_name(field)} =", value, ";", STEP * 3)
+    )
 
 
 def _test(need: Need) -> str:

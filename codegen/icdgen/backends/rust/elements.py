@@ -1,4 +1,6 @@
-"""Functions that read and write elements of arrays: structs, and numbers that are not whole words."""
+"""Functions that read and write elements of arrays: structs, and numbers that are not
+whole words.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +21,15 @@ DEPTH = 2
 
 
 def functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
-    """List the functions of a message, for an element of each array, or for a group of elements."""
+    """List the functions of a message, for an element of each array, or for a group of
+    elements.
+    """
     for field, name in arrays.named(composite):
-        shared = {"reader": arrays.reader(name), "writer": arrays.writer(name), "of": field.model.name}
+        shared = {
+            "reader": arrays.reader(name),
+            "writer": arrays.writer(name),
+            "of": field.model.name,
+        }
         loop = loop_of(field)
         if field.element_struct is not None:
             yield {**shared, **_of_struct(field.element_struct, f"{name}_")}
@@ -30,28 +38,62 @@ def functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
 
 
 def _of_struct(struct: StructDescription, within: str) -> dict[str, object]:
-    tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(struct, struct.using_node)
-    value = literal(struct.members, [bits.reading(member, tables, within=within) for member in struct.members], type)
-    writings = [line for member in struct.walk(Into.STRUCTS) for line in bits.writing(member, "part", within)]
+    tables, type = bytes_of_flags(struct, bits.FLAGS_FROM), struct_path(
+        struct, struct.using_node
+    )
+    value = literal(
+        struct.members,
+        [bits.reading(member, tables, within=within) for member in struct.members],
+        type,
+    )
+    writings = [
+        line
+        for member in struct.walk(Into.STRUCTS)
+        for line in bits.writing(member, "part", within)
+    ]
     step = struct.model.length
-    return {"step": step, "type": type, "tables": sorted(tables), "value": value, "writings": writings}
+    return {
+        "step": step,
+        "type": type,
+        "tables": sorted(tables),
+        "value": value,
+        "writings": writings,
+    }
 
 
 def _of_numbers(field: FieldDescription, loop: ArrayLoop) -> dict[str, object]:
     type, pad, many = one_type(field), STEP * DEPTH, loop.per_iteration > 1
-    members = loop.members(field, lambda element: f"part[{element}]" if many else "part")
+    members = loop.members(
+        field, lambda element: f"part[{element}]" if many else "part"
+    )
     if many:
         type = f"[{type}; {loop.per_iteration}]"
-        rows = "".join(f"{pad}{STEP}{bits.reading(element, set(), DEPTH + 1)},\n" for element in members)
+        rows = "".join(
+            f"{pad}{STEP}{bits.reading(element, set(), DEPTH + 1)},\n"
+            for element in members
+        )
         value = f"{pad}[\n{rows}{pad}]"
     else:
-        value = bits.reading(members[0], set(), DEPTH - 1)  # a block is the body of the function
+        value = bits.reading(
+            members[0], set(), DEPTH - 1
+        )  # a block is the body of the function
         value = value[2:-2].rstrip() if value.startswith("{\n") else pad + value
     writings = [line for element in members for line in bits.writing(element, "")]
-    return {"step": loop.step, "type": type, "tables": (), "value": value, "writings": writings}
+    return {
+        "step": loop.step,
+        "type": type,
+        "tables": (),
+        "value": value,
+        "writings": writings,
+    }
 
 
-def literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:
+def literal(
+    fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self"
+) -> str:
     """Return ``Self { ... }`` in the body of a function."""
-    lines = "".join(f"            {own_name(field)}: {value},\n" for field, value in zip(fields, values, strict=True))
+    lines = "".join(
+        f"            {own_name(field)}: {value},\n"
+        for field, value in zip(fields, values, strict=True)
+    )
     return f"        {type} {{\n{lines}        }}" if fields else f"        {type} {{}}"

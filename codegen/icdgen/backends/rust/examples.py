@@ -15,11 +15,17 @@ from icdgen.describe.links import LinkDescription
 from icdgen.describe.nodes import Direction
 
 _SHORT = 8
-"""Bytes of a frame up to which an example shows all; of longer frames it shows the bytes that are not 0."""
+"""Bytes of a frame up to which an example shows all.
+
+Of longer frames it shows the bytes that are not 0.
+"""
 
 
 def message_example(message: MessageDescription, crate: str) -> list[str]:
-    """Return lines that decode a frame, read a value and encode it again. A message that is only sent is created and encoded."""
+    """Return lines that decode a frame, read a value and encode it again.
+
+    A message that is only sent is created and encoded.
+    """
     shown = example(message)
     is_received = message.model.telemetry_id is not None
     body = _received(message, shown) if is_received else _sent(message, shown)
@@ -28,20 +34,31 @@ def message_example(message: MessageDescription, crate: str) -> list[str]:
 
 def enum_example(enum: EnumDescription, crate: str) -> list[str]:
     """Return lines that compare a value with its name."""
-    name, member = RUST_NAMES.symbol(enum, "type"), enum.members[-1] if enum.members else None
+    name, member = RUST_NAMES.symbol(enum, "type"), (
+        enum.members[-1] if enum.members else None
+    )
     first = enum.member(member.model.value) if member else None
     tests = []
     if first is not None:
         variant = RUST_NAMES.symbol(first, "variant")
-        tests.append(f"assert_eq!({name}::from({integer(first.model.value)}), {name}::{variant});")
+        tests.append(
+            f"assert_eq!({name}::from({integer(first.model.value)}), {name}::{variant});"
+        )
     path = f"{crate}::{enum.node.name}::{ENUMS_MODULE}::{name}"
-    return _fenced([f"use {path};", "", *tests, f"assert_eq!({name}::default().raw(), 0);"])
+    return _fenced(
+        [f"use {path};", "", *tests, f"assert_eq!({name}::default().raw(), 0);"]
+    )
 
 
-def direction_example(direction: Direction, node: NodeDescription, crate: str) -> list[str]:
+def direction_example(
+    direction: Direction, node: NodeDescription, crate: str
+) -> list[str]:
     """Return lines that decode a frame of zeros by its id."""
     message, id = direction.messages[0]
-    name, path = direction.kind.capitalize(), f"{crate}::{message.node.name}::{RUST_NAMES.symbol(message, 'type')}"
+    name, path = (
+        direction.kind.capitalize(),
+        f"{crate}::{message.node.name}::{RUST_NAMES.symbol(message, 'type')}",
+    )
     return _fallible(
         [
             f"use {crate}::{node.name}::{name};",
@@ -53,13 +70,26 @@ def direction_example(direction: Direction, node: NodeDescription, crate: str) -
     )
 
 
-def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> list[str]:
-    """Return lines in which a client on a UART requests a message and gets it; none without UART or short messages."""
-    linked = [message for message in node.telemetry if message.model.telemetry_id in link.facts.telemetry]
+def client_example(
+    node: NodeDescription, link: LinkDescription, crate: str
+) -> list[str]:
+    """Return lines in which a client on a UART requests a message and gets it.
+
+    None without UART or short messages.
+    """
+    linked = [
+        message
+        for message in node.telemetry
+        if message.model.telemetry_id in link.facts.telemetry
+    ]
     short = [message for message in linked if message.model.length <= _SHORT]
     if link.facts.framing is None or not short:
         return []
-    scaled = (message for message in short if any(field.is_scaled for field in message.members))
+    scaled = (
+        message
+        for message in short
+        if any(field.is_scaled for field in message.members)
+    )
     message = next(scaled, short[0])
     reply, name = example(message), RUST_NAMES.symbol(message, "type")
     answer = _bytes(bytes([message.model.telemetry_id or 0, *reply.frame]))
@@ -79,7 +109,11 @@ def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> 
             "let mut answer = None;",
             f"client.received(20, &line[..size], |event| answer = event.message::<{name}>());",
             "let message = answer.unwrap();",
-            _read(reply.shown) if reply.shown else "assert_eq!(message.to_bytes()?, []);",
+            (
+                _read(reply.shown)
+                if reply.shown
+                else "assert_eq!(message.to_bytes()?, []);"
+            ),
         ],
         f"{crate}::wire",
     )
@@ -107,7 +141,11 @@ def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> li
 def _received(message: MessageDescription, shown: Example) -> list[str]:
     lines = [f"let frame = {_bytes(shown.frame)};"]
     if len(shown.frame) > _SHORT:
-        size = str(len(shown.frame)) if message.last_part else f"{RUST_NAMES.symbol(message, 'type')}::LENGTH"
+        size = (
+            str(len(shown.frame))
+            if message.last_part
+            else f"{RUST_NAMES.symbol(message, 'type')}::LENGTH"
+        )
         lines = [f"let mut frame = [0; {size}];"]
         lines += [_put(start, run) for start, run in shown.runs]
     return [
@@ -125,7 +163,10 @@ def _sent(message: MessageDescription, shown: Example) -> list[str]:
         lines = [f"let mut command = {name}::default();", _written(shown.shown)]
     if len(shown.frame) <= _SHORT:
         return [*lines, f"assert_eq!(command.to_bytes()?, {_bytes(shown.frame)});"]
-    places = [f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});" for start, run in shown.runs]
+    places = [
+        f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});"
+        for start, run in shown.runs
+    ]
     if not places:
         return [*lines, f"assert_eq!(command.to_bytes()?.len(), {len(shown.frame)});"]
     return [*lines, "let frame = command.to_bytes()?;", *places]
@@ -136,7 +177,11 @@ def _read(shown: Shown) -> str:
     if shown.physical is not None:
         return f"assert_eq!(message.{field.physical_name}(), {double(shown.physical)});"
     value = f"message.{field_name(field)}"
-    return f"assert!({value});" if field.model.type == "bool" else f"assert_eq!({value}, {_value(shown)});"
+    return (
+        f"assert!({value});"
+        if field.model.type == "bool"
+        else f"assert_eq!({value}, {_value(shown)});"
+    )
 
 
 def _written(shown: Shown) -> str:
@@ -156,7 +201,11 @@ def _value(shown: Shown) -> str:
         return f"{ENUMS_MODULE}::{RUST_NAMES.symbol(field.enum, 'type')}::{RUST_NAMES.symbol(member, 'variant')}"
     if field.model.type == "bool":
         return "true" if raw else "false"
-    return double(codec.float_value(field.model, raw)) if field.model.type == "float" else integer(raw)
+    return (
+        double(codec.float_value(field.model, raw))
+        if field.model.type == "float"
+        else integer(raw)
+    )
 
 
 def _put(start: int, run: bytes) -> str:

@@ -5,7 +5,17 @@ from __future__ import annotations
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, some, spelled
 from icdgen.backends.rust.text import mask
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.sections import BUSES, Crc, Download, Erasure, HoleMap, Index, Listing, Operation, Upload
+from icdgen.protocol.sections import (
+    BUSES,
+    Crc,
+    Download,
+    Erasure,
+    HoleMap,
+    Index,
+    Listing,
+    Operation,
+    Upload,
+)
 
 # Types whose names in generated code are not those of the facts.
 _TYPES: dict[type, str] = {
@@ -35,7 +45,11 @@ def _required(fact: Fact, value: object, part: object) -> Expression:
     if isinstance(value, tuple):
         if fact.kind is Kind.BUSES:
             return flat("PerBus", **{bus: bus in value for bus in BUSES})
-        return flat("Span", at=value[0], bytes=value[1]) if fact.kind is Kind.SPAN else flat_rows(map(spelled, value))
+        return (
+            flat("Span", at=value[0], bytes=value[1])
+            if fact.kind is Kind.SPAN
+            else flat_rows(map(spelled, value))
+        )
     assert isinstance(value, bool | int)
     if fact.kind is Kind.OCTET:
         return mask(value, 8)

@@ -1,4 +1,6 @@
-"""Links: the protocol facts of a node as the constant ``LINK`` of its module, and sizes of buffers for all nodes."""
+"""Links: the protocol facts of a node as the constant ``LINK`` of its module, and sizes
+of buffers for all nodes.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +8,30 @@ from collections.abc import Collection
 
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
-from icdgen.backends.rust.literals import Expression, flat, flat_rows, members, part, rows, some, spelled, struct
+from icdgen.backends.rust.literals import (
+    Expression,
+    flat,
+    flat_rows,
+    members,
+    part,
+    rows,
+    some,
+    spelled,
+    struct,
+)
 from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.streams import stream_of, tabulated
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
-from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
+from icdgen.describe.links import (
+    CAN_PARTS,
+    INDEX_PARTS,
+    Assumptions,
+    LinkDescription,
+    SentMessage,
+    StepDescription,
+)
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Step
 
@@ -30,15 +49,22 @@ def sizes(links: Collection[LinkDescription]) -> dict[str, int]:
     return {
         "step": max((link.longest_step for link in links), default=1),
         "map": max((node.hole_map.bytes for node in facts if node.hole_map), default=1),
-        "packets": max((node.files.block_packets for node in facts if node.files), default=1),
+        "packets": max(
+            (node.files.block_packets for node in facts if node.files), default=1
+        ),
     }
 
 
 def values(link: LinkDescription) -> dict[str, str]:
-    """Return the values for the template of a link. ``tabulated`` is the CRC of packets, for which there is a table."""
+    """Return the values for the template of a link.
+
+    ``tabulated`` is the CRC of packets, for which there is a table.
+    """
     facts, link_literal = link.facts, _Literal(link)
     text = written(link_literal.link(), _note)
-    about = [f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."]
+    about = [
+        f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."
+    ]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
     crc = tabulated(facts.stream)
@@ -53,7 +79,9 @@ def values(link: LinkDescription) -> dict[str, str]:
 
 
 def longest(link: LinkDescription) -> int:
-    """Return the size of each buffer of the wire layer: the longest message, CAN packets of a message, or entry of a log."""
+    """Return the size of each buffer of the wire layer: the longest message, CAN
+    packets of a message, or entry of a log.
+    """
     log = link.facts.log_file
     header = log.header_bytes if log and link.facts.mask else 0
     return max(link.facts.longest, link.joined_bytes, link.log_entry_bytes, header)
@@ -67,12 +95,17 @@ class _Literal:
     """Expression of the link of a node."""
 
     def __init__(self, link: LinkDescription) -> None:
-        self.description, self.facts, self.assumed = link, link.facts, Assumptions(link.facts)
+        self.description, self.facts, self.assumed = (
+            link,
+            link.facts,
+            Assumptions(link.facts),
+        )
 
     def link(self) -> Brackets:
         facts, link = self.facts, self.description
         codes = (
-            f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})" for key, code in link.error_codes
+            f"({integer(code)}, link::Reason::{_REASONS.get(key) or variant(key)})"
+            for key, code in link.error_codes
         )
         return struct(
             "Link",
@@ -123,9 +156,17 @@ class _Literal:
         items = []
         for fact in facts_of(declared):
             value = getattr(declared, fact.name)
-            step = _step(self.description.step(value), fact.direction) if isinstance(value, Step) else None
+            step = (
+                _step(self.description.step(value), fact.direction)
+                if isinstance(value, Step)
+                else None
+            )
             items.append(
-                part(member_name(fact), step or value_of(fact, declared), self.assumed.why_fact(declared, fact))
+                part(
+                    member_name(fact),
+                    step or value_of(fact, declared),
+                    self.assumed.why_fact(declared, fact),
+                )
             )
         return struct(type_name(type(declared)), *items, *further)
 
@@ -133,13 +174,27 @@ class _Literal:
         can = self.description.can
         if can is None:
             return None
-        parts = (part(_RENAMED.get(role, role), flat("CanPart", **members(can.parts[role]))) for role in CAN_PARTS)
-        extended = self.struct(can.extended, part("types", _can_types(can.extended_types)))
-        return self.struct(can, *parts, part("types", _can_types(can.types)), part("extended", some(extended)))
+        parts = (
+            part(_RENAMED.get(role, role), flat("CanPart", **members(can.parts[role])))
+            for role in CAN_PARTS
+        )
+        extended = self.struct(
+            can.extended, part("types", _can_types(can.extended_types))
+        )
+        return self.struct(
+            can,
+            *parts,
+            part("types", _can_types(can.types)),
+            part("extended", some(extended)),
+        )
 
     def checksum(self) -> Brackets | None:
         form = self.facts.checksum
-        return self.struct(form, part("crc", self.struct(form.crc) or "")) if form else None
+        return (
+            self.struct(form, part("crc", self.struct(form.crc) or ""))
+            if form
+            else None
+        )
 
     def mask(self) -> Brackets | None:
         mask = self.facts.mask
@@ -150,31 +205,50 @@ class _Literal:
             for _, row in sorted(mask.bits.items())
             if row.id is not None
         )
-        return self.struct(mask, part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")))
+        return self.struct(
+            mask,
+            part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")),
+        )
 
     def time(self) -> Brackets | None:
-        parts = [part(name, flat("TimePart", **members(time_part))) for name, time_part in self.description.time]
+        parts = [
+            part(name, flat("TimePart", **members(time_part)))
+            for name, time_part in self.description.time
+        ]
         return struct("TimeForm", *parts) if parts else None
 
     def index(self) -> Brackets | None:
         form = self.description.index
         fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
-        spans = (part(_RENAMED.get(name, name), flat("Span", **members(span))) for name, span in fields)
+        spans = (
+            part(_RENAMED.get(name, name), flat("Span", **members(span)))
+            for name, span in fields
+        )
         return self.struct(form, *spans)
 
     def files(self) -> Brackets | None:
-        """Return the facts of file transfer, with the procedures that the ICD describes completely."""
+        """Return the facts of file transfer, with the procedures that the ICD describes
+        completely.
+        """
         form = self.facts.files
         if form is None:
             return None
         ids = (
-            part(bus, some(form.packet_ids.get(bus)), self.assumed.why("file_transfer.download", bus)) for bus in BUSES
+            part(
+                bus,
+                some(form.packet_ids.get(bus)),
+                self.assumed.why("file_transfer.download", bus),
+            )
+            for bus in BUSES
         )
         return self.struct(
             form,
             part("packet_ids", struct("PerBus", *ids)),
             part("hole_map", some(self.hole_map())),
-            *(part(name, some(self.struct(getattr(form, name)))) for name in PROCEDURES),
+            *(
+                part(name, some(self.struct(getattr(form, name))))
+                for name in PROCEDURES
+            ),
         )
 
     def hole_map(self) -> Brackets | None:
@@ -184,17 +258,27 @@ class _Literal:
             if message.telecommand_id is None or message.telemetry_id is None:
                 return None
             ids = {"set_id": message.telecommand_id, "get_id": message.telemetry_id}
-            messages.append(flat("MapMessage", **ids, length=message.length, piece=_span(field)))
+            messages.append(
+                flat("MapMessage", **ids, length=message.length, piece=_span(field))
+            )
         return self.struct(self.facts.hole_map, part("messages", rows(messages)))
 
 
 def _form(sent: SentMessage) -> Brackets:
     message = sent.message
-    return flat("Form", id=sent.id, length=message.length, acknowledged=message.acknowledge, repeatable=sent.is_setting)
+    return flat(
+        "Form",
+        id=sent.id,
+        length=message.length,
+        acknowledged=message.acknowledge,
+        repeatable=sent.is_setting,
+    )
 
 
 def _can_types(types: dict[str, int]) -> Brackets:
-    return struct("CanTypes", *(part(name, some(types.get(name))) for name in CAN_KINDS))
+    return struct(
+        "CanTypes", *(part(name, some(types.get(name))) for name in CAN_KINDS)
+    )
 
 
 def _span(field: FieldDescription) -> Brackets:
@@ -218,8 +302,15 @@ def _polled(step: StepDescription | None) -> Brackets | None:
 
 
 def _step(step: StepDescription | None, direction: str) -> Brackets | None:
-    """Return a step of a procedure; None if the node does not have the message in that direction."""
-    id = step and (step.message.telecommand_id if direction == "telecommand" else step.message.telemetry_id)
+    """Return a step of a procedure.
+
+    Returns None if the node does not have the message in that direction.
+    """
+    id = step and (
+        step.message.telecommand_id
+        if direction == "telecommand"
+        else step.message.telemetry_id
+    )
     if step is None or id is None:
         return None
     places, payload = [], None

@@ -18,7 +18,10 @@ def struct(name: str, *items: Item) -> Brackets:
 
 def flat(name: str, /, **parts: Expression | int) -> Brackets:
     """Return a struct of the wire layer on one line."""
-    items = (part(key, value if isinstance(value, Brackets) else spelled(value)) for key, value in parts.items())
+    items = (
+        part(key, value if isinstance(value, Brackets) else spelled(value))
+        for key, value in parts.items()
+    )
     return Brackets(f"link::{name} {{ ", tuple(items), " }", True)
 
 
@@ -46,7 +49,11 @@ def some(value: Expression | int | None) -> Expression:
     """Return a value as an `Option`."""
     if value is None:
         return "None"
-    return value.within("Some(", ")") if isinstance(value, Brackets) else f"Some({spelled(value)})"
+    return (
+        value.within("Some(", ")")
+        if isinstance(value, Brackets)
+        else f"Some({spelled(value)})"
+    )
 
 
 def spelled(value: bool | int | str) -> str:

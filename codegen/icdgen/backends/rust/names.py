@@ -5,7 +5,8 @@ from __future__ import annotations
 from icdgen.describe import FieldDescription
 from icdgen.naming import camel
 
-# Strict, reserved and weak keywords of the editions 2015 to 2024 that no item, field or variant may be called without `r#`.
+# Strict, reserved and weak keywords of the editions 2015 to 2024 that no item, field or
+# variant may be called without `r#`.
 RESERVED = frozenset("""
     as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move
     mut pub ref return self Self static struct super trait true try type unsafe use where while
@@ -16,34 +17,71 @@ RESERVED = frozenset("""
 NEVER = frozenset(("self", "Self", "super", "crate", "_"))
 _RAW = RESERVED - NEVER
 
-# Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
-USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand", "Node")
+# Types and traits that the generated modules call by their bare name, in the scope
+# where a message's type stands.
+USED_TYPES = (
+    "Result",
+    "Error",
+    "Default",
+    "Coded",
+    "Scale",
+    "Telemetry",
+    "Telecommand",
+    "Node",
+)
 # What stands beside the modules of the nodes.
 USED_MODULES = ("support", "std", "wire")
 # What a folder of that name in `src` means to Cargo and rustc.
-ROOTS = {"lib": "the root of the crate", "main": "the root of a program", "bin": "the folder of programs"}
+ROOTS = {
+    "lib": "the root of the crate",
+    "main": "the root of a program",
+    "bin": "the folder of programs",
+}
 ENUMS_MODULE = "enums"
-# What stands beside the modules of a node's messages, and what their parent calls by its bare name.
-USED_IN_NODES = (ENUMS_MODULE, "u8", "u16", "u32", "u64", "usize", "str", "serde", "defmt")
+# What stands beside the modules of a node's messages, and what their parent calls by
+# its bare name.
+USED_IN_NODES = (
+    ENUMS_MODULE,
+    "u8",
+    "u16",
+    "u32",
+    "u64",
+    "usize",
+    "str",
+    "serde",
+    "defmt",
+)
 
 
 def field_name(field: FieldDescription) -> str:
-    """``estimated_roll_angle``; ``r#type`` where the name is a keyword; ``temperatures[3]``; ``satellites[2].gnss``."""
+    """``estimated_roll_angle``.
+
+    ``r#type`` where the name is a keyword; ``temperatures[3]``; ``satellites[2].gnss``.
+    """
     return raw_words(field.member)
 
 
 def raw_words(expression: str) -> str:
     """An expression of members, keywords among them as names."""
-    return ".".join(f"r#{part}" if part.partition("[")[0] in _RAW else part for part in expression.split("."))
+    return ".".join(
+        f"r#{part}" if part.partition("[")[0] in _RAW else part
+        for part in expression.split(".")
+    )
 
 
 def own_name(field: FieldDescription) -> str:
     """What it is called in the message, or in the struct, that declares it."""
-    return f"r#{field.declared_name}" if field.declared_name in _RAW else field.declared_name
+    return (
+        f"r#{field.declared_name}"
+        if field.declared_name in _RAW
+        else field.declared_name
+    )
 
 
 def variant(word: str) -> str:
-    """``UnknownId`` of ``unknown_id``: a word of the protocol as a variant of its enumeration."""
+    """``UnknownId`` of ``unknown_id``: a word of the protocol as a variant of its
+    enumeration.
+    """
     return camel(tuple(word.split("_")))
 
 
@@ -63,5 +101,7 @@ def constant_name(name: str) -> str:
 
 
 def setter(name: str) -> str:
-    """``set_rate_deg_per_s``: the method that sets a physical value by its name in snake case."""
+    """``set_rate_deg_per_s``: the method that sets a physical value by its name in
+    snake case.
+    """
     return f"set_{name}"

@@ -1,4 +1,6 @@
-"""Documentation of nodes, and the tests that dispatch frames to messages of the same id."""
+"""Documentation of nodes, and the tests that dispatch frames to messages of the same
+id.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +21,16 @@ def summary(node: Node) -> str:
 
 
 def about(node: NodeDescription, example: list[str]) -> str:
-    """Return the documentation of the module of a node: title, source, included nodes and an example."""
-    model, owners = node.model, dict.fromkeys(message.node.name for message in node.all_messages)
+    """Return the documentation of the module of a node: title, source, included nodes
+    and an example.
+    """
+    model, owners = node.model, dict.fromkeys(
+        message.node.name for message in node.all_messages
+    )
     printed = ", ".join(f"{key} {value}" for key, value in model.document)
-    included = ", ".join(f"[`{name}`](crate::{name})" for name in owners if name != node.name)
+    included = ", ".join(
+        f"[`{name}`](crate::{name})" for name in owners if name != node.name
+    )
     paragraphs = [
         f"{prose(sentence(model.title))} {prose(sentence(model.summary))}".rstrip(),
         prose(sentence(f"Source: {printed}")) if printed else "",
@@ -38,12 +46,16 @@ def typed(value: int) -> str:
 
 
 def guarded(candidate: MessageOfId, path: str) -> str:
-    """Return the pattern of a match arm: the id, with tests of the length and of the constant bytes of the message."""
+    """Return the pattern of a match arm: the id, with tests of the length and of the
+    constant bytes of the message.
+    """
     model = candidate.message.model
     terms = _lengths(model.layout.lengths, f"{path}::LENGTH")
     for constant in candidate.constant_bytes:
         byte = f"bytes[{constant.byte}]"
-        if constant.byte >= model.layout.shortest:  # a trailing zero that the frame may lack
+        if (
+            constant.byte >= model.layout.shortest
+        ):  # a trailing zero that the frame may lack
             byte = f"bytes.get({constant.byte}).map_or(0, |byte| *byte)"
         masked = byte if constant.mask == 0xFF else f"{byte} & {mask(constant.mask)}"
         terms.append(f"{masked} == {mask(constant.value)}")
@@ -54,13 +66,24 @@ def guarded(candidate: MessageOfId, path: str) -> str:
 
 
 def _lengths(lengths: range, longest: str) -> list[str]:
-    """Return the tests of the length of a frame. ``longest`` is the constant of the longest."""
+    """Return the tests of the length of a frame.
+
+    ``longest`` is the constant of the longest.
+    """
     tests = {test.kind: test for test in length_tests_of_frame(lengths)}
     if "equal" in tests:
         return [f"bytes.len() == {longest}"]
     least, multiple = tests.get("at least"), tests.get("multiple")
-    terms = [f"({least.value}..={longest}).contains(&bytes.len())" if least else f"bytes.len() <= {longest}"]
+    terms = [
+        (
+            f"({least.value}..={longest}).contains(&bytes.len())"
+            if least
+            else f"bytes.len() <= {longest}"
+        )
+    ]
     if multiple:
-        counted = f"(bytes.len() - {multiple.without})" if multiple.without else "bytes.len()"
+        counted = (
+            f"(bytes.len() - {multiple.without})" if multiple.without else "bytes.len()"
+        )
         terms.append(f"{counted} % {multiple.value} == 0")
     return terms

@@ -11,11 +11,17 @@ from icdgen.backends.rust.text import WIDTH
 from icdgen.backends.rust.types import struct_path
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
 from icdgen.describe.comments import part_comment
-from icdgen.describe.contained import ContainedDescription, CopiedMember, contained_messages
+from icdgen.describe.contained import (
+    ContainedDescription,
+    CopiedMember,
+    contained_messages,
+)
 
 
 class Part(NamedTuple):
-    """Conversion to a contained message, or to an array of them if it is contained several times."""
+    """Conversion to a contained message, or to an array of them if it is contained
+    several times.
+    """
 
     about: str
     type: str
@@ -31,25 +37,49 @@ def parts(message: MessageDescription) -> list[Part]:
         path = struct_path(contained.message, message.node)
         count = len(contained.positions)
         kind = f"[{path}; {count}]" if count > 1 else path
-        values = tuple(tuple(_values(contained, message, begin)) for begin in contained.positions)
+        values = tuple(
+            tuple(_values(contained, message, begin)) for begin in contained.positions
+        )
         conversions.append(
-            Part(part_comment(contained.message.model, contained.positions), kind, count > 1, values, path)
+            Part(
+                part_comment(contained.message.model, contained.positions),
+                kind,
+                count > 1,
+                values,
+                path,
+            )
         )
     return conversions
 
 
-def _values(part: ContainedDescription, composite: MessageDescription, begin: int) -> Iterator[str]:
-    copies = {copied.member.model.name: copied for copied in part.copies(composite, begin)}
+def _values(
+    part: ContainedDescription, composite: MessageDescription, begin: int
+) -> Iterator[str]:
+    copies = {
+        copied.member.model.name: copied for copied in part.copies(composite, begin)
+    }
     for member in part.message.members:
-        yield _struct(member, member.struct, copies) if member.struct else _value(copies[member.model.name])
+        yield (
+            _struct(member, member.struct, copies)
+            if member.struct
+            else _value(copies[member.model.name])
+        )
 
 
-def _struct(field: FieldDescription, struct: StructDescription, copies: dict[str, CopiedMember]) -> str:
-    """Return the expression of a struct, or of an array of structs, over fields of the composite."""
+def _struct(
+    field: FieldDescription, struct: StructDescription, copies: dict[str, CopiedMember]
+) -> str:
+    """Return the expression of a struct, or of an array of structs, over fields of the
+    composite.
+    """
     path, structs = struct_path(struct, field.message.node), []
     for row in field.instances:
         values = (
-            _struct(member, member.struct, copies) if member.struct else _value(copies[member.model.name])
+            (
+                _struct(member, member.struct, copies)
+                if member.struct
+                else _value(copies[member.model.name])
+            )
             for member in row
         )
         structs.append(f"{path} {{ {', '.join(values)} }}")

@@ -22,15 +22,22 @@ def big_parts(value: int) -> list[str]:
 
 
 def has_constant(field: FieldDescription) -> bool:
-    """Return whether code needs the constant of a scale: to set a field, to test a raw value, or to compute a physical value."""
+    """Return whether code needs the constant of a scale: to set a field, to test a raw
+    value, or to compute a physical value.
+    """
     arithmetic = field.arithmetic
     if not field.model.is_read_only:
         return arithmetic is not None or field.is_narrow
-    return arithmetic is not None and not (arithmetic.is_exact_in_doubles and arithmetic.is_exact_in_singles)
+    return arithmetic is not None and not (
+        arithmetic.is_exact_in_doubles and arithmetic.is_exact_in_singles
+    )
 
 
 def accessors_in_rust(field: FieldDescription) -> Iterator[Accessor]:
-    """List the accessors. `Wide` of the support module, for scales of many digits, has no integers."""
+    """List the accessors.
+
+    `Wide` of the support module, for scales of many digits, has no integers.
+    """
     if field.steps is not None and field.steps.is_wide:
         return accessors_of(field, "double", "single")
     return accessors_of(field, "text", "double", "single", "integer")
@@ -49,20 +56,26 @@ def raw_value(field: FieldDescription) -> str:
 
 
 def curve_name(field: FieldDescription) -> str:
-    """Return the name of the constant of a calibration: ``TEMPERATURE__CURVE``. Names of fields have no double underscore."""
+    """Return the name of the constant of a calibration: ``TEMPERATURE__CURVE``.
+
+    Names of fields have no double underscore.
+    """
     return f"{scale_name(field)}__CURVE"
 
 
 def double_value(field: FieldDescription) -> str:
     """Return the physical value as a double.
 
-    With a scale it is computed in doubles if every step is exact there, else in 128-bit integers by the support module.
+    With a scale it is computed in doubles if every step is exact there, else in 128-bit
+    integers by the support module.
     """
     raw, is_long = raw_value(field), field.storage.bits == 64
     if field.arithmetic is None:
         if is_long and field.model.type != "float":
             return f"{curve_name(field)}.whole({raw})"
-        return f"{curve_name(field)}.physical({raw if is_long else f'f64::from({raw})'})"
+        return (
+            f"{curve_name(field)}.physical({raw if is_long else f'f64::from({raw})'})"
+        )
     if not field.arithmetic.is_exact_in_doubles:
         return f"{scale_name(field)}.physical({raw})"
     return _quotient(field.arithmetic.steps, f"f64::from({raw})")
@@ -72,16 +85,26 @@ def double_raw(field: FieldDescription) -> str:
     """Return the raw value of the double ``value``, a Result."""
     if field.curve is None:
         return f"{scale_name(field)}.raw(value)"
-    kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
+    kind = (
+        {32: "single", 64: "number"}[field.model.bits]
+        if field.model.type == "float"
+        else "raw"
+    )
     return f"{curve_name(field)}.{kind}(value)"
 
 
 def integer_value(field: FieldDescription, access: IntegerAccess) -> str:
     """Return the physical value in whole parts of the unit."""
     raw, factor, offset = raw_value(field), access.scale.factor, access.scale.offset
-    value = raw if field.storage == (access.bits, True) else f"i{access.bits}::from({raw})"
+    value = (
+        raw if field.storage == (access.bits, True) else f"i{access.bits}::from({raw})"
+    )
     value = value if factor == 1 else f"{value} * {integer(factor)}"
-    return f"{value} {'+' if offset > 0 else '-'} {integer(abs(offset))}" if offset else value
+    return (
+        f"{value} {'+' if offset > 0 else '-'} {integer(abs(offset))}"
+        if offset
+        else value
+    )
 
 
 def integer_raw(field: FieldDescription, access: IntegerAccess) -> str:
@@ -102,7 +125,9 @@ def _quotient(steps: Steps, raw: str) -> str:
     p, c, q = steps.terms
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
-        value = f"{whole_double(c)} - {value}"  # in this order a result of 0 is never -0.0
+        value = (
+            f"{whole_double(c)} - {value}"  # in this order a result of 0 is never -0.0
+        )
     elif c:
         value = f"{value} {'+' if c > 0 else '-'} {whole_double(abs(c))}"
     if q == 1:
@@ -116,15 +141,24 @@ def derived_statements(field: FieldDescription) -> Iterator[str]:
     for name, operand in computation.fields:
         yield assigned(f"let {name} =", _as_double(operand), ";", STEP * 2)
     for name, operator, *operands in computation.statements:
-        left, right = (operand if isinstance(operand, str) else double(operand) for operand in operands)
-        value = f"power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
+        left, right = (
+            operand if isinstance(operand, str) else double(operand)
+            for operand in operands
+        )
+        value = (
+            f"power({left}, {right})"
+            if operator == "^"
+            else f"{left} {operator} {right}"
+        )
         yield assigned(f"let {name} =", value, ";", STEP * 2)
     yield f"{STEP * 2}quiet({computation.result})"
 
 
 def _is_long(field: FieldDescription) -> bool:
     """Return whether it is a whole number of 64 bits, which a double may have to round."""
-    return not field.is_scaled and field.storage.bits == 64 and field.model.type != "float"
+    return (
+        not field.is_scaled and field.storage.bits == 64 and field.model.type != "float"
+    )
 
 
 def _as_double(field: FieldDescription) -> str:

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from icdgen.backends.literals import Brackets, Item
 from icdgen.backends.rust.facts import member_name, value_of
-from icdgen.backends.rust.literals import flat, members, part, rows, some, spelled, struct
+from icdgen.backends.rust.literals import (
+    flat,
+    members,
+    part,
+    rows,
+    some,
+    spelled,
+    struct,
+)
 from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.text import mask
 from icdgen.protocol.declared import facts_of
@@ -17,7 +25,10 @@ def stream_of(form: Stream) -> Brackets:
     """Return the expression of a packet format."""
     return struct(
         "Stream",
-        part("delimited_by", f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)}"),
+        part(
+            "delimited_by",
+            f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)}",
+        ),
         part("header_bytes", spelled(form.header_bytes)),
         part("trailer_bytes", spelled(form.trailer_bytes)),
         part("length_plus", spelled(form.length_plus)),
@@ -42,19 +53,34 @@ def _check(check: Check) -> Brackets:
 
 
 def tabulated(form: Stream | None) -> Brackets | None:
-    """Return the CRC for which the wire layer gets a table; None for any other checksum."""
+    """Return the CRC for which the wire layer gets a table.
+
+    Returns None for any other checksum.
+    """
     check = form and form.check
     return _crc(check) if check and check.kind == CRC else None
 
 
 def _crc(check: Check) -> Brackets:
-    return flat("CrcForm", **{member_name(fact): value_of(fact, check.crc) for fact in facts_of(check.crc)})
+    return flat(
+        "CrcForm",
+        **{
+            member_name(fact): value_of(fact, check.crc) for fact in facts_of(check.crc)
+        },
+    )
 
 
 def _field(field: EnvelopeField) -> Brackets:
-    values = Brackets("[", tuple(Item(mask(value, WORD)) for value in field.values), "]", True)
+    values = Brackets(
+        "[", tuple(Item(mask(value, WORD)) for value in field.values), "]", True
+    )
     return flat(
-        "EnvelopeField", **{**members(field), "role": f"link::EnvelopeRole::{variant(field.role)}", "values": values}
+        "EnvelopeField",
+        **{
+            **members(field),
+            "role": f"link::EnvelopeRole::{variant(field.role)}",
+            "values": values,
+        },
     )
 
 

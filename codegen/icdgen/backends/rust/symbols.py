@@ -8,7 +8,13 @@ from typing import Any
 from icdgen.backends import Identifier
 from icdgen.backends.rust import arrays, names
 from icdgen.backends.rust.physical import accessors_in_rust
-from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe import (
+    Description,
+    EnumDescription,
+    FieldDescription,
+    MessageDescription,
+    NodeDescription,
+)
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Symbols
@@ -26,7 +32,10 @@ _CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 
 
 class RustNames(NamingPolicy):
-    """Names in Rust. Modules, types, variants, fields, methods and constants are scopes of their own."""
+    """Names in Rust.
+
+    Modules, types, variants, fields, methods and constants are scopes of their own.
+    """
 
     reserved = names.RESERVED
 
@@ -43,12 +52,16 @@ class RustNames(NamingPolicy):
         yield from _used(f"types of {node.name}", names.USED_TYPES)
         yield from _used(f"enumerations of {node.name}", _USED_BY_ENUMS)
 
-    def message_of_direction(self, node: NodeDescription, direction: str, message: MessageDescription) -> Symbols:
+    def message_of_direction(
+        self, node: NodeDescription, direction: str, message: MessageDescription
+    ) -> Symbols:
         scope = f"variants of {node.name}::{direction.capitalize()}"
         yield message.identifier(scope, message.camel_name)
 
     def enumeration(self, enum: EnumDescription) -> Symbols:
-        yield enum.identifier(f"enumerations of {enum.node.name}", enum.camel_name, "type")
+        yield enum.identifier(
+            f"enumerations of {enum.node.name}", enum.camel_name, "type"
+        )
         yield Identifier(_variants(enum), _catch_all(enum), _OWN, None, "catch_all")
 
     def member(self, enum: EnumDescription, member: MemberDescription) -> Symbols:
@@ -73,12 +86,20 @@ class RustNames(NamingPolicy):
             yield composite.identifier(methods, arrays.reader(name))
             yield composite.identifier(methods, arrays.writer(name))
 
-    def fields(self, composite: Composite[Any], fields: Iterable[FieldDescription]) -> Symbols:
+    def fields(
+        self, composite: Composite[Any], fields: Iterable[FieldDescription]
+    ) -> Symbols:
         scope, has_variable_parts = _scope(composite), composite.last_part is not None
-        members, methods, constants = f"fields of {scope}", f"methods of {scope}", f"constants of {scope}"
+        members, methods, constants = (
+            f"fields of {scope}",
+            f"methods of {scope}",
+            f"constants of {scope}",
+        )
         for field in fields:
             name, is_read_only = names.own_name(field), field.model.is_read_only
-            if has_variable_parts and (field.is_in_last_part or field.is_in_earlier_part):
+            if has_variable_parts and (
+                field.is_in_last_part or field.is_in_earlier_part
+            ):
                 yield field.identifier(methods, name)
             yield field.identifier(methods if is_read_only else members, name)
             if field.model.conditions:
@@ -103,7 +124,9 @@ def _variants(enum: EnumDescription) -> str:
 
 
 def _catch_all(enum: EnumDescription) -> str:
-    """Return the variant that keeps values without a name: the first name that no member has."""
+    """Return the variant that keeps values without a name: the first name that no
+    member has.
+    """
     taken = {member.camel_name for member in enum.members}
     return next((name for name in _CATCH_ALL if name not in taken), _CATCH_ALL[0])
 

@@ -11,19 +11,26 @@ from icdgen.describe.comments import Comment
 
 WIDTH = 100
 
-_MARKDOWN = re.compile(r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[#A-Za-z])|(?<=http):|(?<=https):")
+_MARKDOWN = re.compile(
+    r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[#A-Za-z])|(?<=http):|(?<=https):"
+)
 
 
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """Return `plain` text that rustdoc shows unchanged: markup, links and HTML are escaped, text in backticks is code."""
+    """Return `plain` text that rustdoc shows unchanged: markup, links and HTML are
+    escaped, text in backticks is code.
+    """
     text = plain(text)
     if text.replace(" ", "").isalnum():
         return text
     parts = text.split("`")
     if len(parts) % 2 == 0:
         return _MARKDOWN.sub(r"\\\g<0>", text)
-    return "`".join(part if number % 2 else _MARKDOWN.sub(r"\\\g<0>", part) for number, part in enumerate(parts))
+    return "`".join(
+        part if number % 2 else _MARKDOWN.sub(r"\\\g<0>", part)
+        for number, part in enumerate(parts)
+    )
 
 
 def doc(paragraphs: Iterable[str], indent: str = "", mark: str = "///") -> str:
@@ -49,7 +56,14 @@ def string(text: str) -> str:
     """Return a string literal in ASCII."""
     if text.isascii() and text.isprintable() and '"' not in text and "\\" not in text:
         return f'"{text}"'
-    return '"' + "".join(_ESCAPES.get(c) or (c if " " <= c <= "~" else f"\\u{{{ord(c):x}}}") for c in text) + '"'
+    return (
+        '"'
+        + "".join(
+            _ESCAPES.get(c) or (c if " " <= c <= "~" else f"\\u{{{ord(c):x}}}")
+            for c in text
+        )
+        + '"'
+    )
 
 
 @lru_cache(maxsize=4096)
@@ -60,7 +74,9 @@ def integer(value: int) -> str:
 
 @lru_cache(maxsize=4096)
 def mask(value: int, bits: int = 8) -> str:
-    """Return a hexadecimal literal with a digit for four bits: ``0x0f``, ``0x0fff``, ``0x000f_ffff``."""
+    """Return a hexadecimal literal with a digit for four bits: ``0x0f``, ``0x0fff``,
+    ``0x000f_ffff``.
+    """
     digits = bits // 4
     return f"0x{value:0{digits + (digits - 1) // 4}_x}"
 
@@ -72,7 +88,9 @@ def whole_double(value: int) -> str:
 
 @lru_cache(maxsize=4096)
 def double(value: float) -> str:
-    """Return the shortest literal of a double with grouped digits: ``0.488_281_25``, ``1.0e-9``."""
+    """Return the shortest literal of a double with grouped digits: ``0.488_281_25``,
+    ``1.0e-9``.
+    """
     digits, _, exponent = repr(value).partition("e")
     integral, _, fraction = digits.partition(".")
     sign, integral = ("-", integral[1:]) if integral.startswith("-") else ("", integral)
@@ -84,7 +102,9 @@ def double(value: float) -> str:
 
 
 def assigned(left: str, right: str, end: str, indent: str = STEP) -> str:
-    """Return ``left right end`` on one line if it fits, else with the right side on a line of its own."""
+    """Return ``left right end`` on one line if it fits, else with the right side on a
+    line of its own.
+    """
     line = f"{indent}{left} {right}{end}"
     return line if len(line) <= WIDTH else f"{indent}{left}\n{indent}{STEP}{right}{end}"
 
@@ -92,7 +112,11 @@ def assigned(left: str, right: str, end: str, indent: str = STEP) -> str:
 def arm(pattern: str, body: str, indent: str = STEP * 3) -> str:
     """Return an arm of a match."""
     line = f"{indent}{pattern} => {body},"
-    return line if len(line) <= WIDTH else f"{indent}{pattern} => {{\n{indent}{STEP}{body}\n{indent}}}"
+    return (
+        line
+        if len(line) <= WIDTH
+        else f"{indent}{pattern} => {{\n{indent}{STEP}{body}\n{indent}}}"
+    )
 
 
 def signature(start: str, parameters: tuple[str, ...], returns: str) -> str:

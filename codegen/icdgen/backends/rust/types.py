@@ -1,4 +1,6 @@
-"""Types of raw values in Rust, and paths of the types of messages, structs and enumerations."""
+"""Types of raw values in Rust, and paths of the types of messages, structs and
+enumerations.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,11 @@ def enum_path(enum: EnumDescription, node: Node) -> str:
 def message_path(message: MessageDescription, node: Node) -> str:
     """The type of a message as the module of ``node`` writes it."""
     name = RUST_NAMES.symbol(message, "type")
-    return name if message.node.name == node.name else f"crate::{message.node.name}::{name}"
+    return (
+        name
+        if message.node.name == node.name
+        else f"crate::{message.node.name}::{name}"
+    )
 
 
 def struct_path(struct: Composite[Any], node: Node) -> str:

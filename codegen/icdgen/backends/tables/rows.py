@@ -22,7 +22,12 @@ _SHOWN = frozenset({
 
 def of_node(node: Node) -> list[Row]:
     """Return the rows of the messages that the node declares itself, in their order."""
-    return [row for message in node.messages if message.node == node.name for row in _of_message(message)]
+    return [
+        row
+        for message in node.messages
+        if message.node == node.name
+        for row in _of_message(message)
+    ]
 
 
 def _of_message(message: Message) -> Iterator[Row]:
@@ -55,12 +60,19 @@ def _fields(message: Message) -> Iterator[dict[str, object]]:
             if outer.count or "count" in outer.node.source
             else {}
         )
-        name = ".".join(level.node.name for level in (line.levels[1:] if group else line.levels))
+        name = ".".join(
+            level.node.name for level in (line.levels[1:] if group else line.levels)
+        )
         # Elements of a repeated struct have one row each, so that positions are
         # explicit.
         starts = line.starts(first_only=True)
         for index, at in enumerate(starts, 1):
-            yield _field(line, at, f"{name} {index}" if len(starts) > 1 else name, is_element=True) | group
+            yield _field(
+                line,
+                at,
+                f"{name} {index}" if len(starts) > 1 else name,
+                is_element=True,
+            ) | group
 
 
 def _repeats(source: Map) -> dict[str, object]:
@@ -71,7 +83,9 @@ def _repeats(source: Map) -> dict[str, object]:
     return {"Counter": count, "Up to": source.get("up_to")} if count else {}
 
 
-def _field(line: Line, at: int, name: str, is_element: bool = False) -> dict[str, object]:
+def _field(
+    line: Line, at: int, name: str, is_element: bool = False
+) -> dict[str, object]:
     source = line.node.source
     repeats = {} if is_element else _repeats(source)
     members = line.enum.members if line.enum else ()
@@ -89,4 +103,7 @@ def _field(line: Line, at: int, name: str, is_element: bool = False) -> dict[str
 def _further(source: Map) -> str:
     """Return the keys of a field without a column, as the ICD writes them."""
     texts = ((key, plain(value)) for key, value in source.items() if key not in _SHOWN)
-    return "; ".join(f"{key}: {value if isinstance(value, str) else json.dumps(value)}" for key, value in texts)
+    return "; ".join(
+        f"{key}: {value if isinstance(value, str) else json.dumps(value)}"
+        for key, value in texts
+    )

@@ -29,13 +29,17 @@ def of_rows(node: Node, rows: list[Row]) -> bytes:
         from openpyxl.styles import Font
         from openpyxl.utils import get_column_letter
     except ImportError:
-        raise UserError("writing a spreadsheet needs openpyxl", "pip install 'icdgen[import]'") from None
+        raise UserError(
+            "writing a spreadsheet needs openpyxl", "pip install 'icdgen[import]'"
+        ) from None
     book = Workbook()
     book.properties.creator = "icdgen"
     book.properties.created = _EPOCH
     sheet = book.active
     sheet.title = "Messages"
-    sheet.append([f"{node.title} ({node.name}): {node.byte_order}-endian, {node.bit_order}"])
+    sheet.append(
+        [f"{node.title} ({node.name}): {node.byte_order}-endian, {node.bit_order}"]
+    )
     table: list[Row] = [list(HEADINGS), *rows]
     for row in table:
         sheet.append(row)
@@ -46,7 +50,9 @@ def of_rows(node: Node, rows: list[Row]) -> bytes:
     for cell in sheet[2]:
         cell.font = Font(bold=True)
         texts = [str(row[cell.column - 1]) for row in table]
-        sheet.column_dimensions[get_column_letter(cell.column)].width = min(max(map(len, texts)) + 2, WIDEST)
+        sheet.column_dimensions[get_column_letter(cell.column)].width = min(
+            max(map(len, texts)) + 2, WIDEST
+        )
     # Title and headings remain visible.
     sheet.freeze_panes = "A3"
     sheet.auto_filter.ref = f"A2:{get_column_letter(len(HEADINGS))}{len(rows) + 2}"
@@ -60,10 +66,17 @@ def _without_times(data: io.BytesIO) -> bytes:
     on the version of zlib.
     """
     output = io.BytesIO()
-    with zipfile.ZipFile(data) as archive, zipfile.ZipFile(output, "w", zipfile.ZIP_STORED) as fixed:
+    with (
+        zipfile.ZipFile(data) as archive,
+        zipfile.ZipFile(output, "w", zipfile.ZIP_STORED) as fixed,
+    ):
         for name in archive.namelist():
             content = archive.read(name)
             if name == "docProps/core.xml":  # openpyxl writes the time of saving
-                content = re.sub(rb"(<dcterms:modified[^>]*>)[^<]*", rb"\g<1>1980-01-01T00:00:00Z", content)
+                content = re.sub(
+                    rb"(<dcterms:modified[^>]*>)[^<]*",
+                    rb"\g<1>1980-01-01T00:00:00Z",
+                    content,
+                )
             fixed.writestr(zipfile.ZipInfo(name, _EPOCH.timetuple()[:6]), content)
     return output.getvalue()

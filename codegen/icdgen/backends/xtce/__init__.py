@@ -30,7 +30,11 @@ class XtceBackend:
         for node in describe(icd).nodes:
             sides = {of: side(icd, node, of) for of in (TELEMETRY, TELECOMMAND)}
             document = render(
-                "system.xml.j2", node=node, origin=origin(node.model, with_digest=True), text=text, **sides
+                "system.xml.j2",
+                node=node,
+                origin=origin(node.model, with_digest=True),
+                text=text,
+                **sides,
             )
             yield PurePosixPath(f"{node.name}.xml"), document
 

@@ -8,7 +8,14 @@ from typing import Any, NamedTuple
 
 from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
-from icdgen.backends.xtce.types import Type, Types, is_complete, most_first, type_of, unique
+from icdgen.backends.xtce.types import (
+    Type,
+    Types,
+    is_complete,
+    most_first,
+    type_of,
+    unique,
+)
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Into, VariablePartDescription
 from icdgen.icd.model import TELECOMMAND, Special
@@ -65,14 +72,21 @@ class Frame:
     base: Base | None = None  # of a message that shares its id
     # Constants of the base and their values
     discriminators: list[tuple[str, int]] = field(default_factory=list)
-    # omitted content that XTCE cannot represent; a command with omissions is not exported
+    # omitted content that XTCE cannot represent; a command with omissions is not
+    # exported
     lacks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # other limitations
     # Field -> parameter or argument
     names: dict[str, str] = field(default_factory=dict)
 
 
-_PLAIN: dict[str, Any] = {"terms": (), "points": (), "extrapolates": False, "limits": (), "labels": ()}
+_PLAIN: dict[str, Any] = {
+    "terms": (),
+    "points": (),
+    "extrapolates": False,
+    "limits": (),
+    "labels": (),
+}
 
 
 def _encoding_name(of: Type) -> str:
@@ -108,58 +122,95 @@ class Frames:
         is_sent = self.direction == TELECOMMAND
         id = message.model.telecommand_id if is_sent else message.model.telemetry_id
         assert id is not None
-        frame = Frame(unique(_camel(message.name) or "Message", self.taken), message, id)
+        frame = Frame(
+            unique(_camel(message.name) or "Message", self.taken), message, id
+        )
         if id in self.shared and not is_sent:
-            frame.base = self.bases.setdefault(id, Base(unique(f"Id{id}", self.taken), id))
+            frame.base = self.bases.setdefault(
+                id, Base(unique(f"Id{id}", self.taken), id)
+            )
         parts = tuple(_parts(message))
         for part in parts:
             self._give_name(frame, part)
         needed = {need.field.name for part in parts for need in part.needs}
         entries: list[Entry] = []
         for part in parts:
-            run = run_of_all(part.model.elements(), message.node) if part.count else run_of(part.model, message.node)
+            run = (
+                run_of_all(part.model.elements(), message.node)
+                if part.count
+                else run_of(part.model, message.node)
+            )
             # Overlays of existing bits: a command sets only the fields themselves.
             if part.model.is_read_only and (is_sent or frame.lacks):
                 continue
             if run is None:
-                frame.lacks.append(f"`{part.model.name}` is left out: XTCE has no word for the order of its bits")
+                frame.lacks.append(
+                    f"`{part.model.name}` is left out: XTCE has no word for the order of its bits"
+                )
             elif is_sent and part.model.const is not None and part.name not in needed:
                 entries += self._constant(frame, part)
             else:
                 entries.append(self._entry(frame, part, run))
         last = message.last_part
-        can_stand = not message.earlier_parts and not any(entry.needs for entry in entries)
-        behind = self._variable_entry(frame, last) if last is not None and can_stand else None
+        can_stand = not message.earlier_parts and not any(
+            entry.needs for entry in entries
+        )
+        behind = (
+            self._variable_entry(frame, last)
+            if last is not None and can_stand
+            else None
+        )
         if behind is None:
             frame.lacks += (
-                f"`{part.name}`, which has no fixed size, is left out" for part in message.model.layout.sequence
+                f"`{part.name}`, which has no fixed size, is left out"
+                for part in message.model.layout.sequence
             )
         if message.model.may_end_early:
             frame.notes.append("it is sent with the zeros that it may be sent without")
         for value in message.derived:
-            frame.notes.append(f"`{value.model.name}` is left out: it is derived by `{value.model.formula}`")
+            frame.notes.append(
+                f"`{value.model.name}` is left out: it is derived by `{value.model.formula}`"
+            )
         self._lay_out(frame, entries, self.head + message.model.layout.length * 8)
         if behind is not None:
             is_placed = any(entry.at is not None for entry in frame.entries)
-            frame.entries.append(behind._replace(at=behind.run.at if is_placed else None))
+            frame.entries.append(
+                behind._replace(at=behind.run.at if is_placed else None)
+            )
         return frame
 
-    def _variable_entry(self, frame: Frame, last: VariablePartDescription) -> Entry | None:
+    def _variable_entry(
+        self, frame: Frame, last: VariablePartDescription
+    ) -> Entry | None:
         """Return the entry of a variable-length field with a counter.
 
         None if XTCE cannot represent it: structs, or no counting field.
         """
         part, node = last.field, frame.message.node
-        is_unsupported = last.counter.model.is_count or part.struct is not None or part.model.const is not None
+        is_unsupported = (
+            last.counter.model.is_count
+            or part.struct is not None
+            or part.model.const is not None
+        )
         if is_unsupported or last.counter.name not in frame.names:
             return None
-        run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements(), node)
+        run = (
+            run_of(part.model, node)
+            if part.model.is_bytes
+            else run_of_all(part.model.elements(), node)
+        )
         if run is None:
             return None
         name = self._give_name(frame, part)
-        type_ = self.types.of_open(last, frame.names[last.counter.name], _type_name(frame, name), run.is_little)
+        type_ = self.types.of_open(
+            last, frame.names[last.counter.name], _type_name(frame, name), run.is_little
+        )
         _add_row(frame, part, type_, last.model.most)
-        return Entry(name, run._replace(at=self.head + run.at), is_array=not part.model.is_bytes or bool(part.count))
+        return Entry(
+            name,
+            run._replace(at=self.head + run.at),
+            is_array=not part.model.is_bytes or bool(part.count),
+        )
 
     def _give_name(self, frame: Frame, part: FieldDescription) -> str:
         """Assign a name to a parameter or argument.
@@ -167,28 +218,58 @@ class Frames:
         Parameter names are global; argument names belong to their command.
         """
         is_sent = self.direction == TELECOMMAND
-        before, taken = ("", set(frame.names.values())) if is_sent else (f"{frame.name}_", self.taken)
-        name = frame.names[part.name] = unique(before + (_camel(part.name) or "Field"), taken)
+        before, taken = (
+            ("", set(frame.names.values()))
+            if is_sent
+            else (f"{frame.name}_", self.taken)
+        )
+        name = frame.names[part.name] = unique(
+            before + (_camel(part.name) or "Field"), taken
+        )
         return name
 
     def _entry(self, frame: Frame, part: FieldDescription, run: Run) -> Entry:
         name = frame.names[part.name]
-        _add_row(frame, part, self.types.of(part, _type_name(frame, name), run.is_little))
-        if part.model.const is not None and frame.base is not None and run.at + run.bits <= 8 * self.shared[frame.id]:
+        _add_row(
+            frame, part, self.types.of(part, _type_name(frame, name), run.is_little)
+        )
+        if (
+            part.model.const is not None
+            and frame.base is not None
+            and run.at + run.bits <= 8 * self.shared[frame.id]
+        ):
             self._add_discriminator(frame, frame.base, part.model.const, part, run)
-        return Entry(name, run._replace(at=self.head + run.at), bool(part.count), self._needs(frame, part))
+        return Entry(
+            name,
+            run._replace(at=self.head + run.at),
+            bool(part.count),
+            self._needs(frame, part),
+        )
 
-    def _add_discriminator(self, frame: Frame, base: Base, value: int, part: FieldDescription, run: Run) -> None:
+    def _add_discriminator(
+        self, frame: Frame, base: Base, value: int, part: FieldDescription, run: Run
+    ) -> None:
         """Add a constant to the base container, where consumers read it before they
         select the message.
         """
         name = f"{base.name}_{run.at}_{run.bits}{'_le' if run.is_little else ''}{'_signed' if part.model.is_signed else ''}"
-        type_ = replace(type_of(part.model, run.is_little), kind="Integer", unit="", enum="", **_PLAIN)
-        self.reserved.setdefault(name, Row(name, self.types.name(type_, _encoding_name(type_)), is_reserved=True))
+        type_ = replace(
+            type_of(part.model, run.is_little),
+            kind="Integer",
+            unit="",
+            enum="",
+            **_PLAIN,
+        )
+        self.reserved.setdefault(
+            name,
+            Row(name, self.types.name(type_, _encoding_name(type_)), is_reserved=True),
+        )
         base.entries[name] = Entry(name, run, at=self.head + run.at)
         frame.discriminators.append((name, value))
 
-    def _needs(self, frame: Frame, part: FieldDescription) -> tuple[tuple[str, tuple[int, ...]], ...]:
+    def _needs(
+        self, frame: Frame, part: FieldDescription
+    ) -> tuple[tuple[str, tuple[int, ...]], ...]:
         return tuple((frame.names[need.field.name], need.values) for need in part.needs)
 
     def _constant(self, frame: Frame, part: FieldDescription) -> Iterator[Entry]:
@@ -198,26 +279,45 @@ class Frames:
         value = part.model.const or 0
         runs: list[tuple[Run, int]] = []
         for piece in part.pieces:
-            run = Run(self.head + 8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits)
+            run = Run(
+                self.head + 8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits
+            )
             here = value >> piece.at & piece.low_mask
             if runs and runs[-1][0].at + runs[-1][0].bits == run.at:
                 before, above = runs.pop()
-                run, here = Run(before.at, before.bits + run.bits), above << run.bits | here
+                run, here = (
+                    Run(before.at, before.bits + run.bits),
+                    above << run.bits | here,
+                )
             runs.append((run, here))
         needs = self._needs(frame, part)
-        return (Entry(part.model.name, run, needs=needs, value=_hex(here, run.bits)) for run, here in runs)
+        return (
+            Entry(part.model.name, run, needs=needs, value=_hex(here, run.bits))
+            for run, here in runs
+        )
 
     def _lay_out(self, frame: Frame, entries: list[Entry], end: int) -> None:
         """Assign positions to entries, and add entries for reserved bits.
 
         If possible, each entry follows the previous one.
         """
-        is_plain = all(entry.run.is_usual and not entry.needs for entry in entries) and not frame.message.overlays
-        if is_plain and frame.base is None and not any("order of its bits" in text for text in frame.lacks):
-            entries += map(self._reserved, gaps((entry.run for entry in entries), self.head, end))
+        is_plain = (
+            all(entry.run.is_usual and not entry.needs for entry in entries)
+            and not frame.message.overlays
+        )
+        if (
+            is_plain
+            and frame.base is None
+            and not any("order of its bits" in text for text in frame.lacks)
+        ):
+            entries += map(
+                self._reserved, gaps((entry.run for entry in entries), self.head, end)
+            )
             frame.entries = sorted(entries, key=lambda entry: entry.run.at)
             return
-        covered = max((entry.run.at + entry.run.bits for entry in entries), default=self.head)
+        covered = max(
+            (entry.run.at + entry.run.bits for entry in entries), default=self.head
+        )
         entries += map(self._reserved, gaps((), -(-covered // 8) * 8, end))
         # Unconditional entries first: conditions refer to them
         entries.sort(key=lambda entry: bool(entry.needs))
@@ -229,8 +329,15 @@ class Frames:
             return Entry("", run, value=_hex(0, run.bits))
         name = f"Reserved{run.bits}"
         is_wide = run.bits > 64
-        type_ = Type("Binary", run.bits) if is_wide else Type("Integer", run.bits, "unsigned", most_first(run.bits))
-        self.reserved.setdefault(name, Row(name, self.types.name(type_, _encoding_name(type_)), is_reserved=True))
+        type_ = (
+            Type("Binary", run.bits)
+            if is_wide
+            else Type("Integer", run.bits, "unsigned", most_first(run.bits))
+        )
+        self.reserved.setdefault(
+            name,
+            Row(name, self.types.name(type_, _encoding_name(type_)), is_reserved=True),
+        )
         return Entry(name, run)
 
 
@@ -244,10 +351,21 @@ def _add_row(frame: Frame, part: FieldDescription, type_: str, most: int = 0) ->
     model = part.model
     name, special = frame.names[part.name], model.special
     frame.rows.append(
-        Row(name, type_, model.name, model.summary, special, model.const, is_view=model.is_read_only, most=most)
+        Row(
+            name,
+            type_,
+            model.name,
+            model.summary,
+            special,
+            model.const,
+            is_view=model.is_read_only,
+            most=most,
+        )
     )
     if not is_complete(model):
-        frame.notes.append(f"`{model.name}`: beyond its table it has the value of the last point")
+        frame.notes.append(
+            f"`{model.name}`: beyond its table it has the value of the last point"
+        )
 
 
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
@@ -258,7 +376,9 @@ def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
         if part.is_in_last_part or part.is_in_earlier_part or part.model.is_count:
             continue
         is_array = (
-            part.model.const is None and part.count and run_of_all(part.model.elements(), message.node) is not None
+            part.model.const is None
+            and part.count
+            and run_of_all(part.model.elements(), message.node) is not None
         )
         yield from (part,) if is_array or not part.count else part.elements
     yield from message.overlays

@@ -38,9 +38,17 @@ def run_of(field: NodePlace, node: Node) -> Run | None:
     if field.is_bytes:
         return Run(field.at, field.bits)
     orders = field.orders_in_effect(node.orders)
-    pieces = sorted(pieces_at(field.at, field.bits, orders.byte, orders.bit), key=lambda piece: piece.at)
+    pieces = sorted(
+        pieces_at(field.at, field.bits, orders.byte, orders.bit),
+        key=lambda piece: piece.at,
+    )
     # Most significant bit first, from the first byte on.
-    falling = _joined([(8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits) for piece in reversed(pieces)])
+    falling = _joined(
+        [
+            (8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits)
+            for piece in reversed(pieces)
+        ]
+    )
     if falling is not None:
         return Run(falling, field.bits)
     # Least significant bit first.
@@ -52,15 +60,31 @@ def run_of_all(fields: Iterable[NodePlace], node: Node) -> Run | None:
     """Return the bits of all elements of an array; None if they are not consecutive."""
     runs = [run_of(field, node) for field in fields]
     usual_runs = [
-        run for run in runs if run is not None and run.is_usual and run.is_little == (runs[0] or run).is_little
+        run
+        for run in runs
+        if run is not None
+        and run.is_usual
+        and run.is_little == (runs[0] or run).is_little
     ]
-    start = _joined([(run.at, run.bits) for run in usual_runs]) if len(usual_runs) == len(runs) else None
-    return None if start is None else Run(start, sum(run.bits for run in usual_runs), usual_runs[0].is_little)
+    start = (
+        _joined([(run.at, run.bits) for run in usual_runs])
+        if len(usual_runs) == len(runs)
+        else None
+    )
+    return (
+        None
+        if start is None
+        else Run(start, sum(run.bits for run in usual_runs), usual_runs[0].is_little)
+    )
 
 
 def _joined(places: Sequence[tuple[int, int]]) -> int | None:
     """Return the start of consecutive ranges of bits; None if they are not consecutive."""
-    return places[0][0] if all(at + bits == after for (at, bits), (after, _) in pairwise(places)) else None
+    return (
+        places[0][0]
+        if all(at + bits == after for (at, bits), (after, _) in pairwise(places))
+        else None
+    )
 
 
 def gaps(taken: Iterable[Run], start: int, end: int) -> list[Run]:

@@ -48,29 +48,57 @@ class Side(NamedTuple):
 def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
     """Return the content of a direction; None if the node has no messages in it."""
     messages = next(
-        (node_direction.messages for node_direction in node.directions if node_direction.kind == direction), ()
+        (
+            node_direction.messages
+            for node_direction in node.directions
+            if node_direction.kind == direction
+        ),
+        (),
     )
     if not messages:
         return None
     types = Types()
     id_bits = max(
-        node.model.id_bits, *(id.bit_length() for described in node.all_messages for id in described.model.ids)
+        node.model.id_bits,
+        *(
+            id.bit_length()
+            for described in node.all_messages
+            for id in described.model.ids
+        ),
     )
     head = _head(id_bits, icd.protocol_of(node.model), direction, types)
     shared = {
-        entry.id: min(candidate.message.model.layout.shortest for candidate in entry.messages)
+        entry.id: min(
+            candidate.message.model.layout.shortest for candidate in entry.messages
+        )
         for entry in node.ids(direction)
         if entry.is_shared
     }
-    maker = Frames(direction, types, head.bits, shared=shared, taken={"TelemetryFrame", "TelecommandFrame"})
+    maker = Frames(
+        direction,
+        types,
+        head.bits,
+        shared=shared,
+        taken={"TelemetryFrame", "TelecommandFrame"},
+    )
     frames = [maker.frame(message) for message, _ in messages]
     notes = [
-        f"{direction} `{frame.message.model.name}`: {note}" for frame in frames for note in (*frame.lacks, *frame.notes)
+        f"{direction} `{frame.message.model.name}`: {note}"
+        for frame in frames
+        for note in (*frame.lacks, *frame.notes)
     ]
     if direction == TELECOMMAND:
-        notes += [f"{direction} `{frame.message.model.name}` is left out" for frame in frames if frame.lacks]
+        notes += [
+            f"{direction} `{frame.message.model.name}` is left out"
+            for frame in frames
+            if frame.lacks
+        ]
         frames = [frame for frame in frames if not frame.lacks]
-    rows = [*head.rows, *maker.reserved.values(), *(row for frame in frames for row in frame.rows)]
+    rows = [
+        *head.rows,
+        *maker.reserved.values(),
+        *(row for frame in frames for row in frame.rows),
+    ]
     named = {name: type_ for type_, name in types.names.items()}
     return Side(named, head, rows, frames, list(maker.bases.values()), notes)
 
@@ -79,18 +107,31 @@ def _head(id_bits: int, protocol: dict[str, Any], direction: str, types: Types) 
     """Return the header of all messages of a direction."""
     header = protocol.get("stream", {}).get("header", ())
     # The header of CCSDS 133.0-B-2 is recognized by the positions of its fields.
-    is_packet = [(row.get("at"), row.get("bits")) for row in header] == [run[:2] for run in _PACKET.values()]
+    is_packet = [(row.get("at"), row.get("bits")) for row in header] == [
+        run[:2] for run in _PACKET.values()
+    ]
     places = _PACKET if is_packet else {"Id": Run(0, -(-id_bits // 8) * 8)}
     id = "Apid" if is_packet else "Id"
     rows, entries = [], []
     for name, run in places.items():
         if direction == TELECOMMAND and name != id:
-            entries.append(Entry(name, run, value=f"{_IN_COMMANDS.get(name, 0):0{-(-run.bits // 8) * 2}X}"))
+            entries.append(
+                Entry(
+                    name,
+                    run,
+                    value=f"{_IN_COMMANDS.get(name, 0):0{-(-run.bits // 8) * 2}X}",
+                )
+            )
             continue
-        type_ = types.name(Type("Integer", run.bits, "unsigned", most_first(run.bits)), f"uint{run.bits}")
+        type_ = types.name(
+            Type("Integer", run.bits, "unsigned", most_first(run.bits)),
+            f"uint{run.bits}",
+        )
         rows.append(Row(name, type_))
         entries.append(Entry(name, run))
-    return Head(id, sum(run.bits for run in places.values()), tuple(rows), tuple(entries))
+    return Head(
+        id, sum(run.bits for run in places.values()), tuple(rows), tuple(entries)
+    )
 
 
 def text(value: object) -> str:

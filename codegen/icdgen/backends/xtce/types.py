@@ -17,7 +17,12 @@ from icdgen.icd.model import Member
 from icdgen.icd.places import NodePlace
 
 _LONG = range(-(1 << 63), 1 << 63)  # range of integer values in XTCE
-_KEYS = {"min": "minInclusive", "above": "minExclusive", "max": "maxInclusive", "below": "maxExclusive"}
+_KEYS = {
+    "min": "minInclusive",
+    "above": "minExclusive",
+    "max": "maxInclusive",
+    "below": "maxExclusive",
+}
 _KINDS = {
     "uint": "Integer", "int": "Integer", "bool": "Boolean", "enum": "Enumerated", "float": "Float", "bytes": "Binary",
     "text": "String",
@@ -84,15 +89,32 @@ class Types:
     def of(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
         """Return the name of the type of a field; for an array, of the array."""
         name = self._element(field, wanted, is_little)
-        return name if not field.count else self.name(Type("Array", of=name, count=field.count), f"{wanted}_Array")
+        return (
+            name
+            if not field.count
+            else self.name(Type("Array", of=name, count=field.count), f"{wanted}_Array")
+        )
 
-    def of_open(self, tail: VariablePartDescription, counter: str, wanted: str, is_little: bool) -> str:
+    def of_open(
+        self, tail: VariablePartDescription, counter: str, wanted: str, is_little: bool
+    ) -> str:
         """Return the name of the type of a variable-length field with a counter."""
         if tail.field.model.is_bytes and not tail.field.count:
             variable_type = replace(type_of(tail.field.model), bits=0)
         else:
-            variable_type, wanted = Type("Array", of=self._element(tail.field, wanted, is_little)), f"{wanted}_Array"
-        return self.name(replace(variable_type, count=tail.model.most, counter=counter, plus=tail.model.plus), wanted)
+            variable_type, wanted = (
+                Type("Array", of=self._element(tail.field, wanted, is_little)),
+                f"{wanted}_Array",
+            )
+        return self.name(
+            replace(
+                variable_type,
+                count=tail.model.most,
+                counter=counter,
+                plus=tail.model.plus,
+            ),
+            wanted,
+        )
 
     def _element(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
         element = type_of(field.model, is_little)
@@ -101,12 +123,26 @@ class Types:
 
 def type_of(field: NodePlace, is_little: bool = False) -> Type:
     """Return the type of a field; for an array, of an element."""
-    order = "" if field.is_bytes else "leastSignificantByteFirst" if is_little else most_first(field.bits)
-    encoding = "" if field.type == "float" or field.is_bytes else "twosComplement" if field.is_signed else "unsigned"
-    field_type = Type(_KINDS[field.type], field.bits, encoding, order, field.unit_symbol)
+    order = (
+        ""
+        if field.is_bytes
+        else "leastSignificantByteFirst" if is_little else most_first(field.bits)
+    )
+    encoding = (
+        ""
+        if field.type == "float" or field.is_bytes
+        else "twosComplement" if field.is_signed else "unsigned"
+    )
+    field_type = Type(
+        _KINDS[field.type], field.bits, encoding, order, field.unit_symbol
+    )
     if field.enum is not None:
         # XTCE 1.2 defines enumeration values as xs:long.
-        labels = tuple(member for member in field.enum.members if member.value in _LONG and member.last in _LONG)
+        labels = tuple(
+            member
+            for member in field.enum.members
+            if member.value in _LONG and member.last in _LONG
+        )
         return replace(field_type, labels=labels, enum=field.enum.name)
     if field.has_formula:
         field_type = replace(field_type, kind="Float", **_calibration(field))
@@ -129,7 +165,11 @@ def _usual_name(field: FieldDescription, of: Type) -> str:
     if of.unit or of.terms or of.points or of.limits:
         return ""
     little = "_le" if of.byte_order.startswith("least") else ""
-    names = {"Boolean": "flag", "Binary": f"bytes{of.bits // 8}", "String": f"text{of.bits // 8}"}
+    names = {
+        "Boolean": "flag",
+        "Binary": f"bytes{of.bits // 8}",
+        "String": f"text{of.bits // 8}",
+    }
     return names.get(of.kind, f"{field.model.type}{of.bits}{little}")
 
 
@@ -152,7 +192,11 @@ def _calibration(field: NodePlace) -> dict[str, Any]:
 
 
 def _terms(coefficients: list[Fraction]) -> tuple[tuple[int, str], ...]:
-    return tuple((power, exact_text(value)) for power, value in enumerate(coefficients) if value or power == 1)
+    return tuple(
+        (power, exact_text(value))
+        for power, value in enumerate(coefficients)
+        if value or power == 1
+    )
 
 
 def _point(point: tuple[float, float]) -> tuple[str, str]:
@@ -168,9 +212,20 @@ def _limits(field: NodePlace) -> tuple[tuple[str, str], ...]:
     limits = {bound.key: bound.value for bound in bounds(field.limits)}
     if field.type == "float" or field.has_formula:
         return tuple((_KEYS[key], exact_text(value)) for key, value in limits.items())
-    least = [ceil(limits[key]) if key == "min" else floor(limits[key]) + 1 for key in ("min", "above") if key in limits]
-    most = [floor(limits[key]) if key == "max" else ceil(limits[key]) - 1 for key in ("max", "below") if key in limits]
-    attributes = (*((_KEYS["min"], limit) for limit in least[-1:]), *((_KEYS["max"], limit) for limit in most[-1:]))
+    least = [
+        ceil(limits[key]) if key == "min" else floor(limits[key]) + 1
+        for key in ("min", "above")
+        if key in limits
+    ]
+    most = [
+        floor(limits[key]) if key == "max" else ceil(limits[key]) - 1
+        for key in ("max", "below")
+        if key in limits
+    ]
+    attributes = (
+        *((_KEYS["min"], limit) for limit in least[-1:]),
+        *((_KEYS["max"], limit) for limit in most[-1:]),
+    )
     return tuple((key, str(value)) for key, value in attributes if value in _LONG)
 
 

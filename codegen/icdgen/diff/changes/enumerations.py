@@ -17,22 +17,32 @@ from icdgen.wording import quote
 def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.enum, pair.new.enum
     # A renamed enumeration is no other enumeration (`same_enum`).
-    if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(old, new):
+    if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(
+        old, new
+    ):
         return
     was, now = old.name if old else "", new.name if new else ""
     details = _differences(old, new) if old and new else ()
     if now and was:
         text = f"the values of {quote(pair.new.name)} are those of {quote(now)}, were those of {quote(was)}"
     elif now:
-        text = f"the values of {quote(pair.new.name)} now have names, as in {quote(now)}"
+        text = (
+            f"the values of {quote(pair.new.name)} now have names, as in {quote(now)}"
+        )
     else:
         text = f"the values of {quote(pair.new.name)} no longer have names; they were in {quote(was)}"
-    yield CheckResult(text, ("enum", "type"), was, now, details, None if was and now else "warning")
+    yield CheckResult(
+        text, ("enum", "type"), was, now, details, None if was and now else "warning"
+    )
 
 
 def _differences(old: Enum, new: Enum) -> tuple[str, ...]:
     other = [str(value) for value in other_senses(old, new)]
-    removed = [m.name for m in sorted(old.members, key=lambda m: m.value) if not new.member_of(m.value)]
+    removed = [
+        m.name
+        for m in sorted(old.members, key=lambda m: m.value)
+        if not new.member_of(m.value)
+    ]
     lines = [f"Another sense: {', '.join(other)}."] if other else []
     return (*lines, *([f"Without a name now: {some(removed)}."] if removed else []))
 
@@ -46,7 +56,11 @@ def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:
 @rule("DIF205", "member")
 def other_sense(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
-    if old.values == new.values and old.name != new.name and not same_sense(old.name, new.name):
+    if (
+        old.values == new.values
+        and old.name != new.name
+        and not same_sense(old.name, new.name)
+    ):
         text = f"{new.values} of {quote(pair.owner.new.name)} is {quote(new.name)}, was {quote(old.name)}"
         yield CheckResult(text, ("name",), old.name, new.name, _used(pair.owner, ctx))
 
@@ -56,16 +70,30 @@ def renumbered(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.values != new.values:
         text = f"{quote(new.name)} of {quote(pair.owner.new.name)} is {new.values}, was {old.values}"
-        yield CheckResult(text, ("value",), old.values, new.values, _used(pair.owner, ctx))
+        yield CheckResult(
+            text, ("value",), old.values, new.values, _used(pair.owner, ctx)
+        )
 
 
 @rule("DIF207", "member", severity="warning", when="gone")
 def member_removed(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     text = f"{pair.old.values} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
-    yield CheckResult(text, ("name",), f"{pair.old.values} = {pair.old.name}", "", _used(pair.owner, ctx))
+    yield CheckResult(
+        text,
+        ("name",),
+        f"{pair.old.values} = {pair.old.name}",
+        "",
+        _used(pair.owner, ctx),
+    )
 
 
 @rule("DIF208", "member", severity="note", when="come", addition=True)
 def member_added(pair: MemberPair, ctx: Context) -> Iterator[CheckResult]:
     text = f"{pair.new.values} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
-    yield CheckResult(text, ("name",), "", f"{pair.new.values} = {pair.new.name}", _used(pair.owner, ctx))
+    yield CheckResult(
+        text,
+        ("name",),
+        "",
+        f"{pair.new.values} = {pair.new.name}",
+        _used(pair.owner, ctx),
+    )

@@ -10,14 +10,25 @@ from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.erratum import Erratum
 from icdgen.wording import listing
 
-_PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held", "is_note")
+_PARTS = (
+    "title",
+    "why",
+    "evidence",
+    "confidence",
+    "tables",
+    "printed",
+    "held",
+    "is_note",
+)
 
 
 @rule("DIF403", "node", severity="note")
 @rule("DIF404", "node", severity="note")
 @rule("DIF405", "node", severity="note")
 def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    for _, old, new in differing(pair.old.errata, pair.new.errata, lambda entry: entry.id):
+    for _, old, new in differing(
+        pair.old.errata, pair.new.errata, lambda entry: entry.id
+    ):
         entry = new or old
         assert entry is not None
         was, now = old.title if old else "", new.title if new else ""
@@ -29,7 +40,9 @@ def erratum_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         text = f"{entry.label.lower()} {entry.id} {what}: {entry.title}"
         where = pair.where()._replace(erratum=entry.id)
         places = place_of(old, ("id",)), place_of(new, ("id",))
-        yield CheckResult(text, ("name",), was, now, where=where, places=places, code=code)
+        yield CheckResult(
+            text, ("name",), was, now, where=where, places=places, code=code
+        )
 
 
 def _differences(old: Erratum, new: Erratum) -> tuple[str, str, str]:
@@ -38,8 +51,14 @@ def _differences(old: Erratum, new: Erratum) -> tuple[str, str, str]:
     was, now = _kind(old), _kind(new)
     # Then the first differing attribute shows the change best.
     if was == now:
-        was, now = (str(getattr(entry, parts[0])) if parts else "" for entry in (old, new))
-    return f"says otherwise ({listing(parts) if parts else 'what it changes'})", was, now
+        was, now = (
+            str(getattr(entry, parts[0])) if parts else "" for entry in (old, new)
+        )
+    return (
+        f"says otherwise ({listing(parts) if parts else 'what it changes'})",
+        was,
+        now,
+    )
 
 
 def _kind(entry: Erratum) -> str:
@@ -51,5 +70,9 @@ def _kind(entry: Erratum) -> str:
 
 
 def _plain(value: object) -> str:
-    text = "(absent)" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+    text = (
+        "(absent)"
+        if value is None
+        else str(value).lower() if isinstance(value, bool) else str(value)
+    )
     return text if len(text) <= 40 else text[:37] + "..."

@@ -28,7 +28,12 @@ def removed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 @rule("DIF102", "message", when="come", severity="note", addition=True)
 def added(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
-    yield CheckResult(f"{quote(pair.new.name)} is new: {_summary(pair.new)}", ("name",), "", _summary(pair.new))
+    yield CheckResult(
+        f"{quote(pair.new.name)} is new: {_summary(pair.new)}",
+        ("name",),
+        "",
+        _summary(pair.new),
+    )
 
 
 @rule("DIF103", "message")
@@ -50,7 +55,9 @@ def id_taken_over(ctx: Context) -> Iterator[CheckResult]:
         if not node.both:
             continue
         for kind, key in DIRECTIONS.items():
-            before, after = (by_id(icd.messages_of(side), key) for icd, side in ctx.sides(node))
+            before, after = (
+                by_id(icd.messages_of(side), key) for icd, side in ctx.sides(node)
+            )
             for number in sorted(before.keys() & after.keys()):
                 old, new = _exchanged(ctx, before[number], after[number])
                 if old is None or new is None or (id(old), id(new), kind) in reported:
@@ -59,7 +66,11 @@ def id_taken_over(ctx: Context) -> Iterator[CheckResult]:
                 reported.add((id(old), id(new), kind))
                 # An exchange of messages of equal length passes all length checks of
                 # decoders.
-                same = " Both have the same length, so no decoder can notice." if old.length == new.length else ""
+                same = (
+                    " Both have the same length, so no decoder can notice."
+                    if old.length == new.length
+                    else ""
+                )
                 yield CheckResult(
                     f"{kind} {number} was {quote(old.name)} and is {quote(new.name)} now",
                     was=old.name,
@@ -73,14 +84,28 @@ def id_taken_over(ctx: Context) -> Iterator[CheckResult]:
 _ID = ("id", "set_id", "get_id")
 
 
-def _exchanged(ctx: Context, before: list[Message], after: list[Message]) -> tuple[Message | None, Message | None]:
+def _exchanged(
+    ctx: Context, before: list[Message], after: list[Message]
+) -> tuple[Message | None, Message | None]:
     """Return a message that lost the id and a message that gained it, of equal length
     if possible.
     """
-    losing = [message for message in before if not any(ctx.pair(message) is ctx.pair(other) for other in after)]
-    gaining = [message for message in after if not any(ctx.pair(message) is ctx.pair(other) for other in before)]
+    losing = [
+        message
+        for message in before
+        if not any(ctx.pair(message) is ctx.pair(other) for other in after)
+    ]
+    gaining = [
+        message
+        for message in after
+        if not any(ctx.pair(message) is ctx.pair(other) for other in before)
+    ]
     candidates = [(old, new) for old in losing for new in gaining]
-    return min(candidates, key=lambda pair: pair[0].length != pair[1].length, default=(None, None))
+    return min(
+        candidates,
+        key=lambda pair: pair[0].length != pair[1].length,
+        default=(None, None),
+    )
 
 
 @rule("DIF105", "message")
@@ -88,10 +113,19 @@ def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     if old.kind == new.kind:
         return
-    lost = [kind for kind, key in DIRECTIONS.items() if getattr(old, key) is not None and getattr(new, key) is None]
-    details = tuple(f"It can no longer be {'sent' if kind == 'telecommand' else 'requested'}." for kind in lost)
+    lost = [
+        kind
+        for kind, key in DIRECTIONS.items()
+        if getattr(old, key) is not None and getattr(new, key) is None
+    ]
+    details = tuple(
+        f"It can no longer be {'sent' if kind == 'telecommand' else 'requested'}."
+        for kind in lost
+    )
     text = f"{quote(new.name)} is a {new.kind} now, was a {old.kind}"
-    yield CheckResult(text, ("kind",), old.kind, new.kind, details, None if lost else "note", not lost)
+    yield CheckResult(
+        text, ("kind",), old.kind, new.kind, details, None if lost else "note", not lost
+    )
 
 
 @rule("DIF106", "message")
@@ -99,13 +133,19 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
     # Rule DIF119 reports changes of the variable part itself.
     if old.layout.sequence or new.layout.sequence:
-        if old.layout.sequence and new.layout.sequence and old.layout.length != new.layout.length:
+        if (
+            old.layout.sequence
+            and new.layout.sequence
+            and old.layout.length != new.layout.length
+        ):
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield CheckResult(text, ("length",), length_text(old), length_text(new))
         return
     if old.length == new.length:
         return
-    shorter, by = min(old.length, new.length), count(abs(new.length - old.length), "byte")
+    shorter, by = min(old.length, new.length), count(
+        abs(new.length - old.length), "byte"
+    )
     tail = [p.any.name for p in ctx.at_the_end(pair)]
     if new.length > old.length:
         what = f"gained {some(tail, 'field')} at its end" if tail else f"grew by {by}"
@@ -116,7 +156,9 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     details = [f"Decoders of the other release refuse the frame: they take {taken}."]
     if tail and not ctx.is_touched_before(pair, shorter * 8):
         details.append(f"The first {shorter} bytes are as they were.")
-    yield CheckResult(text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details))
+    yield CheckResult(
+        text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details)
+    )
 
 
 @rule("DIF119", "message")
@@ -130,19 +172,26 @@ def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         details.append(f"Frames have {length_text(new)}, had {length_text(old)}.")
     old_parts, new_parts = old.layout.parts, new.layout.parts
     if old_parts and len(new_parts) == 1 and old_parts[-1].most < new_parts[-1].most:
-        details.append(f"Decoders of the other release refuse frames of more than {old_parts[-1].most}.")
+        details.append(
+            f"Decoders of the other release refuse frames of more than {old_parts[-1].most}."
+        )
     text = f"what ends {quote(new.name)} is {now}, was {was}"
     yield CheckResult(text, ("length",), was, now, tuple(details))
 
 
 def _variable_parts(message: Message) -> str:
     """Return the variable parts: ``up to 12 of `Levels`, counted by `Levels Count` ``."""
-    return ", behind it ".join(map(_variable_part, message.layout.parts)) or "of fixed size"
+    return (
+        ", behind it ".join(map(_variable_part, message.layout.parts))
+        or "of fixed size"
+    )
 
 
 def _variable_part(part: VariablePart) -> str:
     plus = f" {'+' if part.plus > 0 else '-'} {abs(part.plus):,}" if part.plus else ""
-    counted = "as many as come" if part.is_rest else f"counted by {quote(part.counter)}{plus}"
+    counted = (
+        "as many as come" if part.is_rest else f"counted by {quote(part.counter)}{plus}"
+    )
     inner = "".join(f", each with {_variable_part(inner)}" for inner in part.inner)
     return f"up to {part.most} of {quote(part.name)}, {counted}{inner}"
 
@@ -155,11 +204,24 @@ def end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         return
     if new.may_end_early:
         details = "Decoders of the other release take whole frames only."
-        code, text = "DIF125", f"{quote(new.name)} may be sent without the zeros that it ends with"
+        code, text = (
+            "DIF125",
+            f"{quote(new.name)} may be sent without the zeros that it ends with",
+        )
     else:
-        code, text = "DIF126", f"{quote(new.name)} is always sent with the zeros that it ends with"
+        code, text = (
+            "DIF126",
+            f"{quote(new.name)} is always sent with the zeros that it ends with",
+        )
         details = "Decoders of the other release take such frames, too."
-    yield CheckResult(text, ("may_end_early", "length"), length_text(old), length_text(new), (details,), code=code)
+    yield CheckResult(
+        text,
+        ("may_end_early", "length"),
+        length_text(old),
+        length_text(new),
+        (details,),
+        code=code,
+    )
 
 
 @rule("DIF130", "node", when="gone")
@@ -178,10 +240,16 @@ def node_added(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 @rule("DIF133", "node", severity="note", addition=True)
 def used_messages_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     details = ("They are still there, and declared or included elsewhere.",)
-    less, more = ([m.name for m in ctx.messages_not_used(pair, side)] for side in (0, 1))
+    less, more = (
+        [m.name for m in ctx.messages_not_used(pair, side)] for side in (0, 1)
+    )
     if less:
         text = f"`{pair.new.name}` no longer speaks {some(less, 'message')}"
-        yield CheckResult(text, ("include",), count(len(less), "message"), "", details, code="DIF132")
+        yield CheckResult(
+            text, ("include",), count(len(less), "message"), "", details, code="DIF132"
+        )
     if more:
         text = f"`{pair.new.name}` speaks {some(more, 'message')} too"
-        yield CheckResult(text, ("include",), "", count(len(more), "message"), details, code="DIF133")
+        yield CheckResult(
+            text, ("include",), "", count(len(more), "message"), details, code="DIF133"
+        )

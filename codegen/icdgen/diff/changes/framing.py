@@ -25,19 +25,27 @@ def _short(text: str) -> str:
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
 def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    changed_packet_formats, have_packet_formats = ctx.changed_packet_formats(pair), ctx.have_packet_formats(pair)
+    changed_packet_formats, have_packet_formats = ctx.changed_packet_formats(
+        pair
+    ), ctx.have_packet_formats(pair)
     for fact in facts(pair.old, pair.new):
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
         is_around = have_packet_formats and AROUND.fullmatch(fact.path)
         # Another notation, such as an explicit default byte order, changes no frame.
-        is_spelling = is_around and not changed_packet_formats and "checksums" not in fact.path
+        is_spelling = (
+            is_around and not changed_packet_formats and "checksums" not in fact.path
+        )
         # Texts and notation are a note; other facts change what is transmitted.
         if fact.is_word or is_spelling:
             code, what, keys = "DIF413", "says otherwise", ()
         else:
             was, now = _short(was), _short(now)
-            gone = "DIF134" if PART.fullmatch(fact.path) else "DIF120" if is_around else "DIF121"
+            gone = (
+                "DIF134"
+                if PART.fullmatch(fact.path)
+                else "DIF120" if is_around else "DIF121"
+            )
             if fact.new is None:
                 code, what = gone, f"is no longer stated; it was {was}"
             elif fact.old is None:
@@ -45,14 +53,24 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
             else:
                 code, what = "DIF120", f"is {now}, was {was}"
         where = pair.where()._replace(section=fact.path)
-        yield CheckResult(f"`{fact.path}` {what}", keys, was, now, where=where, places=fact.places, code=code)
+        yield CheckResult(
+            f"`{fact.path}` {what}",
+            keys,
+            was,
+            now,
+            where=where,
+            places=fact.places,
+            code=code,
+        )
 
 
 @rule("DIF122", "node")
 @rule("DIF123", "node")
 @rule("DIF124", "node", severity="note", addition=True)
 def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    for bit, old, new in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
+    for bit, old, new in differing(
+        pair.old.loggable, pair.new.loggable, lambda row: row.bit
+    ):
         if new is None:
             code, what = "DIF123", f"no longer selects {_frame(old)}"
         elif old is None:
@@ -64,8 +82,20 @@ def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         where = pair.where()._replace(section=f"loggable {bit}")
         places = (place_of(old, ("id",)), place_of(new, ("id",)))
         was, now = (f"telemetry {row.id}" if row else "" for row in (old, new))
-        yield CheckResult(f"log mask bit {bit} {what}", ("id",), was, now, where=where, places=places, code=code)
+        yield CheckResult(
+            f"log mask bit {bit} {what}",
+            ("id",),
+            was,
+            now,
+            where=where,
+            places=places,
+            code=code,
+        )
 
 
 def _frame(row: Loggable | None) -> str:
-    return "" if row is None else f"telemetry {row.id}" + (f" {quote(row.name)}" if row.name else "")
+    return (
+        ""
+        if row is None
+        else f"telemetry {row.id}" + (f" {quote(row.name)}" if row.name else "")
+    )

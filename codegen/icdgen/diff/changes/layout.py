@@ -26,14 +26,34 @@ def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         if move.is_shift:
             code, text = "DIF108", f"{_cause(move)}: {_fields(move)} {_by(move)}"
         elif first is last:
-            code, text = "DIF107", f"{quote(first.new.name)} is at bit {first.new.at:,}, was at bit {first.old.at:,}"
+            code, text = (
+                "DIF107",
+                f"{quote(first.new.name)} is at bit {first.new.at:,}, was at bit {first.old.at:,}",
+            )
         else:
             code, text = "DIF109", f"{_fields(move)} moved as a block: they {_by(move)}"
         causes = move.gained + move.lost + move.resized
-        details = () if first is last else (f"From {quote(first.new.name)} to {quote(last.new.name)}.",)
-        where = causes[0].where() if causes else first.where() if first is last else pair.where()
+        details = (
+            ()
+            if first is last
+            else (f"From {quote(first.new.name)} to {quote(last.new.name)}.",)
+        )
+        where = (
+            causes[0].where()
+            if causes
+            else first.where() if first is last else pair.where()
+        )
         was, now = f"bit {first.old.at}", f"bit {first.new.at}"
-        yield CheckResult(text, (), was, now, details, where=where, places=_places(first, causes), code=code)
+        yield CheckResult(
+            text,
+            (),
+            was,
+            now,
+            details,
+            where=where,
+            places=_places(first, causes),
+            code=code,
+        )
 
 
 def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
@@ -41,12 +61,18 @@ def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
     old, new = first.places(("at",))
     for cause in causes:
         before, after = cause.places(("at", "bits"))
-        old, new = (before if cause.before is not None else old), (after if cause.after is not None else new)
+        old, new = (before if cause.before is not None else old), (
+            after if cause.after is not None else new
+        )
     return old, new
 
 
 def _fields(move: Move) -> str:
-    return quote(move.fields[0].new.name) if len(move.fields) == 1 else count(len(move.fields), "field")
+    return (
+        quote(move.fields[0].new.name)
+        if len(move.fields) == 1
+        else count(len(move.fields), "field")
+    )
 
 
 def _by(move: Move) -> str:
@@ -59,13 +85,21 @@ def _by(move: Move) -> str:
 def _cause(move: Move) -> str:
     causes = []
     if move.gained:
-        causes.append(f"{some([p.new.name for p in move.gained])} inserted at bit {move.gained[0].new.at:,}")
+        causes.append(
+            f"{some([p.new.name for p in move.gained])} inserted at bit {move.gained[0].new.at:,}"
+        )
     if move.lost:
-        causes.append(f"{some([p.old.name for p in move.lost])} taken out at bit {move.lost[0].old.at:,}")
+        causes.append(
+            f"{some([p.old.name for p in move.lost])} taken out at bit {move.lost[0].old.at:,}"
+        )
     for pair in move.resized:
-        causes.append(f"{quote(pair.new.name)} has {count(pair.new.width, 'bit')}, had {pair.old.width}")
+        causes.append(
+            f"{quote(pair.new.name)} has {count(pair.new.width, 'bit')}, had {pair.old.width}"
+        )
     if move.reserved:
-        causes.append(f"{bits(abs(move.by))} without a field {'inserted' if move.by > 0 else 'taken out'}")
+        causes.append(
+            f"{bits(abs(move.by))} without a field {'inserted' if move.by > 0 else 'taken out'}"
+        )
     return listing(causes)
 
 
@@ -84,23 +118,35 @@ def count_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     before, after = old.own_count, new.own_count
     # See DIF119; of structs DIF127
     if before != after and (pair.is_of_struct or not pair.is_open):
-        was, now = (count(number, "element") if number else "one value" for number in (before, after))
+        was, now = (
+            count(number, "element") if number else "one value"
+            for number in (before, after)
+        )
         text = f"{quote(new.name)} is {_an_array(after)}, was {_an_array(before)}"
         yield CheckResult(text, ("count", "bits"), was, now)
 
 
 @rule("DIF128", "field")
 def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
-    was, now = (_needs(line, message) for line, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new)))
+    was, now = (
+        _needs(line, message)
+        for line, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new))
+    )
     if _conditions(pair.old) != _conditions(pair.new):
         text = f"{quote(pair.new.name)} is {now}, was {was}"
         yield CheckResult(
-            text, ("when", "name"), was, now, ("In other frames its bits belong to other fields or are reserved.",)
+            text,
+            ("when", "name"),
+            was,
+            now,
+            ("In other frames its bits belong to other fields or are reserved.",),
         )
 
 
 def _conditions(field: Line) -> set[tuple[str, frozenset[int]]]:
-    return {(condition.field, frozenset(condition.values)) for condition in field.conditions}
+    return {
+        (condition.field, frozenset(condition.values)) for condition in field.conditions
+    }
 
 
 def _needs(field: Line, message: Message) -> str:
@@ -122,7 +168,9 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
         # The first value that the two interpretations read differently.
         half = 1 << (new.bits - 1)
-        first, last = (str(half), str(-half)) if new.is_signed else (str(-half), str(half))
+        first, last = (
+            (str(half), str(-half)) if new.is_signed else (str(-half), str(half))
+        )
         details = (f"Bits read as {first} is read as {last}.",)
     text = f"{quote(new.name)} is a {type_of(new)}, was a {type_of(old)}"
     yield CheckResult(text, ("type",), read_as(old), read_as(new), details)
@@ -136,7 +184,11 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     for message in pair.messages:
         for field in message.common:
             # Fields that also moved are reported by their own rules.
-            if field.old.at == field.new.at and field.old.width == field.new.width and not field.same_bits:
+            if (
+                field.old.at == field.new.at
+                and field.old.width == field.new.width
+                and not field.same_bits
+            ):
                 fields.append(field.new.name)
                 messages.add(message.new.name)
     for key in ("byte_order", "bit_order"):
@@ -144,7 +196,13 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         if before != after and fields:
             text = f"the {key.replace('_', ' ')} of `{pair.new.name}` is {after}, was {before}"
             what = f"{count(len(fields), 'field')} of {count(len(messages), 'message')}"
-            yield CheckResult(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
+            yield CheckResult(
+                text,
+                (key,),
+                before,
+                after,
+                (f"Read otherwise, {what}: {some(fields)}.",),
+            )
 
 
 @rule("DIF117", "field")
@@ -156,9 +214,13 @@ def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
         own = getattr(old, key), getattr(new, key)
         if own[0] == own[1]:
             continue  # then the order of the node has changed (DIF112)
-        was, now = (order or getattr(node, key) for order, node in zip(own, nodes, strict=True))
+        was, now = (
+            order or getattr(node, key) for order, node in zip(own, nodes, strict=True)
+        )
         if was != now:
-            text = f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}"
+            text = (
+                f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}"
+            )
             yield CheckResult(text, (key, "type"), was, now)
 
 
@@ -168,8 +230,16 @@ def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     if was != now:
         text = f"ids of `{pair.new.name}` have {now} bits, had {was}"
         same = size(was) == size(now)
-        details = () if same else (f"An id is sent as {count(size(now), 'byte')}, was as {count(size(was), 'byte')}.",)
-        yield CheckResult(text, ("id_bits",), str(was), str(now), details, "note" if same else None)
+        details = (
+            ()
+            if same
+            else (
+                f"An id is sent as {count(size(now), 'byte')}, was as {count(size(was), 'byte')}.",
+            )
+        )
+        yield CheckResult(
+            text, ("id_bits",), str(was), str(now), details, "note" if same else None
+        )
 
 
 @rule("DIF113", "field", when="gone")
@@ -182,6 +252,10 @@ def field_removed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 @rule("DIF114", "field", when="come", severity="note", addition=True)
 def field_added(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     if not pair.new.is_read_only and not ctx.is_reported_for_message(pair):
-        where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
+        where = (
+            "bits that were reserved"
+            if free_before(pair)
+            else "bits that carried something else"
+        )
         text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
         yield CheckResult(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

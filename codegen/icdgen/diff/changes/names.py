@@ -7,14 +7,28 @@ from collections.abc import Iterator
 from icdgen.backends import TITLES
 from icdgen.diff.context import Context
 from icdgen.diff.generated import Name, is_renamed, may_rename
-from icdgen.diff.pairs import EnumPair, FieldPair, IdentifiedPair, MemberPair, MessagePair, NodePair, Pair
+from icdgen.diff.pairs import (
+    EnumPair,
+    FieldPair,
+    IdentifiedPair,
+    MemberPair,
+    MessagePair,
+    NodePair,
+    Pair,
+)
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.lines import Line
 from icdgen.wording import count, listing, quote
 
 MOST = 2  # maximum number of names shown for each language
 
-_WHAT = {MessagePair: "message", FieldPair: "field", EnumPair: "enumeration", MemberPair: "value", NodePair: "node"}
+_WHAT = {
+    MessagePair: "message",
+    FieldPair: "field",
+    EnumPair: "enumeration",
+    MemberPair: "value",
+    NodePair: "node",
+}
 Renamed = list[tuple[Name | None, Name | None]]
 
 
@@ -33,7 +47,9 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     rows_by_language: dict[str, list[str]] = {}
     one_way = any(all(pair[side] is None for pair in renamed) for side in (0, 1))
     # Types first
-    for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):
+    for old, new in sorted(
+        renamed, key=lambda names: not _either(*names).text.endswith("_t")
+    ):
         text = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
             text = f"`{_either(old, new).text}`"
@@ -63,7 +79,12 @@ def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
         yield CheckResult(text, ("name", "identifier"), was, now, lines(renamed))
 
 
-for _code, _of in (("DIF301", "message"), ("DIF302", "field"), ("DIF303", "enum"), ("DIF304", "member")):
+for _code, _of in (
+    ("DIF301", "message"),
+    ("DIF302", "field"),
+    ("DIF303", "enum"),
+    ("DIF304", "member"),
+):
     rule(_code, _of)(_renamed)
 
 
@@ -82,21 +103,36 @@ def names_gone(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
         return
     removed_names: Renamed = [(name, None) for name in ctx.generated.old(pair)]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
-    yield CheckResult(text, ("name", "identifier"), pair.old.name, "", lines(removed_names))
+    yield CheckResult(
+        text, ("name", "identifier"), pair.old.name, "", lines(removed_names)
+    )
 
 
 @rule("DIF307", "field")
 def retyped(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old, pair.new
-    same = (old.type, old.bits, old.count, not old.conditions) == (new.type, new.bits, new.count, not new.conditions)
+    same = (old.type, old.bits, old.count, not old.conditions) == (
+        new.type,
+        new.bits,
+        new.count,
+        not new.conditions,
+    )
     if same and ctx.match.same_enum(old.enum, new.enum):
         return
     changed = ctx.generated.retyped(pair)
     if changed:
-        details = tuple(f"{TITLES[language]}: `{a}` -> `{b}`" for language, a, b in changed)
+        details = tuple(
+            f"{TITLES[language]}: `{a}` -> `{b}`" for language, a, b in changed
+        )
         words = listing([TITLES[language] for language, _, _ in changed])
         text = f"{quote(new.name)} has another type in {words}"
-        yield CheckResult(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], details)
+        yield CheckResult(
+            text,
+            ("type", "bits", "enum", "count", "when"),
+            changed[0][1],
+            changed[0][2],
+            details,
+        )
 
 
 @rule("DIF308", "field")
@@ -106,7 +142,10 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
-        was, now = (next((name.text for name in side if name), "") for side in zip(*renamed, strict=True))
+        was, now = (
+            next((name.text for name in side if name), "")
+            for side in zip(*renamed, strict=True)
+        )
         text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
         keys = ("unit", "formula", "points", "special", "min", "max", "above", "below")
         severity, addition = (None, None) if was else ("note", True)
@@ -126,26 +165,44 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]
                 renamed += ctx.generated.renamed(part)
     if renamed:
         text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
-        was, now = (", ".join(sorted(set(a) - set(b))) for a, b in ((old, new), (new, old)))
+        was, now = (
+            ", ".join(sorted(set(a) - set(b))) for a, b in ((old, new), (new, old))
+        )
         places = pair.old.source.at("vocabulary"), pair.new.source.at("vocabulary")
-        yield CheckResult(text, ("vocabulary",), was, now, lines(renamed), places=places)
+        yield CheckResult(
+            text, ("vocabulary",), was, now, lines(renamed), places=places
+        )
 
 
 @rule("DIF310", "message", "enum")
-def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[CheckResult]:
+def declared_elsewhere(
+    pair: MessagePair | EnumPair, ctx: Context
+) -> Iterator[CheckResult]:
     if pair.is_of_another_node:
         old, new = pair.old_node.name, pair.new_node.name
         text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} is declared by `{new}`, was by `{old}`"
         yield CheckResult(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))
 
 
-@rule("DIF311", "message", "field", "enum", "member", "node", when="come", severity="note", addition=True)
+@rule(
+    "DIF311",
+    "message",
+    "field",
+    "enum",
+    "member",
+    "node",
+    when="come",
+    severity="note",
+    addition=True,
+)
 def names_come(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_struct:
         return
     added_names: Renamed = [(None, name) for name in ctx.generated.new(pair)]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
-    yield CheckResult(text, ("name", "identifier"), "", pair.new.name, lines(added_names))
+    yield CheckResult(
+        text, ("name", "identifier"), "", pair.new.name, lines(added_names)
+    )
 
 
 @rule("DIF312", "field")
@@ -153,8 +210,18 @@ def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     was, now = map(_origin, (pair.old, pair.new))
     if was != now:
         is_view = pair.new.is_read_only and pair.new.derived is None
-        details = ("The encoded value follows from the fields that own the bits.",) if is_view else ()
-        yield CheckResult(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
+        details = (
+            ("The encoded value follows from the fields that own the bits.",)
+            if is_view
+            else ()
+        )
+        yield CheckResult(
+            f"{quote(pair.new.name)} is {now}, was {was}",
+            ("view", "at", "name"),
+            was,
+            now,
+            details,
+        )
 
 
 def _origin(line: Line) -> str:

@@ -37,14 +37,23 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     was, now = formula(old), formula(new)
     if isinstance(old, Curve) or isinstance(new, Curve):
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
-        yield CheckResult(text, ("points", "outside", "formula", "unit"), was, now, _points(old, new), code="DIF201")
+        yield CheckResult(
+            text,
+            ("points", "outside", "formula", "unit"),
+            was,
+            now,
+            _points(old, new),
+            code="DIF201",
+        )
     # An inverted sign is more dangerous than another scale, so it has its own rule.
     elif old.factor == -new.factor:
         text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
         yield CheckResult(text, ("formula",), was, now, code="DIF203")
     else:
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
-        yield CheckResult(text, ("formula", "unit"), was, now, _times(old, new), code="DIF201")
+        yield CheckResult(
+            text, ("formula", "unit"), was, now, _times(old, new), code="DIF201"
+        )
 
 
 def is_derived_otherwise(pair: FieldPair) -> bool:
@@ -57,7 +66,9 @@ def is_derived_otherwise(pair: FieldPair) -> bool:
 
 def _points(old: Curve | Scale, new: Curve | Scale) -> tuple[str, ...]:
     """Return the removed and added points of a lookup table."""
-    tables = [curve for curve in (old, new) if isinstance(curve, Curve) and curve.points]
+    tables = [
+        curve for curve in (old, new) if isinstance(curve, Curve) and curve.points
+    ]
     if len(tables) < 2:
         return ()
     was, now = (frozenset(curve.points) for curve in tables)
@@ -93,11 +104,16 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.const, pair.new.const
     if old == new:
         return
-    was, now = ("" if value is None else f"{value} (0x{value:02X})" for value in (old, new))
+    was, now = (
+        "" if value is None else f"{value} (0x{value:02X})" for value in (old, new)
+    )
     if new is None:
         text, severity = f"{quote(pair.new.name)} need no longer be {was}", "warning"
     else:
-        text, severity = f"{quote(pair.new.name)} must be {now}, was {was or 'free'}", None
+        text, severity = (
+            f"{quote(pair.new.name)} must be {now}, was {was or 'free'}",
+            None,
+        )
     yield CheckResult(text, ("const",), was, now, severity=severity)
 
 
@@ -107,7 +123,10 @@ def _specials(field: Line) -> list[Special]:
     Named float values such as NaN are compared by name, because their bits depend on
     the width.
     """
-    return [replace(special, value=0) if special.number else special for special in field.special]
+    return [
+        replace(special, value=0) if special.number else special
+        for special in field.special
+    ]
 
 
 @rule("DIF210", "field", severity="warning")
@@ -125,14 +144,19 @@ def special_changed(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
         elif not now:
             text += f" no longer stands for {quote(was)}"
         elif same_sense(was, now):
-            code, text = "DIF412", f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise"
+            code, text = (
+                "DIF412",
+                f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise",
+            )
         else:
             text += f" stands for {quote(now)}, stood for {quote(was)}"
         yield CheckResult(text, ("special",), was, now, code=code)
 
 
 def _limits(field: Line) -> str:
-    return " and ".join(f"{bound.kind.sign} {number(bound.value)}" for bound in bounds(field.limits))
+    return " and ".join(
+        f"{bound.kind.sign} {number(bound.value)}" for bound in bounds(field.limits)
+    )
 
 
 def is_wider(old: Limits | None, new: Limits | None) -> bool:

@@ -18,10 +18,18 @@ def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     if old != new:
         detail = "A program that waits for the acknowledge times out."
         if pair.old.acknowledge == pair.new.acknowledge:
-            detail = "No answer comes in either case, but the node restarts in one of them."
+            detail = (
+                "No answer comes in either case, but the node restarts in one of them."
+            )
         elif pair.new.acknowledge:
             detail = "The device sends an acknowledge that old programs do not expect."
-        yield CheckResult(f"{quote(pair.new.name)} is {new} now", ("acknowledge", "name"), old, new, (detail,))
+        yield CheckResult(
+            f"{quote(pair.new.name)} is {new} now",
+            ("acknowledge", "name"),
+            old,
+            new,
+            (detail,),
+        )
 
 
 def _answer(message: Message) -> str:
@@ -31,7 +39,9 @@ def _answer(message: Message) -> str:
 
 
 @rule("DIF213", "field", "message", severity="warning")
-def name_says_otherwise(pair: FieldPair | MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def name_says_otherwise(
+    pair: FieldPair | MessagePair, ctx: Context
+) -> Iterator[CheckResult]:
     old, new = pair.old.name, pair.new.name
     # Other spellings and more precise names keep the meaning.
     if old != new and not same_sense(old, new) and not extends(old, new):
@@ -46,4 +56,9 @@ def node_says_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         if old != new:
             was, now = ("" if value is None else str(value) for value in (old, new))
             what = f"the {key.replace('_', ' ')} of `{pair.new.name}`"
-            yield CheckResult(f"{what} is {now or 'not stated'}, was {was or 'not stated'}", (key,), was, now)
+            yield CheckResult(
+                f"{what} is {now or 'not stated'}, was {was or 'not stated'}",
+                (key,),
+                was,
+                now,
+            )

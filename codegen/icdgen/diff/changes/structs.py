@@ -34,7 +34,9 @@ _NOTHING = _Declared({}, {})
 
 
 @rule("DIF127", "message")
-def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+def structs_repeated_otherwise(
+    pair: MessagePair, ctx: Context
+) -> Iterator[CheckResult]:
     reported = set()
     for part in pair.common:
         was, now = (_repeated(line, part.is_open) for line in (part.old, part.new))
@@ -43,9 +45,13 @@ def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Chec
             continue
         reported.add(name)
         before, after = _in_words(was), _in_words(now)
-        places = [line.levels[-2].node.source.at("struct") for line in (part.old, part.new)]
+        places = [
+            line.levels[-2].node.source.at("struct") for line in (part.old, part.new)
+        ]
         text = f"{quote(name)} is {after}, was {before}"
-        yield CheckResult(text, (), before, after, where=part.where(), places=(places[0], places[1]))
+        yield CheckResult(
+            text, (), before, after, where=part.where(), places=(places[0], places[1])
+        )
 
 
 def _repeated(line: Line, is_open: bool) -> tuple[tuple[int, int], ...] | None:
@@ -63,7 +69,11 @@ def _repeated(line: Line, is_open: bool) -> tuple[tuple[int, int], ...] | None:
 def _in_words(repeated: tuple[tuple[int, int], ...]) -> str:
     """Return the repetition as text: ``4 structs, one every 3 bytes``."""
     texts = [
-        f"{count(times, 'struct') if times else 'structs'}, one every {bits(stride)}" if stride else "a struct"
+        (
+            f"{count(times, 'struct') if times else 'structs'}, one every {bits(stride)}"
+            if stride
+            else "a struct"
+        )
         for times, stride in repeated
     ]
     return ", in each of them ".join(texts)
@@ -74,19 +84,35 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
     # Computing all names takes long, and most ICDs have no structs.
     if not pair.old.structs and not pair.new.structs:
         return
-    old, new = ({struct.name: struct for struct in node.structs} for node in (pair.old, pair.new))
-    was, now = _declared(ctx.generated.before, pair.old), _declared(ctx.generated.after, pair.new)
+    old, new = (
+        {struct.name: struct for struct in node.structs}
+        for node in (pair.old, pair.new)
+    )
+    was, now = _declared(ctx.generated.before, pair.old), _declared(
+        ctx.generated.after, pair.new
+    )
     for name in dict.fromkeys((*new, *old)):
         before, after = was.get(name, _NOTHING), now.get(name, _NOTHING)
         renamed = list(_renamed(before.names, after.names))
         common = before.members.keys() & after.members.keys()
-        retyped = [(before.members[member], after.members[member]) for member in before.members if member in common]
+        retyped = [
+            (before.members[member], after.members[member])
+            for member in before.members
+            if member in common
+        ]
         retyped = [(before, after) for before, after in retyped if before != after]
         if not renamed and not retyped:
             continue
-        what = "is gone" if name not in new else "is new" if name not in old else "has other generated names or types"
+        what = (
+            "is gone"
+            if name not in new
+            else "is new" if name not in old else "has other generated names or types"
+        )
         breaks = retyped or any(old_name for old_name, _ in renamed)
-        places = [structs[name].source.at("name") if name in structs else None for structs in (old, new)]
+        places = [
+            structs[name].source.at("name") if name in structs else None
+            for structs in (old, new)
+        ]
         yield CheckResult(
             f"the struct {quote(name)} {what}",
             ("name", "identifier"),
@@ -94,7 +120,10 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
             name if name in new else "",
             (
                 *lines(renamed),
-                *(f"C: `{old_declaration}` -> `{new_declaration}`" for old_declaration, new_declaration in retyped),
+                *(
+                    f"C: `{old_declaration}` -> `{new_declaration}`"
+                    for old_declaration, new_declaration in retyped
+                ),
             ),
             severity=None if breaks else "note",
             addition=None if breaks else True,
@@ -102,13 +131,18 @@ def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckRes
         )
 
 
-def _renamed(before: dict[int, list[Name]], after: dict[int, list[Name]]) -> Iterator[tuple[Name | None, Name | None]]:
+def _renamed(
+    before: dict[int, list[Name]], after: dict[int, list[Name]]
+) -> Iterator[tuple[Name | None, Name | None]]:
     """Yield removed names, each with the added name of the same member, and the
     remaining added names.
     """
     unchanged = set(chain(*before.values())) & set(chain(*after.values()))
     for at in sorted(before.keys() | after.keys()):
-        removed, added = ([name for name in names.get(at, ()) if name not in unchanged] for names in (before, after))
+        removed, added = (
+            [name for name in names.get(at, ()) if name not in unchanged]
+            for names in (before, after)
+        )
         if len(removed) == len(added):
             yield from zip(removed, added, strict=True)
         else:
@@ -121,28 +155,47 @@ def _declared(names: NamesOfIcd, node: Node) -> dict[str, _Declared]:
     declared: dict[str, _Declared] = {}
     for struct in map(names.description.struct, node.structs):
         fields = struct.model.layout.fixed
-        symbols = [(-1, names.symbols(struct)), *((field.at, symbols_in(struct, struct, field)) for field in fields)]
+        symbols = [
+            (-1, names.symbols(struct)),
+            *((field.at, symbols_in(struct, struct, field)) for field in fields),
+        ]
         rows: dict[int, dict[Name, None]] = {}
         for at, symbols_of_part in symbols:
             for language, identifier in symbols_of_part:
-                if identifier.text.isidentifier() and not identifier.text.endswith("_H"):
+                if identifier.text.isidentifier() and not identifier.text.endswith(
+                    "_H"
+                ):
                     rows.setdefault(at, {})[Name(language, identifier.text)] = None
         members = {member.name: declaration(member) for member in struct.members}
-        declared[struct.model.name] = _Declared({at: list(row) for at, row in rows.items()}, members)
+        declared[struct.model.name] = _Declared(
+            {at: list(row) for at, row in rows.items()}, members
+        )
     return declared
 
 
 @rule("DIF314", "message")
 def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     was, now = (list(_uses_of_structs(side)) for side in (pair.old, pair.new))
-    removed, added = [text for text in was if text not in now], [text for text in now if text not in was]
+    removed, added = [text for text in was if text not in now], [
+        text for text in now if text not in was
+    ]
     if not removed and not added:
         return
     number, what = len(removed or added), "declared otherwise" if removed else "new"
     text = f"{count(number, 'struct')} in {quote(pair.new.name)} {'is' if number == 1 else 'are'} {what}"
-    details = [f"`{text}` is gone" for text in removed] + [f"`{text}` is new" for text in added]
+    details = [f"`{text}` is gone" for text in removed] + [
+        f"`{text}` is new" for text in added
+    ]
     severity, addition = (None, None) if removed else ("note", True)
-    yield CheckResult(text, ("fields",), ", ".join(removed), ", ".join(added), tuple(details), severity, addition)
+    yield CheckResult(
+        text,
+        ("fields",),
+        ", ".join(removed),
+        ", ".join(added),
+        tuple(details),
+        severity,
+        addition,
+    )
 
 
 def _uses_of_structs(message: Message) -> Iterator[str]:

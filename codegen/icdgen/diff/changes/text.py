@@ -38,19 +38,32 @@ def summary_changed(pair: Pair, ctx: Context) -> Iterator[CheckResult]:
             if struct.name in structs:
                 yield from _words_changed(structs[struct.name], struct, pair.where())
     if isinstance(pair, MessagePair):  # lines that use a struct form no field pair
-        lines = {line.name: line for line in pair.old.layout.nodes if struct_layout_of(line)}
+        lines = {
+            line.name: line for line in pair.old.layout.nodes if struct_layout_of(line)
+        }
         for line in pair.new.layout.nodes:
             if struct_layout_of(line) and line.name in lines:
-                yield from _words_changed(lines[line.name], line, pair.where()._replace(field=line.name))
+                yield from _words_changed(
+                    lines[line.name], line, pair.where()._replace(field=line.name)
+                )
 
 
-def _words_changed(old: Described, new: Described, where: Where) -> Iterator[CheckResult]:
+def _words_changed(
+    old: Described, new: Described, where: Where
+) -> Iterator[CheckResult]:
     for key in ("summary", "title", "hazard"):
         was, now = getattr(old, key, ""), getattr(new, key, "")
         if was != now:
             verb = "is new" if not was else "is gone" if not now else "says otherwise"
             places = place_of(old, (key,)), place_of(new, (key,))
-            yield CheckResult(f"the {key} of {quote(new.name)} {verb}", (key,), was, now, where=where, places=places)
+            yield CheckResult(
+                f"the {key} of {quote(new.name)} {verb}",
+                (key,),
+                was,
+                now,
+                where=where,
+                places=places,
+            )
     was, now = (", ".join(getattr(side, "aliases", ())) for side in (old, new))
     if was != now:
         text = f"{quote(new.name)} is also called {now or 'nothing else'}, was {was or 'nothing else'}"
@@ -59,9 +72,14 @@ def _words_changed(old: Described, new: Described, where: Where) -> Iterator[Che
 
 
 @rule("DIF402", "message", "enum", "node", severity="note")
-def reference_changed(pair: MessagePair | EnumPair | NodePair, ctx: Context) -> Iterator[CheckResult]:
+def reference_changed(
+    pair: MessagePair | EnumPair | NodePair, ctx: Context
+) -> Iterator[CheckResult]:
     if isinstance(pair, NodePair):
-        was, now = (", ".join(f"{k} {v}" for k, v in side.document) for side in (pair.old, pair.new))
+        was, now = (
+            ", ".join(f"{k} {v}" for k, v in side.document)
+            for side in (pair.old, pair.new)
+        )
     else:
         was, now = (_reference(side) for side in (pair.old, pair.new))
     if was != now:
@@ -71,7 +89,11 @@ def reference_changed(pair: MessagePair | EnumPair | NodePair, ctx: Context) -> 
 
 def _reference(side: object) -> str:
     table, page = getattr(side, "table", None), getattr(side, "page", None)
-    return ", ".join(f"{word} {number}" for word, number in (("table", table), ("page", page)) if number is not None)
+    return ", ".join(
+        f"{word} {number}"
+        for word, number in (("table", table), ("page", page))
+        if number is not None
+    )
 
 
 @rule("DIF406", "message", "field", "enum", "member", severity="note")
@@ -80,8 +102,13 @@ def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
     if pair.is_of_struct or not is_renamed(pair):
         return
     if pair.is_of_another_node or not ctx.generated.renamed(pair):
-        was, now = (f"{side.name} ({side.identifier})" if side.identifier else side.name for side in (old, new))
-        text = f"{quote(new.name)} is spelled otherwise, its generated names are the same"
+        was, now = (
+            f"{side.name} ({side.identifier})" if side.identifier else side.name
+            for side in (old, new)
+        )
+        text = (
+            f"{quote(new.name)} is spelled otherwise, its generated names are the same"
+        )
         yield CheckResult(text, ("name", "identifier"), was, now)
 
 
@@ -89,14 +116,25 @@ def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[CheckResult]:
 def group_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
     old, new = pair.old.group, pair.new.group
     if old != new:
-        yield CheckResult(f"{quote(pair.new.name)} belongs to {quote(new)}, did to {quote(old)}", ("group",), old, new)
+        yield CheckResult(
+            f"{quote(pair.new.name)} belongs to {quote(new)}, did to {quote(old)}",
+            ("group",),
+            old,
+            new,
+        )
 
 
 @rule("DIF408", "message", severity="note")
 def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
-    old, new = (frozenset((p.message, p.at) for p in side.contains) for side in (pair.old, pair.new))
+    old, new = (
+        frozenset((p.message, p.at) for p in side.contains)
+        for side in (pair.old, pair.new)
+    )
     if old != new:
-        was, now = (", ".join(f"{name} at {at}" for name, at in sorted(parts)) for parts in (old - new, new - old))
+        was, now = (
+            ", ".join(f"{name} at {at}" for name, at in sorted(parts))
+            for parts in (old - new, new - old)
+        )
         text = f"{quote(pair.new.name)} now declares repeated frames"
         yield CheckResult(text, ("contains",), was, now)
 
@@ -111,7 +149,9 @@ def reserved_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[CheckRe
 
 @rule("DIF417", "field", severity="note")
 def displayed_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
-    was, now = (side.display.words if side.display else "" for side in (pair.old, pair.new))
+    was, now = (
+        side.display.words if side.display else "" for side in (pair.old, pair.new)
+    )
     if was != now:
         default = "displayed by its resolution"
         text = f"{quote(pair.new.name)} is {now or default}, was {was or default}"
@@ -120,14 +160,30 @@ def displayed_otherwise(pair: FieldPair, ctx: Context) -> Iterator[CheckResult]:
 
 @rule("DIF409", "node", severity="note")
 def missing_changed(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    for key, was, now in differing(pair.old.missing, pair.new.missing, lambda entry: (entry.kind, entry.id)):
-        verb = _verb(was, now, "is missing from the manual", "is no longer missing", "is missing for another reason")
+    for key, was, now in differing(
+        pair.old.missing, pair.new.missing, lambda entry: (entry.kind, entry.id)
+    ):
+        verb = _verb(
+            was,
+            now,
+            "is missing from the manual",
+            "is no longer missing",
+            "is missing for another reason",
+        )
         name = now.name if now else was.name if was else ""
         text = f"{key[0]} {key[1]} {quote(name)} {verb}"
-        yield CheckResult(text, (), was.why if was else "", now.why if now else "", places=_sections(pair, "missing"))
+        yield CheckResult(
+            text,
+            (),
+            was.why if was else "",
+            now.why if now else "",
+            places=_sections(pair, "missing"),
+        )
 
 
-def _verb(was: object, now: object, when_added: str, when_removed: str, when_changed: str) -> str:
+def _verb(
+    was: object, now: object, when_added: str, when_removed: str, when_changed: str
+) -> str:
     return when_added if was is None else when_removed if now is None else when_changed
 
 
@@ -140,7 +196,9 @@ def order_restated(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
     if orders(pair.old) == orders(pair.new):
         return
     # Then DIF112 reports the order.
-    if any(not field.same_bits for message in pair.messages for field in message.common):
+    if any(
+        not field.same_bits for message in pair.messages for field in message.common
+    ):
         return
     was, now = (" ".join(orders(side)) for side in (pair.old, pair.new))
     text = f"the order of bytes and bits of `{pair.new.name}` is stated otherwise, no field is read otherwise"
@@ -149,15 +207,31 @@ def order_restated(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
 
 @rule("DIF414", "node", severity="note")
 def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    for symbol, was, now in differing(pair.old.units, pair.new.units, lambda unit: unit.symbol):
-        verb = _verb(was, now, "is declared now", "is no longer declared", "is described otherwise")
+    for symbol, was, now in differing(
+        pair.old.units, pair.new.units, lambda unit: unit.symbol
+    ):
+        verb = _verb(
+            was,
+            now,
+            "is declared now",
+            "is no longer declared",
+            "is described otherwise",
+        )
         texts = [" ".join(filter(None, u[1:])) if u else "" for u in (was, now)]
-        yield CheckResult(f"the unit {quote(symbol)} {verb}", (), texts[0], texts[1], places=_sections(pair, "units"))
+        yield CheckResult(
+            f"the unit {quote(symbol)} {verb}",
+            (),
+            texts[0],
+            texts[1],
+            places=_sections(pair, "units"),
+        )
 
 
 @rule("DIF415", "node", severity="note")
 def mask_bit_named_otherwise(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
-    for bit, was, now in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
+    for bit, was, now in differing(
+        pair.old.loggable, pair.new.loggable, lambda row: row.bit
+    ):
         if was and now and was.name != now.name:
             places = (place_of(was, ("name",)), place_of(now, ("name",)))
             where = pair.where()._replace(section=f"loggable {bit}")

@@ -13,7 +13,9 @@ STDIN = "-"
 Input = Spec | list[Path] | str  # a git revision, paths, or `STDIN`
 
 
-def sides(arguments: list[str], usual: list[Path], unchecked: bool = False) -> tuple[Side, Side]:
+def sides(
+    arguments: list[str], usual: list[Path], unchecked: bool = False
+) -> tuple[Side, Side]:
     """Return the loaded old and new side.
 
     ``usual``: default ICDs for an argument that is only a revision. Raises `UserError`.
@@ -37,19 +39,26 @@ def _resolve(arguments: list[str], usual: list[Path]) -> tuple[Input, Input]:
     # An existing file has precedence over a git range of the same name.
     span = None if not first or os.path.exists(first) else git.span(first)
     if span is not None:
-        paths = git.inside(map(Path, arguments[1:])) if arguments[1:] else git.usual(usual)
+        paths = (
+            git.inside(map(Path, arguments[1:])) if arguments[1:] else git.usual(usual)
+        )
         old, new = (Spec(revision, paths, revision, top=git.top) for revision in span)
         return old, new
     if len(arguments) == 1:
         single_input = _input_of(git, first, usual)
         if isinstance(single_input, Spec):
             return single_input, [git.outside(path) for path in single_input.paths]
-        raise UserError("name what to compare with", "`icdgen diff OLD NEW`, or a git revision such as HEAD~1")
+        raise UserError(
+            "name what to compare with",
+            "`icdgen diff OLD NEW`, or a git revision such as HEAD~1",
+        )
     if len(arguments) > 2:
         text = f"{len(arguments)} arguments are given, OLD and NEW are enough"
         raise UserError(text, "name folders for several files")
     first, second = arguments
-    return _input_of(git, first, _default_paths(second, usual)), _input_of(git, second, _default_paths(first, usual))
+    return _input_of(git, first, _default_paths(second, usual)), _input_of(
+        git, second, _default_paths(first, usual)
+    )
 
 
 def _default_paths(other: str, usual: list[Path]) -> list[Path]:
@@ -68,7 +77,9 @@ def _input_of(git: Git, word: str, usual: list[Path]) -> Input:
     if spec is not None:
         return spec
     help = "name a file, a folder, a git revision, or REVISION:PATH"
-    raise UserError(f"there is no {word}, neither as a file nor as a git revision", help)
+    raise UserError(
+        f"there is no {word}, neither as a file nor as a git revision", help
+    )
 
 
 def _load(what: Input, unchecked: bool) -> Side:

@@ -34,7 +34,9 @@ class Spec(NamedTuple):
         """
         extracted = []
         for path in self.paths:
-            kind = _run("cat-file", "-t", f"{self.revision}:{_name(path)}", top=self.top).strip()
+            kind = _run(
+                "cat-file", "-t", f"{self.revision}:{_name(path)}", top=self.top
+            ).strip()
             # Included ICDs are searched in the folder of a file, so the whole folder is
             # needed.
             home = path if kind == "tree" else path.parent
@@ -57,7 +59,13 @@ class Git:
         # A leading dash would be an option of git.
         if not revision or revision.startswith("-") or not self.top:
             return ""
-        return _run("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}").strip()
+        return _run(
+            "rev-parse",
+            "--verify",
+            "--quiet",
+            "--end-of-options",
+            f"{revision}^{{commit}}",
+        ).strip()
 
     def span(self, word: str) -> tuple[str, str] | None:
         """Return both ends of ``A..B`` or ``A...B`` (changes since B branched off A).
@@ -71,7 +79,10 @@ class Git:
         ends = [end or "HEAD" for end in (first, second.lstrip("."))]
         if not all(map(self.commit, ends)):
             bad = next(end for end in ends if not self.commit(end))
-            raise UserError(f"git knows no revision {bad}", "`git log --oneline` and `git tag` list them")
+            raise UserError(
+                f"git knows no revision {bad}",
+                "`git log --oneline` and `git tag` list them",
+            )
         if since:
             base = _run("merge-base", "--end-of-options", *ends).strip()
             ends[0] = base[:12] or ends[0]
@@ -86,7 +97,9 @@ class Git:
             return None
         if not colon:
             return Spec(revision, self.usual(usual), word, top=self.top)
-        here = PurePosixPath(os.path.relpath(os.path.realpath("."), self.top).replace(os.sep, "/"))
+        here = PurePosixPath(
+            os.path.relpath(os.path.realpath("."), self.top).replace(os.sep, "/")
+        )
         inner = PurePosixPath(path)
         # `git show REVISION:./path` is relative to the current folder too.
         if path.startswith("./"):
@@ -95,7 +108,10 @@ class Git:
             help = "as `git show` takes it: REVISION:icd/a.yaml"
             raise UserError(f"{word}: the path must lie in the repository", help)
         if not _run("cat-file", "-t", f"{revision}:{_name(inner)}", top=self.top):
-            raise UserError(f"{revision} has no {path}", f"`git ls-tree -r {revision}` lists what it has")
+            raise UserError(
+                f"{revision} has no {path}",
+                f"`git ls-tree -r {revision}` lists what it has",
+            )
         return Spec(revision, [inner], word, top=self.top)
 
     def inside(self, paths: Iterable[Path]) -> list[PurePosixPath]:
@@ -109,7 +125,9 @@ class Git:
             if not self.top or os.path.commonpath([full, top]) != top:
                 help = "name the ICDs: REVISION:PATH, or `icds` in icdgen.toml"
                 raise UserError(f"{path} is not in this git repository", help)
-            relative.append(PurePosixPath(os.path.relpath(full, top).replace(os.sep, "/")))
+            relative.append(
+                PurePosixPath(os.path.relpath(full, top).replace(os.sep, "/"))
+            )
         return relative
 
     def usual(self, paths: Iterable[Path]) -> list[PurePosixPath]:
@@ -137,7 +155,9 @@ def _export(revision: str, home: PurePosixPath, folder: Path, top: str) -> None:
     below = ["--", f"{_name(home)}/"] if _name(home) else []
     blobs: list[tuple[str, str]] = []
     # -z: git would quote names with special characters otherwise.
-    for line in _run("ls-tree", "-r", "-z", "--full-tree", revision, *below, top=top).split("\0"):
+    for line in _run(
+        "ls-tree", "-r", "-z", "--full-tree", revision, *below, top=top
+    ).split("\0"):
         head, _, path = line.partition("\t")
         if path.endswith(_SUFFIX):
             mode, _, blob = head.split(" ")
@@ -155,14 +175,20 @@ def _contents(blobs: list[tuple[str, str]], top: str) -> Iterable[tuple[str, byt
         return
     request = "".join(f"{blob}\n" for blob, _ in blobs).encode()
     completed = subprocess.run(
-        ["git", "-C", top, "cat-file", "--batch"], input=request, capture_output=True, check=False
+        ["git", "-C", top, "cat-file", "--batch"],
+        input=request,
+        capture_output=True,
+        check=False,
     )
     output = completed.stdout
     for _, path in blobs:
         head, _, output = output.partition(b"\n")
         words = head.split()
         if len(words) != 3:
-            raise UserError(f"git cannot read {path}", completed.stderr.decode("utf-8", "replace").strip())
+            raise UserError(
+                f"git cannot read {path}",
+                completed.stderr.decode("utf-8", "replace").strip(),
+            )
         size = int(words[2])
         yield path, output[:size]
         output = output[size + 1 :]
@@ -171,7 +197,13 @@ def _contents(blobs: list[tuple[str, str]], top: str) -> Iterable[tuple[str, byt
 def _run(*words: str, top: str = ".") -> str:
     """Return the output of git; empty if it fails or is not installed."""
     try:
-        completed = subprocess.run(["git", "-C", top, *words], capture_output=True, check=False)
+        completed = subprocess.run(
+            ["git", "-C", top, *words], capture_output=True, check=False
+        )
     except OSError:
         return ""
-    return completed.stdout.decode("utf-8", "surrogateescape") if completed.returncode == 0 else ""
+    return (
+        completed.stdout.decode("utf-8", "surrogateescape")
+        if completed.returncode == 0
+        else ""
+    )

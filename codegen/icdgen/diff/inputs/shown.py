@@ -18,7 +18,18 @@ from icdgen.icd.build import derived_node
 from icdgen.icd.derived_values import derivation_of
 from icdgen.icd.display import display_of
 from icdgen.icd.formula import FormulaError, Scale
-from icdgen.icd.layout import Array, Counted, FixedNode, Layout, Orders, Overlay, Rest, Scalar, Size, StructRef
+from icdgen.icd.layout import (
+    Array,
+    Counted,
+    FixedNode,
+    Layout,
+    Orders,
+    Overlay,
+    Rest,
+    Scalar,
+    Size,
+    StructRef,
+)
 from icdgen.icd.layout_nodes import counter_of_rest, overlay_of
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -56,14 +67,19 @@ def from_stdin() -> Side:
     Raises `UserError` or `Findings` if it is no valid output.
     """
     if sys.stdin is None:
-        raise UserError("standard input is closed", "pipe the output of `icdgen show --format json` in, or name a file")
+        raise UserError(
+            "standard input is closed",
+            "pipe the output of `icdgen show --format json` in, or name a file",
+        )
     return from_bytes(sys.stdin.buffer.read(_MOST + 1), "standard input")
 
 
 def from_bytes(data: bytes, name: str) -> Side:
     """Return the shown ICDs with places in this output."""
     if len(data) > _MOST:
-        raise UserError(f"{name} has more than the {_MOST:,} bytes allowed", "show fewer ICDs")
+        raise UserError(
+            f"{name} has more than the {_MOST:,} bytes allowed", "show fewer ICDs"
+        )
     tree = _tree(data, name)
     _check(tree, name)
     nodes: list[model.Node] = []
@@ -75,7 +91,9 @@ def from_bytes(data: bytes, name: str) -> Side:
                 text = f"`{item['name']}` includes `{include}`, which is not shown before it"
                 raise Findings([Finding("ICD004", text, place, _HELP)])
         nodes.append(_Reader(nodes).node(item))
-    return Side(name, model.Icd(tuple(nodes)), texts={name: data.decode("utf-8", "replace")})
+    return Side(
+        name, model.Icd(tuple(nodes)), texts={name: data.decode("utf-8", "replace")}
+    )
 
 
 def _tree(data: bytes, name: str) -> Map:
@@ -88,7 +106,12 @@ def _tree(data: bytes, name: str) -> Map:
         tree = json.loads(data)
     except (ValueError, RecursionError) as error:
         at = (getattr(error, "lineno", 1), getattr(error, "colno", 1))
-        finding = Finding("ICD001", f"not JSON: {getattr(error, 'msg', error)}", Place(name, *at), _HELP)
+        finding = Finding(
+            "ICD001",
+            f"not JSON: {getattr(error, 'msg', error)}",
+            Place(name, *at),
+            _HELP,
+        )
         raise Findings([finding]) from None
     placed: Map = _placed(tree, Place(name))
     return placed
@@ -118,12 +141,16 @@ def _placed(value: Any, place: Place) -> Any:
 def _check(tree: Any, name: str) -> None:
     import jsonschema_rs
 
-    validator = jsonschema_rs.validator_for(json.loads(machine.SCHEMA.read_text(encoding="utf-8")))
+    validator = jsonschema_rs.validator_for(
+        json.loads(machine.SCHEMA.read_text(encoding="utf-8"))
+    )
     for error in validator.iter_errors(tree):
         path = list(error.instance_path)
         place = schema.locate(tree, path)[2] if isinstance(tree, Map) else Place(name)
         what = f"`{'.'.join(map(str, path))}`: " if path else ""
-        raise Findings([Finding("ICD010", f"{what}{error.message[:200]}", place, _HELP)])
+        raise Findings(
+            [Finding("ICD010", f"{what}{error.message[:200]}", place, _HELP)]
+        )
 
 
 class _Reader:
@@ -142,9 +169,16 @@ class _Reader:
             self.enums.update((enum.name, enum) for enum in node.enums)
             self.structs.update((struct.name, struct) for struct in node.structs)
             self.units.update((unit.symbol, unit) for unit in node.units)
-        units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
+        units = tuple(
+            Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", ""))
+            for u in get("units", ())
+        )
         self.units.update((unit.symbol, unit) for unit in units)
-        self.errata = {entry["id"]: _erratum(entry) for key in ("errata", "notes") for entry in get(key, ())}
+        self.errata = {
+            entry["id"]: _erratum(entry)
+            for key in ("errata", "notes")
+            for entry in get(key, ())
+        }
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
         structs = []
@@ -163,14 +197,22 @@ class _Reader:
             units=units,
             protocol=plain(get("protocol", {})),
             loggable=tuple(self.row(annex.Loggable, row) for row in item["loggable"]),
-            missing=tuple(annex.Missing(**_plain_values(annex.Missing, entry)) for entry in get("missing", ())),
+            missing=tuple(
+                annex.Missing(**_plain_values(annex.Missing, entry))
+                for entry in get("missing", ())
+            ),
             errata=tuple(self.errata.values()),
             file=item.place.file,
             source=item,
         )
 
     def about(self, item: Map) -> tuple[model.Erratum, ...]:
-        return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
+        return tuple(
+            self.errata[id]
+            for key in ("errata", "notes")
+            for id in item.get(key, ())
+            if id in self.errata
+        )
 
     def row(self, kind: Callable[..., Thing], item: Map, /, **more: object) -> Thing:
         """Return an object with its plain attributes and errata; ``more``: other
@@ -178,7 +220,9 @@ class _Reader:
         """
         if "aliases" in item:
             more["aliases"] = tuple(item["aliases"])
-        return kind(**_plain_values(kind, item), errata=self.about(item), source=item, **more)
+        return kind(
+            **_plain_values(kind, item), errata=self.about(item), source=item, **more
+        )
 
     def enum(self, item: Map, node: str) -> model.Enum:
         members = tuple(self.row(model.Member, member) for member in item["members"])
@@ -188,13 +232,22 @@ class _Reader:
         """Return the layout of a message or struct."""
         parts = [*item.get("inner", ()), item["tail"]] if "tail" in item else []
         variable = {part["part"]: part for part in parts}
-        nodes = {field["name"]: self.layout_node(field, variable.get(field["name"])) for field in item["fields"]}
+        nodes = {
+            field["name"]: self.layout_node(field, variable.get(field["name"]))
+            for field in item["fields"]
+        }
         layout = Layout(
             name=item["name"],
             length=item["length"] - sum(part["most"] * part["step"] for part in parts),
-            fixed=tuple(layout_node for name, layout_node in nodes.items() if name not in variable),
+            fixed=tuple(
+                layout_node
+                for name, layout_node in nodes.items()
+                if name not in variable
+            ),
             sequence=tuple(
-                layout_node for name in variable if not isinstance(layout_node := nodes[name], StructRef | Overlay)
+                layout_node
+                for name in variable
+                if not isinstance(layout_node := nodes[name], StructRef | Overlay)
             ),
             may_end_early="may_end_early" in item,
             owner=node,
@@ -204,8 +257,12 @@ class _Reader:
                 derivation = derivation_of(row["formula"], layout.nodes)
             except FormulaError as error:
                 text = f"`formula` cannot be used: {error}"
-                raise Findings([Finding("ICD010", text, row.at("formula"), _HELP)]) from None
-            node_of_row = derived_node(row, derivation, self.units.get(row.get("unit", "")))
+                raise Findings(
+                    [Finding("ICD010", text, row.at("formula"), _HELP)]
+                ) from None
+            node_of_row = derived_node(
+                row, derivation, self.units.get(row.get("unit", ""))
+            )
             layout = replace(layout, derived=(*layout.derived, node_of_row))
         return layout
 
@@ -216,13 +273,18 @@ class _Reader:
             layout=self.layout(item, node),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
-            contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
+            contains=tuple(
+                model.Part(part["message"], part["offset"])
+                for part in item.get("contains", ())
+            ),
             node=node,
         )
         return message
 
     def struct(self, item: Map, node: str) -> model.Struct:
-        struct: model.Struct = self.row(model.Struct, item, layout=self.layout(item, node), node=node)
+        struct: model.Struct = self.row(
+            model.Struct, item, layout=self.layout(item, node), node=node
+        )
         return struct
 
     def layout_node(self, item: Map, part: Map | None) -> FixedNode:
@@ -240,21 +302,39 @@ class _Reader:
         orders = Orders(item.get("byte_order", ""), item.get("bit_order", ""))
         node: Scalar | StructRef
         if "struct" in item:
-            node = self.row(StructRef, item, at=at, orders=orders, layout=self.structs[item["struct"]].layout)
+            node = self.row(
+                StructRef,
+                item,
+                at=at,
+                orders=orders,
+                layout=self.structs[item["struct"]].layout,
+            )
         else:
-            node = self.scalar(item, at, orders, None if is_array or isinstance(size, int) else size)
+            node = self.scalar(
+                item, at, orders, None if is_array or isinstance(size, int) else size
+            )
         if is_array:
-            return self.row(Array, item, at=item["offset"], orders=orders, item=node, size=size)
-        return overlay_of(node) if item.get("view", False) and isinstance(node, Scalar) else node
+            return self.row(
+                Array, item, at=item["offset"], orders=orders, item=node, size=size
+            )
+        return (
+            overlay_of(node)
+            if item.get("view", False) and isinstance(node, Scalar)
+            else node
+        )
 
     def size(self, item: Map, part: Map) -> Counted | Rest:
         """Return the size of a variable-length field."""
         if "counter" in part:
             return Counted(part["counter"], part["most"], part.get("plus", 0))
         name, identifier, most = item["name"], item.get("identifier"), part["most"]
-        return Rest(counter_of_rest(name, identifier, "count" in item, most, item), most)
+        return Rest(
+            counter_of_rest(name, identifier, "count" in item, most, item), most
+        )
 
-    def scalar(self, item: Map, at: int, orders: Orders, length: Counted | Rest | None) -> Scalar:
+    def scalar(
+        self, item: Map, at: int, orders: Orders, length: Counted | Rest | None
+    ) -> Scalar:
         """Return the scalar of a field or of an array element."""
         limits = {key: Fraction(value) for key, value in item.get("limits", {}).items()}
         scalar = self.row(
@@ -268,11 +348,15 @@ class _Reader:
             scale=_scale(item),
             curve=_curve(item),
             special=tuple(
-                model.Special(**_plain_values(model.Special, special)) for special in item.get("special", ())
+                model.Special(**_plain_values(model.Special, special))
+                for special in item.get("special", ())
             ),
             display=display_of(item.get("display")),
             limits=model.Limits(**limits) if "limits" in item else None,
-            present_if=tuple(model.Condition(name, tuple(values)) for name, values in item.get("when", {}).items()),
+            present_if=tuple(
+                model.Condition(name, tuple(values))
+                for name, values in item.get("when", {}).items()
+            ),
         )
         return scalar if length is None else replace(scalar, bits=8)
 
@@ -285,7 +369,16 @@ def _curve(item: Map) -> curve.Curve | None:
     try:
         return curve.of_plain(item)
     except FormulaError as error:
-        raise Findings([Finding("ICD010", f"`points` cannot be used: {error}", item.at("points"), _HELP)]) from None
+        raise Findings(
+            [
+                Finding(
+                    "ICD010",
+                    f"`points` cannot be used: {error}",
+                    item.at("points"),
+                    _HELP,
+                )
+            ]
+        ) from None
 
 
 def _scale(item: Map) -> Scale | None:
@@ -293,7 +386,9 @@ def _scale(item: Map) -> Scale | None:
         return None
     factor = Fraction(item["scale"])
     if factor == 0:
-        raise Findings([Finding("ICD010", "`scale` cannot be 0", item.at("scale"), _HELP)])
+        raise Findings(
+            [Finding("ICD010", "`scale` cannot be 0", item.at("scale"), _HELP)]
+        )
     return Scale(factor, Fraction(item.get("scale_offset", "0")))
 
 

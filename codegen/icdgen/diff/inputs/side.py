@@ -48,7 +48,11 @@ class Side:
 
     def name(self, file: str) -> str:
         """Return the name of the file as the user named it."""
-        return self.prefix + file.removeprefix(self.folder) if self.folder and file.startswith(self.folder) else file
+        return (
+            self.prefix + file.removeprefix(self.folder)
+            if self.folder and file.startswith(self.folder)
+            else file
+        )
 
 
 def from_paths(paths: list[Path], unchecked: bool = False) -> Side:
@@ -69,7 +73,10 @@ def from_git(spec: Spec, unchecked: bool = False) -> Side:
         paths = spec.extract(Path(folder))
         if not paths:
             what = " ".join(map(str, spec.paths)) or "the folder"
-            raise UserError(f"{spec.revision} has no ICD in {what}", "name another path: REVISION:PATH")
+            raise UserError(
+                f"{spec.revision} has no ICD in {what}",
+                "name another path: REVISION:PATH",
+            )
         loaded = load(paths, check=not unchecked)
     side = _side(spec.label, loaded)
     side.folder, side.prefix = folder + os.sep, f"{spec.revision}:"
@@ -83,5 +90,10 @@ def _side(label: str, loaded: Loaded) -> Side:
 
 
 def _with_user_places(side: Side, finding: Finding) -> Finding:
-    message, help = (text.replace(side.folder, side.prefix) for text in (finding.message, finding.help))
-    return finding._replace(place=side.place(finding.place) or finding.place, message=message, help=help)
+    message, help = (
+        text.replace(side.folder, side.prefix)
+        for text in (finding.message, finding.help)
+    )
+    return finding._replace(
+        place=side.place(finding.place) or finding.place, message=message, help=help
+    )

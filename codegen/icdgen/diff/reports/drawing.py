@@ -58,7 +58,9 @@ class Row:
     def is_new(self) -> bool:
         """Whether anything differs in this row, including the end of the frame."""
         ends = {box.y: box.width for box in self.frames}
-        return any(box.kind != "same" for box in self.boxes) or ends.get(OLD_Y) != ends.get(NEW_Y)
+        return any(box.kind != "same" for box in self.boxes) or ends.get(
+            OLD_Y
+        ) != ends.get(NEW_Y)
 
 
 class Drawing(NamedTuple):
@@ -81,20 +83,30 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
 
     The frame is empty on a side without the message.
     """
-    sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.before, pair.after))
+    sides = tuple(
+        message.length * 8 if message is not None else 0
+        for message in (pair.before, pair.after)
+    )
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
     # A link connects both boxes only where they are in the same row.
     for number, part in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
         kind, key = _kind(part, changes), f"f{number}"
-        before = _boxes(rows, part.old, OLD_Y, kind, key) if part.before is not None else {}
-        after = _boxes(rows, part.new, NEW_Y, kind, key) if part.after is not None else {}
+        before = (
+            _boxes(rows, part.old, OLD_Y, kind, key) if part.before is not None else {}
+        )
+        after = (
+            _boxes(rows, part.new, NEW_Y, kind, key) if part.after is not None else {}
+        )
         for index in before.keys() & after.keys():
             if kind != "same" or before[index].x != after[index].x:
                 rows[index].links.append(_link(before[index], after[index]))
     for number, row in enumerate(rows):
-        row.ticks = [(LEFT + byte * 8 * CELL, number * BITS // 8 + byte) for byte in range(BITS // 8)]
+        row.ticks = [
+            (LEFT + byte * 8 * CELL, number * BITS // 8 + byte)
+            for byte in range(BITS // 8)
+        ]
     if not any(row.is_new for row in rows):
         return None
     return Drawing(_folded(rows), f"Bit layouts of {pair.any.name}, old above new")
@@ -125,7 +137,15 @@ def _boxes(rows: list[Row], line: Line, y: int, kind: str, key: str) -> dict[int
     for number in range(line.at // BITS, min(-(-end // BITS), len(rows))):
         start = max(line.at, number * BITS)
         width = (min(end, (number + 1) * BITS) - start) * CELL
-        box = Box(LEFT + start % BITS * CELL, y, width, kind, _label(line.name, width), _title(line), key)
+        box = Box(
+            LEFT + start % BITS * CELL,
+            y,
+            width,
+            kind,
+            _label(line.name, width),
+            _title(line),
+            key,
+        )
         rows[number].boxes.append(box)
         boxes_by_row[number] = box
     return boxes_by_row
@@ -149,13 +169,20 @@ def _title(line: Line) -> str:
 
 def _link(old: Box, new: Box) -> Link:
     top, bottom = OLD_Y + HEIGHT, NEW_Y
-    corners = ((old.x, top), (old.x + old.width, top), (new.x + new.width, bottom), (new.x, bottom))
+    corners = (
+        (old.x, top),
+        (old.x + old.width, top),
+        (new.x + new.width, bottom),
+        (new.x, bottom),
+    )
     return Link(" ".join(f"{x:g},{y}" for x, y in corners), new.kind, new.key)
 
 
 def _folded(rows: list[Row]) -> list[Row | str]:
     parts: list[Row | str] = []
-    for is_new, group in groupby(enumerate(rows), key=lambda numbered_row: numbered_row[1].is_new):
+    for is_new, group in groupby(
+        enumerate(rows), key=lambda numbered_row: numbered_row[1].is_new
+    ):
         run = list(group)
         if is_new or len(run) == 1:
             parts += [row for _, row in run]

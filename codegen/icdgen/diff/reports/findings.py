@@ -15,7 +15,13 @@ def of_change(change: Change) -> Finding:
     ICD.
     """
     place = change.place or Place("icd")
-    return Finding(change.code, f"{change.layer}: {change.message}", place, " ".join(change.notes), change.severity)
+    return Finding(
+        change.code,
+        f"{change.layer}: {change.message}",
+        place,
+        " ".join(change.notes),
+        change.severity,
+    )
 
 
 def of_report(report: Report) -> Iterator[Finding]:
@@ -26,6 +32,16 @@ def of_report(report: Report) -> Iterator[Finding]:
     yield from map(about_stale, report.stale)
     for use in report.uses or ():
         first = use.changes[0]
-        severity = "error" if any(change.severity == "error" for change in use.changes) else "warning"
+        severity = (
+            "error"
+            if any(change.severity == "error" for change in use.changes)
+            else "warning"
+        )
         place = Place(use.file, use.line, use.column, len(use.name))
-        yield Finding(first.code, f"`{use.name}` is touched: {'; '.join(use.messages)}", place, "", severity)
+        yield Finding(
+            first.code,
+            f"`{use.name}` is touched: {'; '.join(use.messages)}",
+            place,
+            "",
+            severity,
+        )

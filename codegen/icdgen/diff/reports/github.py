@@ -7,6 +7,11 @@ from icdgen.diff.report import Report
 from icdgen.diff.reports.findings import of_report
 
 
-def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+def report(
+    report: Report,
+    colour: bool = False,
+    width: int | None = None,
+    everything: bool = False,
+) -> str:
     """Return one command for each change."""
     return reports.get("github")(of_report(report), {})

@@ -38,6 +38,8 @@ def groups(changes: Iterable[Change]) -> list[Group]:
             about = "enumeration" if isinstance(owner, EnumPair) else "node"
             if isinstance(owner, MessagePair):
                 about = f"{owner.any.kind} {ids(owner.any.ids)}"
-            group = groups_by_owner[id(owner)] = Group(owner.any.name, about, owner.where().node, owner, [])
+            group = groups_by_owner[id(owner)] = Group(
+                owner.any.name, about, owner.where().node, owner, []
+            )
         group.changes.append(change)
     return list(groups_by_owner.values())

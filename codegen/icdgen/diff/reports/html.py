@@ -26,12 +26,19 @@ LEGEND = (
 )
 
 
-def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+def report(
+    report: Report,
+    colour: bool = False,
+    width: int | None = None,
+    everything: bool = False,
+) -> str:
     """Return the page."""
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([shipped.templates() / "diff", shipped.templates() / "html"]),
+        loader=jinja2.FileSystemLoader(
+            [shipped.templates() / "diff", shipped.templates() / "html"]
+        ),
         autoescape=True,
         # Names come from the ICD: control characters must not reach the page.
         finalize=lambda value: printable(value) if type(value) is str else value,
@@ -52,16 +59,30 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
 
 def shared(report: Report) -> dict[str, object]:
     """Return the template variables that this page and the page of the site share."""
-    return {"report": report, "about": ABOUT, "legend": LEGEND, "coded": coded, "layouts_of": layouts}
+    return {
+        "report": report,
+        "about": ABOUT,
+        "legend": LEGEND,
+        "coded": coded,
+        "layouts_of": layouts,
+    }
 
 
 def coded(text: str) -> list[tuple[str, bool]]:
     """Return the parts of a text with back-ticks: text, and whether it is code."""
-    return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
+    return [
+        (part, bool(number % 2))
+        for number, part in enumerate(_CODE.split(text))
+        if part
+    ]
 
 
 def layouts(group: Group) -> Drawing | None:
     """Return both layouts of a message, if any of its bits changed position or meaning;
     None otherwise.
     """
-    return draw(group.owner, group.changes) if isinstance(group.owner, MessagePair) else None
+    return (
+        draw(group.owner, group.changes)
+        if isinstance(group.owner, MessagePair)
+        else None
+    )

@@ -19,7 +19,12 @@ FORMAT = 1
 SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
 
 
-def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+def report(
+    report: Report,
+    colour: bool = False,
+    width: int | None = None,
+    everything: bool = False,
+) -> str:
     """Return all changes as JSON, accepted changes included."""
     return json.dumps(document(report), indent=1) + "\n"
 
@@ -35,13 +40,20 @@ def document(report: Report) -> dict[str, object]:
         "version": report.step._asdict(),
         "counts": report.counts(),
         "compatibility": [_direction(direction) for direction in report.directions],
-        "changes": [_change(c, reasons.get(id(c)), generated.old(c.pair)) for c in report.comparison.changes],
+        "changes": [
+            _change(c, reasons.get(id(c)), generated.old(c.pair))
+            for c in report.comparison.changes
+        ],
         "stale": [_stale(entry) for entry in report.stale],
     }
     if report.uses is not None:
-        numbers = {id(change): number for number, change in enumerate(report.comparison.changes)}
+        numbers = {
+            id(change): number
+            for number, change in enumerate(report.comparison.changes)
+        }
         result["uses"] = [
-            use._asdict() | {"changes": sorted(numbers[id(c)] for c in use.changes)} for use in report.uses
+            use._asdict() | {"changes": sorted(numbers[id(c)] for c in use.changes)}
+            for use in report.uses
         ]
     return result
 
@@ -57,7 +69,9 @@ def _direction(direction: Direction) -> dict[str, object]:
     }
 
 
-def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict[str, object]:
+def _change(
+    change: Change, reason: str | None, names: tuple[Name, ...]
+) -> dict[str, object]:
     row: dict[str, object] = {
         "code": change.code,
         "layer": change.layer,
@@ -75,7 +89,8 @@ def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict
         "sure": round(change.sure, 3),
         "errata": change.errata,
         "generated": {
-            language: [n.text for n in group] for language, group in groupby(names, lambda name: name.language)
+            language: [n.text for n in group]
+            for language, group in groupby(names, lambda name: name.language)
         },
     }
     return row if reason is None else row | {"accepted": reason}
@@ -86,4 +101,9 @@ def _place(place: Place | None) -> dict[str, object] | None:
 
 
 def _stale(entry: Acceptance) -> dict[str, object]:
-    return {"code": entry.code, **entry.criteria, "reason": entry.reason, "place": _place(entry.place)}
+    return {
+        "code": entry.code,
+        **entry.criteria,
+        "reason": entry.reason,
+        "place": _place(entry.place),
+    }

@@ -17,12 +17,20 @@ _MARKUP = re.compile(r"([\\`*_{}\[\]<>#|~@])")
 _CODE = re.compile(r"`([^`]*)`")
 
 
-def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+def report(
+    report: Report,
+    colour: bool = False,
+    width: int | None = None,
+    everything: bool = False,
+) -> str:
     """Return the report in GitHub's Markdown.
 
     Long parts are folded; no content is omitted.
     """
-    lines = [f"## ICD changes: {escaped(report.old.label)} → {escaped(report.new.label)}", ""]
+    lines = [
+        f"## ICD changes: {escaped(report.old.label)} → {escaped(report.new.label)}",
+        "",
+    ]
     if not report.comparison.changes:
         lines += ["No change.", ""]
     else:
@@ -41,7 +49,10 @@ def escaped(text: str) -> str:
     parts = _CODE.split(shown(text))
     # Even parts are text, odd parts were between back-ticks.
     parts[::2] = [_MARKUP.sub(r"\\\1", words) for words in parts[::2]]
-    parts[1::2] = ["`" + code.replace("|", "\\|") + "`" if code else "\\`\\`" for code in parts[1::2]]
+    parts[1::2] = [
+        "`" + code.replace("|", "\\|") + "`" if code else "\\`\\`"
+        for code in parts[1::2]
+    ]
     return "".join(parts)
 
 
@@ -87,7 +98,9 @@ def _layer(report: Report, layer: str) -> Iterator[str]:
         yield f"**{escaped(group.title)}** ({escaped(group.about)}, {escaped(group.node)})"
         yield ""
         for change in group.changes:
-            places = " → ".join(escaped(f"{place.file}:{place.line}") for place in change.places)
+            places = " → ".join(
+                escaped(f"{place.file}:{place.line}") for place in change.places
+            )
             yield f"- {change.kind} `{change.code}` {escaped(change.message)} – {places}"
             yield from (f"  - {escaped(note)}" for note in change.notes)
         yield ""

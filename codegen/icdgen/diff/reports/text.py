@@ -27,18 +27,31 @@ _INDENT = " " * 4
 Paint = Callable[[str, str], str]
 
 
-def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+def report(
+    report: Report,
+    colour: bool = False,
+    width: int | None = None,
+    everything: bool = False,
+) -> str:
     """Return the report.
 
     ``width`` wraps explanations; ``everything`` omits nothing.
     """
-    paint: Paint = (lambda role, text: f"{COLOURS[role]}{text}{RESET}") if colour else (lambda role, text: text)
-    lines = [paint("head", f"{printable(report.old.label)} -> {printable(report.new.label)}")]
+    paint: Paint = (
+        (lambda role, text: f"{COLOURS[role]}{text}{RESET}")
+        if colour
+        else (lambda role, text: text)
+    )
+    lines = [
+        paint("head", f"{printable(report.old.label)} -> {printable(report.new.label)}")
+    ]
     if not report.comparison.changes:
         return "\n".join([*lines, "no change", *_stale(report, paint), ""])
     lines += ["", *_summary(report, paint), ""]
     lines += _wrapped(
-        f"version of the generated packages: {report.step.step}. Reason: {report.step.reason}.", width, ""
+        f"version of the generated packages: {report.step.step}. Reason: {report.step.reason}.",
+        width,
+        "",
     )
     for direction in report.directions:
         lines += ["", *_direction(direction, paint, width, everything)]
@@ -58,10 +71,16 @@ def _summary(report: Report, paint: Paint) -> Iterator[str]:
         yield f"  {label} {number:4}  {ABOUT[layer]}{extra}"
 
 
-def _direction(direction: Direction, paint: Paint, width: int | None, everything: bool) -> Iterator[str]:
+def _direction(
+    direction: Direction, paint: Paint, width: int | None, everything: bool
+) -> Iterator[str]:
     good = direction.total - len(direction.frames)
     verdict = paint(direction.verdict, direction.verdict)
-    total = f"{good} of {count(direction.total, 'frame')} as before" if direction.total else "there are none"
+    total = (
+        f"{good} of {count(direction.total, 'frame')} as before"
+        if direction.total
+        else "there are none"
+    )
     yield f"{paint('head', direction.question)} {verdict}: {total}"
     for line in direction.general:
         yield from _wrapped(shown(line), width, "  ! ")
@@ -73,7 +92,9 @@ def _direction(direction: Direction, paint: Paint, width: int | None, everything
         yield f"  ... and {len(direction.frames) - most} more, which --all lists"
 
 
-def _layer(report: Report, layer: str, paint: Paint, width: int | None, everything: bool) -> Iterator[str]:
+def _layer(
+    report: Report, layer: str, paint: Paint, width: int | None, everything: bool
+) -> Iterator[str]:
     changes = report.of_layer(layer)
     if not changes:
         return
@@ -91,9 +112,13 @@ def _layer(report: Report, layer: str, paint: Paint, width: int | None, everythi
         yield f"  ... and {len(changes) - most} more changes of words, which --all lists"
 
 
-def _change(change: Change, paint: Paint, width: int | None, explained: bool) -> Iterator[str]:
+def _change(
+    change: Change, paint: Paint, width: int | None, explained: bool
+) -> Iterator[str]:
     label = f"{change.kind}[{change.code}]"
-    first, *following_lines = _wrapped(shown(change.message), width, _INDENT + " " * (len(label) + 1))
+    first, *following_lines = _wrapped(
+        shown(change.message), width, _INDENT + " " * (len(label) + 1)
+    )
     yield f"{_INDENT}{paint('note' if change.addition else change.severity, label)} {first.lstrip()}"
     yield from following_lines
     for note in change.notes if explained else ():
@@ -105,7 +130,12 @@ def _change(change: Change, paint: Paint, width: int | None, explained: bool) ->
 def _wrapped(text: str, width: int | None, indent: str) -> list[str]:
     if width is None or len(indent) + len(text) <= width:
         return [indent + text]
-    return textwrap.wrap(text, max(width, len(indent) + 30), initial_indent=indent, subsequent_indent=" " * len(indent))
+    return textwrap.wrap(
+        text,
+        max(width, len(indent) + 30),
+        initial_indent=indent,
+        subsequent_indent=" " * len(indent),
+    )
 
 
 def _uses(report: Report, paint: Paint) -> Iterator[str]:

@@ -10,9 +10,12 @@ from icdgen.icd.located import Map
 
 
 def format_text(text: str, name: str) -> str:
-    """Return the text of a file in the canonical layout, with its comments. ``name`` is the file name in findings.
+    """Return the text of a file in the canonical layout, with its comments.
 
-    Raises `diagnostics.Findings` if the loader cannot read the text, because then its meaning is unclear.
+    ``name`` is the file name in findings.
+
+    Raises `diagnostics.Findings` if the loader cannot read the text, because then its
+    meaning is unclear.
     """
     from icdgen.icd.fmt import kinds, read, write
 
@@ -27,11 +30,15 @@ def format_text(text: str, name: str) -> str:
 
 
 def _verify(text: str, values: Map, result: str, name: str) -> None:
-    """Read a formatted text back, and raise `UserError` if values or comments differ from the original."""
+    """Read a formatted text back, and raise `UserError` if values or comments differ
+    from the original.
+    """
     from icdgen.icd.fmt.read import comments
 
     formatted = source.parse(result.encode("utf-8"), name)
-    if not same(values, formatted) or Counter(comments(text)) != Counter(comments(result)):
+    if not same(values, formatted) or Counter(comments(text)) != Counter(
+        comments(result)
+    ):
         raise UserError(
             f"{name}: the formatter would change the meaning of this file",
             "the file is left as it was; this is a defect of icdgen: please report it",
@@ -39,11 +46,18 @@ def _verify(text: str, values: Map, result: str, name: str) -> None:
 
 
 def same(first: object, second: object) -> bool:
-    """Return whether two trees are equal, including types (1 is not true). The order of keys does not matter."""
+    """Return whether two trees are equal, including types (1 is not true).
+
+    The order of keys does not matter.
+    """
     if isinstance(first, dict):
         if not isinstance(second, dict) or first.keys() != second.keys():
             return False
         return all(same(value, second[key]) for key, value in first.items())
     if isinstance(first, list):
-        return isinstance(second, list) and len(first) == len(second) and all(map(same, first, second))
+        return (
+            isinstance(second, list)
+            and len(first) == len(second)
+            and all(map(same, first, second))
+        )
     return type(first) is type(second) and first == second

@@ -1,4 +1,6 @@
-"""Tree of the formatter: values with their spelling and the comments that belong to them."""
+"""Tree of the formatter: values with their spelling and the comments that belong to
+them.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,10 @@ NOTHING = Text(None, "")
 
 @dataclass(slots=True)
 class Child:
-    """An entry of a mapping or, with the key `NOTHING`, an item of a sequence. In lists of comments, "" is a blank line."""
+    """An entry of a mapping or, with the key `NOTHING`, an item of a sequence.
+
+    In lists of comments, "" is a blank line.
+    """
 
     key: Text
     value: Text | Branch = NOTHING

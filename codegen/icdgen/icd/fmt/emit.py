@@ -16,7 +16,9 @@ class Spelled(int):
 
     def __new__(cls, spelling: str) -> Spelled:
         """Return the number of a decimal or hexadecimal spelling."""
-        number = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
+        number = super().__new__(
+            cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling)
+        )
         number.spelling = spelling
         return number
 
@@ -29,15 +31,23 @@ def text(tree: dict[str, Any]) -> str:
 
 
 def of(root: Branch) -> str:
-    """Return the canonical YAML of a tree of the formatter. The text is read back, so it is certain to load."""
+    """Return the canonical YAML of a tree of the formatter.
+
+    The text is read back, so it is certain to load.
+    """
     return format_text(write.write(root, kinds.root("icd")), "the result")
 
 
 def branch(value: dict[str, Any] | list[Any]) -> Branch:
     """Return a mapping or a list as a branch of the formatter."""
     result = Branch(isinstance(value, dict), False, 0)
-    items = value.items() if isinstance(value, dict) else ((None, item) for item in value)
-    result.children = [Child(Text(key, key) if key is not None else NOTHING, node(item)) for key, item in items]
+    items = (
+        value.items() if isinstance(value, dict) else ((None, item) for item in value)
+    )
+    result.children = [
+        Child(Text(key, key) if key is not None else NOTHING, node(item))
+        for key, item in items
+    ]
     return result
 
 

@@ -1,4 +1,6 @@
-"""Kinds of mappings in a file and the order of their keys, both taken from the JSON Schema."""
+"""Kinds of mappings in a file and the order of their keys, both taken from the JSON
+Schema.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +13,27 @@ from icdgen.icd import schema
 # the manual.
 ROWS = frozenset({"field", "derived", "member", "loggable", "unit"})
 # Kinds that are always written with one key per line.
-BLOCKS = frozenset({"icd", "errata", "node", "enum", "message", "erratum", "note", "protocol", "section"})
+BLOCKS = frozenset(
+    {
+        "icd",
+        "errata",
+        "node",
+        "enum",
+        "message",
+        "erratum",
+        "note",
+        "protocol",
+        "section",
+    }
+)
 # Kinds of which a list is written on one line if it fits.
 INLINE = frozenset({"source"})
 
 
 class Kind:
-    """Kind of a mapping or sequence: the name of its definition in the schema, and the order of its keys."""
+    """Kind of a mapping or sequence: the name of its definition in the schema, and the
+    order of its keys.
+    """
 
     __slots__ = ("_children", "_rule", "keys", "name")
 
@@ -39,8 +55,14 @@ class Kind:
 
     def _find(self, key: str | None, mapping: bool) -> Kind:
         """Look up the kind of a child in the schema."""
-        rule = self._rule.get("items", {}) if key is None else self._rule.get("properties", {}).get(key, {})
-        name, rule = _follow("section" if self.name == "protocol" and mapping else "", rule)
+        rule = (
+            self._rule.get("items", {})
+            if key is None
+            else self._rule.get("properties", {}).get(key, {})
+        )
+        name, rule = _follow(
+            "section" if self.name == "protocol" and mapping else "", rule
+        )
         # The schema allows a single value or a list of values.
         if rule.get("if") == {"type": "array"}:
             name, rule = _follow(name, rule["else" if mapping else "then"])
@@ -54,7 +76,10 @@ def root(document: str) -> Kind:
 
 
 def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Resolve references of a sub-schema; return the name of the definition and its sub-schema."""
+    """Resolve references of a sub-schema.
+
+    Return the name of the definition and its sub-schema.
+    """
     while "$ref" in rule:
         name = schema.referred(rule)
         rule = schema.definition(name)

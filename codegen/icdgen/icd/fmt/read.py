@@ -1,4 +1,7 @@
-"""Reader of YAML text with comments. PyYAML's events omit comments, so the reader searches the text between events."""
+"""Reader of YAML text with comments.
+
+PyYAML's events omit comments, so the reader searches the text between events.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +20,18 @@ _BEFORE_COMMENT = " \t\ufeff,[]{}\n\r\x85\u2028\u2029"
 
 
 def read(text: str, values: Map) -> Branch:
-    """Return the tree of a text. ``values`` is the result of `source.parse` for the same text."""
+    """Return the tree of a text.
+
+    ``values`` is the result of `source.parse` for the same text.
+    """
     return _Reader(text, values).read()
 
 
 def comments(text: str) -> list[str]:
     """Return all comments of a text that `source.parse` accepts.
 
-    It does not use the tree, so that `icdgen fmt` can check that the tree has lost no comment.
+    It does not use the tree, so that `icdgen fmt` can check that the tree has lost no
+    comment.
     """
     from yaml import events
 
@@ -44,7 +51,9 @@ def comments(text: str) -> list[str]:
 
 
 class _Reader:
-    """Builds the tree in one pass over the events, and assigns the comments before each event to the tree."""
+    """Builds the tree in one pass over the events, and assigns the comments before each
+    event to the tree.
+    """
 
     def __init__(self, text: str, values: Map) -> None:
         self.text = text
@@ -74,7 +83,9 @@ class _Reader:
             kind = type(event)
             start = event.start_mark.index
             if "#" in self.text[self.reached : start]:
-                self.gap(event, kind in (events.MappingEndEvent, events.SequenceEndEvent))
+                self.gap(
+                    event, kind in (events.MappingEndEvent, events.SequenceEndEvent)
+                )
             self.reached = max(self.reached, start)
             if kind in steps:
                 steps[kind](event)
@@ -87,7 +98,9 @@ class _Reader:
     def scalar(self, event: Event) -> None:
         """Add a key, a value or an item."""
         top = self.stack[-1]
-        key = top.mapping and (not top.children or top.children[-1].value is not NOTHING)
+        key = top.mapping and (
+            not top.children or top.children[-1].value is not NOTHING
+        )
         value = event.value if key else next(self.values)
         if key and not event.style:
             value = None  # the writer interprets an unquoted key from its spelling
@@ -111,7 +124,11 @@ class _Reader:
         """Begin a mapping or sequence."""
         from yaml.events import MappingStartEvent
 
-        branch = Branch(isinstance(event, MappingStartEvent), bool(event.flow_style), event.start_mark.column)
+        branch = Branch(
+            isinstance(event, MappingStartEvent),
+            bool(event.flow_style),
+            event.start_mark.column,
+        )
         if not self.stack:
             self.root = branch
         else:
@@ -132,7 +149,10 @@ class _Reader:
         self.last_end = event.end_mark.index
 
     def attach(self, value: Text | Branch) -> Child:
-        """Add a value to the innermost branch: to its last key, or as an item. Return the entry or item."""
+        """Add a value to the innermost branch: to its last key, or as an item.
+
+        Return the entry or item.
+        """
         top = self.stack[-1]
         if top.mapping:
             child = top.children[-1]
@@ -158,14 +178,18 @@ class _Reader:
         return taken
 
     def split_header(self, first: Child) -> None:
-        """Move comments about the file to the header: those before the last blank line, and the schema line."""
+        """Move comments about the file to the header: those before the last blank line,
+        and the schema line.
+        """
         lines = first.before
         if lines and self.breaks(self.comment_end, self.reached) > 1:
             lines.append("")
         cut = len(lines) - lines[::-1].index("") if "" in lines else 0
         schema = [line for line in lines if line.startswith(SCHEMA_LINE)]
         header = [line for line in lines[:cut] if not line.startswith(SCHEMA_LINE)]
-        first.before = [line for line in lines[cut:] if not line.startswith(SCHEMA_LINE)]
+        first.before = [
+            line for line in lines[cut:] if not line.startswith(SCHEMA_LINE)
+        ]
         self.root.header = schema + _paragraphs(header)
 
     # Comments
@@ -181,13 +205,20 @@ class _Reader:
             breaks = self.breaks(previous_end, start)
             target = self.pending
             # A comment on the line of an element belongs to that element.
-            if breaks == 0 and previous_end == self.reached and self.follows_something(start):
+            if (
+                breaks == 0
+                and previous_end == self.reached
+                and self.follows_something(start)
+            ):
                 target = self.last.trailing if self.last else target
             # After the last entry of a container, the column decides whether a comment
             # belongs to the container or follows it.
             elif breaks and closing and not self.pending:
                 column = start - _line_start(self.text, previous_end, start)
-                holder = self.holder(column if limit is None else min(column, limit), event.start_mark.column)
+                holder = self.holder(
+                    column if limit is None else min(column, limit),
+                    event.start_mark.column,
+                )
                 if holder is not None:
                     target, limit = holder.tail, holder.column
             # Preserve one blank line between two comments of the same element.
@@ -206,7 +237,9 @@ class _Reader:
         return sum(1 for _ in _BREAK.finditer(self.text, start, end))
 
     def holder(self, column: int, following: int) -> Branch | None:
-        """Return the innermost container that ends before the next element and contains a comment in this column."""
+        """Return the innermost container that ends before the next element and contains
+        a comment in this column.
+        """
         for branch in reversed(self.stack):
             if branch.column <= following:
                 return None
@@ -227,7 +260,10 @@ def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
 
 
 def _header_comment(text: str, event: Event) -> list[str]:
-    """Return the comment after the ``|`` or ``>`` of a block scalar; an empty list if there is none."""
+    """Return the comment after the ``|`` or ``>`` of a block scalar.
+
+    Returns an empty list if there is none.
+    """
     at = event.start_mark.index
     header = text[at : _line_end(text, at)]
     return [header[header.index("#") :].rstrip()] if "#" in header else []
@@ -245,7 +281,9 @@ def _line_end(text: str, at: int) -> int:
 
 
 def _paragraphs(lines: list[str]) -> list[str]:
-    """Return lines without blank lines at the start and the end, and with at most one blank line in a row."""
+    """Return lines without blank lines at the start and the end, and with at most one
+    blank line in a row.
+    """
     result: list[str] = []
     for line in lines:
         if line or (result and result[-1]):

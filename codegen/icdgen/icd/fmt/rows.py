@@ -6,7 +6,10 @@ WIDEST = 40  # wider cells are ignored in the alignment of their column
 
 
 def aligned(rows: list[dict[str, str]]) -> list[str]:
-    """Return each row in flow style: ``{at: 0,  bits: 16, ...}``. The leading columns that all rows have are padded."""
+    """Return each row in flow style: ``{at: 0,  bits: 16, ...}``.
+
+    The leading columns that all rows have are padded.
+    """
     widths: list[int] = []
     # zip() ends with the shortest row, so these are the keys at the same position of
     # all rows.

@@ -1,4 +1,6 @@
-"""Spelling of scalars: unquoted if all readers of YAML interpret it as the same text, else in double quotes."""
+"""Spelling of scalars: unquoted if all readers of YAML interpret it as the same text,
+else in double quotes.
+"""
 
 from __future__ import annotations
 
@@ -21,18 +23,33 @@ _NOT_IN_BLOCK = re.compile(r":(?: |\Z)| #")
 _NOT_IN_FLOW = re.compile(r"[,\[\]{}:?]| #")
 _NUMBER_OR_WORD = re.compile(r"-?[0-9]+(?:\.[0-9]+)?|0x[0-9A-Fa-f]+|true|false|null|~|")
 _BREAK = re.compile(r"(?<=[^ ]) (?=[^ ])")
-_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"}
+_ESCAPES = {
+    '"': '\\"',
+    "\\": "\\\\",
+    "\n": "\\n",
+    "\t": "\\t",
+    "\r": "\\r",
+    "\0": "\\0",
+}
 _SPECIAL = re.compile(r'["\\]')
 
 
 def flow(text: Text) -> str:
     """Return a scalar in flow style, within braces or brackets."""
-    return quoted_if_needed(text.value, True) if isinstance(text.value, str) else _number_or_word(text)
+    return (
+        quoted_if_needed(text.value, True)
+        if isinstance(text.value, str)
+        else _number_or_word(text)
+    )
 
 
 def key(text: Text, in_flow: bool) -> str:
     """Return a scalar as a key."""
-    if text.value is None and len(text.spelling) < 40 and _NUMBER_OR_WORD.fullmatch(text.spelling):
+    if (
+        text.value is None
+        and len(text.spelling) < 40
+        and _NUMBER_OR_WORD.fullmatch(text.spelling)
+    ):
         return _number_or_word(text)
     return quoted_if_needed(name(text), in_flow)
 
@@ -43,14 +60,23 @@ def name(text: Text) -> str:
 
 
 def block(text: Text, column: int, indent: int) -> list[str]:
-    """Return the lines of a scalar in block style that begins at ``column``; all except the first are indented."""
+    """Return the lines of a scalar in block style that begins at ``column``.
+
+    All except the first are indented.
+    """
     if not isinstance(text.value, str):
         return [_number_or_word(text)]
     value = text.value
     if "\n" in value and _fits_literal(value):
         body = value.removesuffix("\n")
         if "\n" not in body and indent + len(body) > WIDTH:
-            return [">", *(" " * indent + line for line in _fill(body, WIDTH - indent, WIDTH - indent))]
+            return [
+                ">",
+                *(
+                    " " * indent + line
+                    for line in _fill(body, WIDTH - indent, WIDTH - indent)
+                ),
+            ]
         lines = [" " * indent + line if line else "" for line in body.split("\n")]
         return ["|" if body != value else "|-", *lines]
     return _fold(quoted_if_needed(value, False), column, indent)
@@ -71,7 +97,9 @@ def quoted_if_needed(value: str, in_flow: bool) -> str:
 
 
 def _reads_as_text(value: str) -> bool:
-    """Return whether the loader and other readers of YAML interpret the unquoted spelling as this text."""
+    """Return whether the loader and other readers of YAML interpret the unquoted
+    spelling as this text.
+    """
     if value[:1].isalpha() and value.isprintable():
         return value.lower() not in _WORDS
     return bool(value) and _loader_reads(value)
@@ -87,7 +115,9 @@ def _loader_reads(value: str) -> bool:
 
 
 def _number_or_word(text: Text) -> str:
-    """Return a number, a truth value or null in its canonical spelling: ``0x5A``, ``null``."""
+    """Return a number, a truth value or null in its canonical spelling: ``0x5A``,
+    ``null``.
+    """
     spelling = text.spelling
     if spelling.startswith("0x"):
         return "0x" + spelling[2:].upper()
@@ -114,7 +144,9 @@ def _escape(character: str) -> str:
 
 
 def _fits_literal(value: str) -> bool:
-    """Return whether a text with line breaks can be written as a literal block scalar (``|``)."""
+    """Return whether a text with line breaks can be written as a literal block scalar
+    (``|``).
+    """
     lines = value.removesuffix("\n").split("\n")
     if not lines[0] or lines[0][0] == " " or not lines[-1]:
         return False
@@ -122,24 +154,31 @@ def _fits_literal(value: str) -> bool:
 
 
 def _fold(text: str, column: int, indent: int) -> list[str]:
-    """Return an unquoted or quoted scalar, folded over several lines if it is longer than `WIDTH`."""
+    """Return an unquoted or quoted scalar, folded over several lines if it is longer
+    than `WIDTH`.
+    """
     if column + len(text) <= WIDTH:
         return [text]
     quote = '"' if text[0] == '"' else ""
-    lines = _fill(text[1:-1] if quote else text, WIDTH - column - len(quote), WIDTH - indent)
+    lines = _fill(
+        text[1:-1] if quote else text, WIDTH - column - len(quote), WIDTH - indent
+    )
     lines[0] = quote + lines[0]
     lines[-1] += quote
     return [lines[0], *(" " * indent + line for line in lines[1:])]
 
 
 def _fill(text: str, first: int, width: int) -> list[str]:
-    """Break a text at single spaces, as a reader of YAML replaces a line break by one space.
+    """Break a text at single spaces, as a reader of YAML replaces a line break by one
+    space.
 
     ``first`` is the width of the first line.
     """
     lines: list[str] = []
     for word in _BREAK.split(text):
-        if lines and len(lines[-1]) + 1 + len(word) <= (first if len(lines) == 1 else width):
+        if lines and len(lines[-1]) + 1 + len(word) <= (
+            first if len(lines) == 1 else width
+        ):
             lines[-1] += " " + word
         else:
             lines.append(word)

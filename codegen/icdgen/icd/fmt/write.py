@@ -1,4 +1,6 @@
-"""Writer of trees in the canonical layout, which ``docs/reference/icd-format.md`` describes."""
+"""Writer of trees in the canonical layout, which ``docs/reference/icd-format.md``
+describes.
+"""
 
 from __future__ import annotations
 
@@ -29,10 +31,14 @@ def write(root: Branch, kind: Kind) -> str:
 
 
 def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
-    """Append the top level, with a blank line before and after each section in block style except the first."""
+    """Append the top level, with a blank line before and after each section in block
+    style except the first.
+    """
     sections = after_section = 0
     for child in ordered(root, kind):
-        is_section = isinstance(child.value, Branch) and _is_block(child, child.value, kind)
+        is_section = isinstance(child.value, Branch) and _is_block(
+            child, child.value, kind
+        )
         if sections and (is_section or after_section):
             lines.append("")
         after_section = is_section and sections
@@ -48,9 +54,15 @@ def _is_block(child: Child, value: Branch, kind: Kind) -> bool:
 
 
 def ordered(branch: Branch, kind: Kind) -> list[Child]:
-    """Return the entries in the order of the schema. Unknown keys come last, in the order of the file."""
+    """Return the entries in the order of the schema.
+
+    Unknown keys come last, in the order of the file.
+    """
     order = kind.keys
-    return sorted(branch.children, key=lambda child: order.get(scalars.name(child.key), len(order)))
+    return sorted(
+        branch.children,
+        key=lambda child: order.get(scalars.name(child.key), len(order)),
+    )
 
 
 def _comments(lines: list[str], comments: list[str], indent: int) -> None:
@@ -65,12 +77,26 @@ def _entry(lines: list[str], child: Child, kind: Kind, indent: int) -> None:
     # A longer key needs the explicit form of YAML.
     if len(key) > LONGEST_KEY:
         head = " " * indent + "? " + key + "\n" + " " * indent + ":"
-    inner = kind.child(scalars.name(child.key), child.value.mapping) if isinstance(child.value, Branch) else kind
+    inner = (
+        kind.child(scalars.name(child.key), child.value.mapping)
+        if isinstance(child.value, Branch)
+        else kind
+    )
     _value(lines, child, head, inner, indent, in_sequence=False)
 
 
-def _value(lines: list[str], child: Child, head: str, kind: Kind, indent: int, in_sequence: bool) -> None:
-    """Append an entry or an item with its comments. ``head`` is the part of its first line before the value."""
+def _value(
+    lines: list[str],
+    child: Child,
+    head: str,
+    kind: Kind,
+    indent: int,
+    in_sequence: bool,
+) -> None:
+    """Append an entry or an item with its comments.
+
+    ``head`` is the part of its first line before the value.
+    """
     value = child.value
     column = len(head) - head.rfind("\n")
     trailing = "  " + child.trailing[-1] if child.trailing else ""
@@ -129,24 +155,35 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
             lines.append(f"{dash} {row}{trailing}")
         return
     for number, child in enumerate(branch.children):
-        inner = kind.child(None, child.value.mapping) if isinstance(child.value, Branch) else kind
+        inner = (
+            kind.child(None, child.value.mapping)
+            if isinstance(child.value, Branch)
+            else kind
+        )
         if number and inner.name in BLOCKS and indent == 2:
             lines.append("")
         _value(lines, child, dash, inner, indent, in_sequence=True)
 
 
 def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
-    """Return the aligned rows of a table; None if the sequence is not a table, or its rows are too long for one line."""
+    """Return the aligned rows of a table.
+
+    Returns None if the sequence is not a table, or its rows are too long for one line.
+    """
     items = [item for item in _branches(branch) if item.mapping and item.children]
     if len(items) < len(branch.children):
         return None
     inner = kind.child(None, True)
     if inner.name in BLOCKS:
         return None
-    if inner.name not in ROWS and not all(_simple(item) and not item.commented() for item in items):
+    if inner.name not in ROWS and not all(
+        _simple(item) and not item.commented() for item in items
+    ):
         return None
     rows = aligned([_cells(item, inner) for item in items])
-    if inner.name not in ROWS and any(indent + 2 + len(row) > LONGEST_ROW for row in rows):
+    if inner.name not in ROWS and any(
+        indent + 2 + len(row) > LONGEST_ROW for row in rows
+    ):
         return None
     return rows
 
@@ -162,12 +199,16 @@ def _branches(branch: Branch) -> list[Branch]:
 
 
 def _one_line(branch: Branch, kind: Kind, column: int) -> str | None:
-    """Return a mapping or sequence in flow style if it is to be written on one line, else None."""
+    """Return a mapping or sequence in flow style if it is to be written on one line,
+    else None.
+    """
     if branch.children:
         if branch.mapping:
             if kind.name in BLOCKS:
                 return None
-            if kind.name not in ROWS and not (_small(branch, kind) and not branch.commented()):
+            if kind.name not in ROWS and not (
+                _small(branch, kind) and not branch.commented()
+            ):
                 return None
         elif branch.commented() or not _inline(branch, kind):
             return None
@@ -183,16 +224,28 @@ def _small(branch: Branch, kind: Kind) -> bool:
 
 
 def _inline(branch: Branch, kind: Kind) -> bool:
-    """Return whether a sequence can be on one line: of scalars, lists of scalars, or mappings of a kind in `INLINE`."""
+    """Return whether a sequence can be on one line: of scalars, lists of scalars, or
+    mappings of a kind in `INLINE`.
+    """
     can_be_mappings = kind.child(None, True).name in INLINE
-    return all(_simple(item) and (can_be_mappings or not item.mapping) for item in _branches(branch))
+    return all(
+        _simple(item) and (can_be_mappings or not item.mapping)
+        for item in _branches(branch)
+    )
 
 
 def _wrapped(branch: Branch, column: int) -> list[str] | None:
-    """Return a list of short scalars in flow style, wrapped over several lines; None for any other branch."""
+    """Return a list of short scalars in flow style, wrapped over several lines.
+
+    Returns None for any other branch.
+    """
     if branch.mapping or branch.commented() or _branches(branch):
         return None
-    items = [scalars.flow(child.value) for child in branch.children if isinstance(child.value, Text)]
+    items = [
+        scalars.flow(child.value)
+        for child in branch.children
+        if isinstance(child.value, Text)
+    ]
     if any(len(item) > SHORT_ITEM for item in items):
         return None
     lines = ["["]
@@ -212,7 +265,11 @@ def flow(value: Text | Branch, kind: Kind) -> str:
         return scalars.flow(value)
     if value.mapping:
         return "{" + ", ".join(_cells(value, kind).values()) + "}"
-    return "[" + ", ".join(flow(child.value, _kind(kind, child)) for child in value.children) + "]"
+    return (
+        "["
+        + ", ".join(flow(child.value, _kind(kind, child)) for child in value.children)
+        + "]"
+    )
 
 
 def _cells(branch: Branch, kind: Kind) -> dict[str, str]:
@@ -221,7 +278,9 @@ def _cells(branch: Branch, kind: Kind) -> dict[str, str]:
     for child in ordered(branch, kind):
         key = scalars.key(child.key, True)
         lead = "? " + key + " :" if len(key) > LONGEST_KEY else key + ":"
-        cells[scalars.name(child.key)] = f"{lead} {flow(child.value, _kind(kind, child))}"
+        cells[scalars.name(child.key)] = (
+            f"{lead} {flow(child.value, _kind(kind, child))}"
+        )
     return cells
 
 
@@ -229,4 +288,6 @@ def _kind(kind: Kind, child: Child) -> Kind:
     """Return the kind of the value of a child of a branch of this kind."""
     if isinstance(child.value, Text):
         return kind
-    return kind.child(None if child.key is NOTHING else scalars.name(child.key), child.value.mapping)
+    return kind.child(
+        None if child.key is NOTHING else scalars.name(child.key), child.value.mapping
+    )

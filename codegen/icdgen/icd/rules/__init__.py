@@ -1,7 +1,11 @@
-"""Semantic rules for ICDs. Each rule is a function of a theme module, with explanation and examples in ``<theme>.md``.
+"""Semantic rules for ICDs.
 
-`icdgen.icd.build` leaves invalid parts out of the model, or sets them to None, and reports nothing. The rules look at the
-tree of the file, which the objects of the model have as `source`, and report what is wrong, and where.
+Each rule is a function of a theme module, with explanation and examples in
+``<theme>.md``.
+
+`icdgen.icd.build` leaves invalid parts out of the model, or sets them to None, and
+reports nothing. The rules look at the tree of the file, which the objects of the model
+have as `source`, and report what is wrong, and where.
 """
 
 from __future__ import annotations
@@ -12,30 +16,30 @@ from typing import TYPE_CHECKING
 from icdgen.diagnostics import Finding, in_order
 from icdgen.icd.errata import Applied
 from icdgen.icd.model import Icd
-from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its rules)
-    checksums,
-    composites,
-    conditional,
-    derived,
-    duplicates,
-    envelopes,
-    errata,
-    formulas,
-    identifiers,
-    ids,
-    layout,
-    limits,
-    loggable,
-    protocol,
-    protocol_effects,
-    protocol_limits,
-    protocol_meaning,
-    protocol_names,
-    protocol_sizes,
-    references,
-    structs,
-    values,
-    variable_length,
+from icdgen.icd.rules import (
+    checksums,  # noqa: F401
+    composites,  # noqa: F401
+    conditional,  # noqa: F401
+    derived,  # noqa: F401
+    duplicates,  # noqa: F401
+    envelopes,  # noqa: F401
+    errata,  # noqa: F401
+    formulas,  # noqa: F401
+    identifiers,  # noqa: F401
+    ids,  # noqa: F401
+    layout,  # noqa: F401
+    limits,  # noqa: F401
+    loggable,  # noqa: F401
+    protocol,  # noqa: F401
+    protocol_effects,  # noqa: F401
+    protocol_limits,  # noqa: F401
+    protocol_meaning,  # noqa: F401
+    protocol_names,  # noqa: F401
+    protocol_sizes,  # noqa: F401
+    references,  # noqa: F401
+    structs,  # noqa: F401
+    values,  # noqa: F401
+    variable_length,  # noqa: F401
 )
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, Rule, elsewhere
@@ -63,11 +67,13 @@ def check(
     languages: Sequence[Language] = (),
     texts: Mapping[str, str] | None = None,
 ) -> list[Finding]:
-    """Return the violations of all rules that no erratum accepts, in the order of the files.
+    """Return the violations of all rules that no erratum accepts, in the order of the
+    files.
 
-    The rules about names check the names of the ``languages``. ``complete`` is False if broken items were left out of the
-    model; rules that need a complete model are then skipped. With the ``texts`` of the files, findings quote numbers in the
-    spelling of the file.
+    The rules about names check the names of the ``languages``. ``complete`` is False if
+    broken items were left out of the model; rules that need a complete model are then
+    skipped. With the ``texts`` of the files, findings quote numbers in the spelling of
+    the file.
     """
     context = Context(icd, applied, complete, languages, texts)
     findings: list[Finding] = []
@@ -84,11 +90,17 @@ def check(
 
 
 def explain(code: str) -> str:
-    """Return the page of a rule as Markdown: title, reason, a wrong and a right example. Raises `UnknownRule`."""
+    """Return the page of a rule as Markdown: title, reason, a wrong and a right
+    example.
+
+    Raises `UnknownRule`.
+    """
     rule = ALL.get(code.upper())
     if rule is None:
         close = close_to(code.upper(), ALL)
-        raise UnknownRule(f"there is no rule {code}" + (f"; did you mean {close}?" if close else ""))
+        raise UnknownRule(
+            f"there is no rule {code}" + (f"; did you mean {close}?" if close else "")
+        )
     from icdgen.icd.rules import pages
 
     return pages.text(rule.code, rule.severity, rule.page)

@@ -1,4 +1,6 @@
-"""Composite messages, which repeat other frames, and list tables of the manual, which repeat its detail tables."""
+"""Composite messages, which repeat other frames, and list tables of the manual, which
+repeat its detail tables.
+"""
 
 from __future__ import annotations
 
@@ -22,11 +24,20 @@ _IDS = ("id", "set_id", "get_id")
 
 
 def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
-    """Yield each part of each composite message, with the message, its node and the mapping of the part."""
+    """Yield each part of each composite message, with the message, its node and the
+    mapping of the part.
+    """
     for message, node in ctx.messages:
         if message.contains:
-            entries = [(row.get("message"), row.get("at"), row) for row in mappings(message.source["contains"])]
-            rows = {(name, at): row for name, at, row in entries if isinstance(name, str) and isinstance(at, int)}
+            entries = [
+                (row.get("message"), row.get("at"), row)
+                for row in mappings(message.source["contains"])
+            ]
+            rows = {
+                (name, at): row
+                for name, at, row in entries
+                if isinstance(name, str) and isinstance(at, int)
+            }
             for part in message.contains:
                 yield message, node, part, rows[part.message, part.at]
 
@@ -46,7 +57,10 @@ def repeated_frames_exist_and_fit(ctx: Context) -> Iterator[Fault]:
             if frame is not message:
                 text = f"{text}, in {quote(frame.name)}"
             yield Fault(message.source, row.at("message"), text, "name another frame")
-        elif not frame.layout.sequence and part.at + frame.length * 8 > message.length * 8:
+        elif (
+            not frame.layout.sequence
+            and part.at + frame.length * 8 > message.length * 8
+        ):
             end = part.at + frame.length * 8
             text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
             yield Fault(
@@ -58,7 +72,9 @@ def repeated_frames_exist_and_fit(ctx: Context) -> Iterator[Fault]:
 
 
 def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
-    """Return the name of a frame and of all frames that it repeats, directly or indirectly."""
+    """Return the name of a frame and of all frames that it repeats, directly or
+    indirectly.
+    """
     repeated: set[str] = set()
     queue = [frame.name]
     while queue:
@@ -76,7 +92,9 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
     for message, node, part, row in _parts(ctx):
         if message is not composite:
             composite, fields = message, _fields_with_bits(message)
-        frame = next((each for each in ctx.messages_of(node) if each.name == part.message), None)
+        frame = next(
+            (each for each in ctx.messages_of(node) if each.name == part.message), None
+        )
         if frame is None or frame is message or frame.layout.sequence:
             continue  # ICD046 or ICD122 reports it
         start, end = part.at, part.at + frame.length * 8
@@ -101,34 +119,54 @@ def composites_match_their_parts(ctx: Context) -> Iterator[Fault]:
                 )
                 if field.at < start:
                     text = f"{quote(field.name)} crosses bit {start:,}, where {quote(frame.name)} begins"
-                yield Fault.at(source, "at", text, _position_in(frame, field.name, start, source.at("at")))
+                yield Fault.at(
+                    source,
+                    "at",
+                    text,
+                    _position_in(frame, field.name, start, source.at("at")),
+                )
             else:
                 differences = list(_differences(field, counterpart, frame))
                 reported |= {id(fault.owner) for fault in differences}
                 yield from differences
         if missing:
-            names = [f"{quote(field.name)} (bit {at:,})" for at, field in list(missing.items())[:3]]
+            names = [
+                f"{quote(field.name)} (bit {at:,})"
+                for at, field in list(missing.items())[:3]
+            ]
             more = [f"{len(missing) - 3} more"] if len(missing) > 3 else []
             text = (
                 f"{quote(message.name)} repeats {quote(frame.name)}, but no field begins where "
                 f"{listing(names + more)} should begin"
             )
-            yield Fault(message.source, row.at("at"), text, _compare(frame, row.at("at")))
+            yield Fault(
+                message.source, row.at("at"), text, _compare(frame, row.at("at"))
+            )
 
 
 def _fields_with_bits(message: Message) -> list[NodePlace]:
     """Return the fields of the longest frame that own bits."""
-    return [field for field in scalars_in(message.layout) if not (field.is_count or field.is_read_only)]
+    return [
+        field
+        for field in scalars_in(message.layout)
+        if not (field.is_count or field.is_read_only)
+    ]
 
 
 def _compare(frame: Message, here: Place) -> str:
     """Return the help that points to the repeated frame."""
-    return f"compare with {quote(frame.name)} ({line_of(frame.source.at('name'), here)})"
+    return (
+        f"compare with {quote(frame.name)} ({line_of(frame.source.at('name'), here)})"
+    )
 
 
 def _position_in(frame: Message, name: str, start: int, here: Place) -> str:
-    """Return the help with the position of the field of this name in the repeated frame, which begins at bit ``start``."""
-    same_name = next((field for field in _fields_with_bits(frame) if field.name == name), None)
+    """Return the help with the position of the field of this name in the repeated
+    frame, which begins at bit ``start``.
+    """
+    same_name = next(
+        (field for field in _fields_with_bits(frame) if field.name == name), None
+    )
     if same_name is None:
         return _compare(frame, here)
     where = f"{quote(frame.name)} has {quote(name)} at bit {same_name.at:,} ({line_of(same_name.scalar.source.at('at'), here)})"
@@ -140,20 +178,36 @@ def _quoted_value(source: Map, key: str) -> str:
     return quote(source[key]) if key in source else "absent"
 
 
-def _differences(field: NodePlace, counterpart: NodePlace, frame: Message) -> Iterator[Fault]:
-    """Yield a fault with all attributes in which a field differs from its counterpart in the repeated frame."""
+def _differences(
+    field: NodePlace, counterpart: NodePlace, frame: Message
+) -> Iterator[Fault]:
+    """Yield a fault with all attributes in which a field differs from its counterpart
+    in the repeated frame.
+    """
     own, other = field.scalar.source, counterpart.scalar.source
     keys = [key for key in _KEYS if own.get(key) != other.get(key)]
-    keys += (key for key in ("byte_order", "bit_order") if getattr(field, key) != getattr(counterpart, key))
+    keys += (
+        key
+        for key in ("byte_order", "bit_order")
+        if getattr(field, key) != getattr(counterpart, key)
+    )
     scale = field.scalar.scale
     if scale is not None and scale == counterpart.scalar.scale and "formula" in keys:
         keys.remove("formula")  # the formulas differ in spelling only
     if keys:
         key = keys[0]
         place = own.at(key) if key in own else own.place
-        values = "; ".join(f"{key} {_quoted_value(own, key)} here, {_quoted_value(other, key)} there" for key in keys)
+        values = "; ".join(
+            f"{key} {_quoted_value(own, key)} here, {_quoted_value(other, key)} there"
+            for key in keys
+        )
         reference = f"{quote(counterpart.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
-        yield Fault(own, place, f"{quote(field.name)} differs from {reference}: {values}", "correct the wrong one")
+        yield Fault(
+            own,
+            place,
+            f"{quote(field.name)} differs from {reference}: {values}",
+            "correct the wrong one",
+        )
 
 
 @rule("ICD048")
@@ -164,10 +218,17 @@ def list_tables_match_detail_tables(ctx: Context) -> Iterator[Fault]:
             continue
         for key, value in listed.items():
             own = message.source.get(key)
-            if own != value and not (key in _IDS and own is not None and number(own) == number(value)):
+            if own != value and not (
+                key in _IDS and own is not None and number(own) == number(value)
+            ):
                 sides = (listed, message.source)
                 values = [
-                    quote(ctx.written(side, key) if key in _IDS and key in side else side.get(key)) for side in sides
+                    quote(
+                        ctx.written(side, key)
+                        if key in _IDS and key in side
+                        else side.get(key)
+                    )
+                    for side in sides
                 ]
                 listed_value = f"the {key.replace('_', ' ')} {values[0]}"
                 text = f"the list table gives {quote(message.name)} {listed_value}, the detail table {values[1]}"

@@ -38,14 +38,24 @@ def conditions_can_be_met(ctx: Context) -> Iterator[Fault]:
 def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
     for field, (_, message, _) in ctx.fields_with["when"]:
         source = field.source
-        reason = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
+        reason = next(
+            (words for key, words in _NEVER if source.get(key)),
+            f"`{field.type}`" if field.is_bytes else "",
+        )
         if isinstance(message, Struct):
             text = f"{quote(field.name)} is a field of a struct, and optional fields in structs are not supported"
-            yield Fault.at(source, "when", text, "write the fields of the struct into the message, or remove `when`")
+            yield Fault.at(
+                source,
+                "when",
+                text,
+                "write the fields of the struct into the message, or remove `when`",
+            )
         elif reason:
             text = f"{quote(field.name)} is {reason}, but only a number, a flag or an enumeration value can be optional"
             help = "write its elements as single fields, each with `when`, or remove `when`"
-            yield Fault.at(source, "when", text, help if source.get("count") else "remove `when`")
+            yield Fault.at(
+                source, "when", text, help if source.get("count") else "remove `when`"
+            )
         elif variable_length.variable_fields(message.source):
             text = f"{quote(message.name)} has a variable-length field, so its other fields cannot be optional"
             yield Fault.at(source, "when", text, "remove `when`")
@@ -53,7 +63,9 @@ def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD163")
 def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
-    """Report optional fields on links and in composite messages, which read every field of a message."""
+    """Report optional fields on links and in composite messages, which read every field
+    of a message.
+    """
     # Messages with optional fields.
     optional = {id(line.owner.source) for _, line in ctx.fields_with["when"]}
     for node in filter(ctx.is_linked, ctx.icd.nodes):
@@ -61,12 +73,28 @@ def optional_fields_are_supported(ctx: Context) -> Iterator[Fault]:
             if id(message.source) in optional:
                 absent = f"{quote(message.name)} has optional fields"
                 help = "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
-                yield Fault.at(message.source, "name", f"{absent}, which the links in `protocol` do not support", help)
+                yield Fault.at(
+                    message.source,
+                    "name",
+                    f"{absent}, which the links in `protocol` do not support",
+                    help,
+                )
     for message, node in ctx.messages if optional else ():
-        names = {other.name for other in ctx.messages_of(node) if id(other.source) in optional}
+        names = {
+            other.name
+            for other in ctx.messages_of(node)
+            if id(other.source) in optional
+        }
         for part in mappings(message.source.get("contains")):
             name = part.get("message")
-            if isinstance(name, str) and (name in names or id(message.source) in optional):
+            if isinstance(name, str) and (
+                name in names or id(message.source) in optional
+            ):
                 absent = f"{quote(name if name in names else message.name)} has optional fields"
                 text = f"{absent}, so {quote(message.name)} cannot repeat {quote(name)}"
-                yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
+                yield Fault(
+                    message.source,
+                    part.at("message"),
+                    text,
+                    "remove it from `contains`",
+                )

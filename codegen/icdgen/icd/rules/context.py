@@ -1,4 +1,6 @@
-"""Input of the rules: the model, its lines listed once for all rules, and the faults of the rules that ran before."""
+"""Input of the rules: the model, its lines listed once for all rules, and the faults of
+the rules that ran before.
+"""
 
 from __future__ import annotations
 
@@ -37,27 +39,41 @@ class Line(NamedTuple):
     @property
     def orders(self) -> Orders:
         """Byte order and bit order in effect."""
-        return self.node.orders.within(self.owner.layout.orders.within(self.icd_node.orders))
+        return self.node.orders.within(
+            self.owner.layout.orders.within(self.icd_node.orders)
+        )
 
 
 def is_overlay(node: LayoutNode) -> bool:
-    """Return whether a field or an array of fields has `view: true`. For an array, that is an error (ICD029)."""
+    """Return whether a field or an array of fields has `view: true`.
+
+    For an array, that is an error (ICD029).
+    """
     return bool(node.source.get("view", False)) and scalar_of(node) is not None
 
 
 def own_fact(node: Node, *path: str) -> Any:
-    """Return the value at a path of the own protocol section of a node; None if it is absent."""
+    """Return the value at a path of the own protocol section of a node.
+
+    Returns None if it is absent.
+    """
     return at_path(node.source.get("protocol"), path)
 
 
 def section_of(node: Node, *path: str) -> Map | None:
-    """Return the mapping at a path of the own protocol section of a node; None if it is absent."""
+    """Return the mapping at a path of the own protocol section of a node.
+
+    Returns None if it is absent.
+    """
     section = own_fact(node, *path)
     return section if isinstance(section, Map) else None
 
 
 class Context:
-    """Model and faults so far. The model must have been read from files, because rules look at `source`."""
+    """Model and faults so far.
+
+    The model must have been read from files, because rules look at `source`.
+    """
 
     def __init__(
         self,
@@ -71,12 +87,20 @@ class Context:
         self._lines = {file: Lines(text) for file, text in (texts or {}).items()}
         self.languages = languages  # whose names the rules about names check
         self.applied = tuple(applied)
-        self._accepted = {(code, id(owner)) for overlay in self.applied for code, _, owner in overlay.accepts}
+        self._accepted = {
+            (code, id(owner))
+            for overlay in self.applied
+            for code, _, owner in overlay.accepts
+        }
         self.complete = complete
         # Code and fault, of the rules that ran already.
         self.raised: list[tuple[str, Fault]] = []
-        self.messages: list[tuple[Message, Node]] = [(message, node) for node in icd.nodes for message in node.messages]
-        self.structs: list[tuple[Struct, Node]] = [(struct, node) for node in icd.nodes for struct in node.structs]
+        self.messages: list[tuple[Message, Node]] = [
+            (message, node) for node in icd.nodes for message in node.messages
+        ]
+        self.structs: list[tuple[Struct, Node]] = [
+            (struct, node) for node in icd.nodes for struct in node.structs
+        ]
         self.enums: list[Enum] = [enum for node in icd.nodes for enum in node.enums]
         # Of lines.
         self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]
@@ -87,11 +111,15 @@ class Context:
         self.fields: list[tuple[Scalar, Line]] = []
         # Fields by key. Fields with the keys `unit` and `display` include derived
         # values.
-        self.fields_with: dict[str, list[tuple[Scalar, Line]]] = {key: [] for key in RARE_KEYS}
+        self.fields_with: dict[str, list[tuple[Scalar, Line]]] = {
+            key: [] for key in RARE_KEYS
+        }
         derived: list[tuple[Scalar, Line]] = []
         for owner, icd_node in self.owners:
             for node in owner.layout.nodes:
-                line, scalar = Line(node, owner, icd_node), node if type(node) is Scalar else scalar_of(node)
+                line, scalar = Line(node, owner, icd_node), (
+                    node if type(node) is Scalar else scalar_of(node)
+                )
                 if isinstance(node, Derived):
                     derived.append((node.scalar, line))
                     continue
@@ -112,9 +140,13 @@ class Context:
 
     @cached_property
     def behind_variable_fields(self) -> frozenset[int]:
-        """Set of the id() of mappings of fixed-size fields that are placed after a variable-length field (ICD121)."""
+        """Set of the id() of mappings of fixed-size fields that are placed after a
+        variable-length field (ICD121).
+        """
         return frozenset(
-            id(item) for message, _ in self.messages for item in variable_length.fixed_fields_after(message.source)
+            id(item)
+            for message, _ in self.messages
+            for item in variable_length.fixed_fields_after(message.source)
         )
 
     def scope(self, node: Node) -> tuple[Node, ...]:
@@ -122,13 +154,24 @@ class Context:
         scope = self._scopes.get(id(node))
         if scope is None:
             included = reversed(self.icd.included(node))
-            by_name = {other.name: other for other in included if other.name != node.name}
-            scope = (*(other for other in self.icd.nodes if by_name.get(other.name) is other), node)
+            by_name = {
+                other.name: other for other in included if other.name != node.name
+            }
+            scope = (
+                *(
+                    other
+                    for other in self.icd.nodes
+                    if by_name.get(other.name) is other
+                ),
+                node,
+            )
             self._scopes[id(node)] = scope
         return scope
 
     def written(self, owner: Map, key: str) -> str:
-        """Return a number in the spelling of its file, such as ``0x82``, and a list of bytes as ``0x01 0x05``."""
+        """Return a number in the spelling of its file, such as ``0x82``, and a list of
+        bytes as ``0x01 0x05``.
+        """
         value, place = owner[key], owner.at(key)
         if isinstance(value, list):
             return " ".join(f"0x{byte:02X}" for byte in value)
@@ -153,24 +196,37 @@ class Context:
         return next(owner for owner in self.scope(node) if owner.name == message.node)
 
     def broken_messages(self, node: Node) -> set[str]:
-        """Return the names of invalid messages of a node and of its included nodes. The schema check reports each."""
-        entries = (item for owner in self.scope(node) for item in mappings(owner.source.get("messages")))
+        """Return the names of invalid messages of a node and of its included nodes.
+
+        The schema check reports each.
+        """
+        entries = (
+            item
+            for owner in self.scope(node)
+            for item in mappings(owner.source.get("messages"))
+        )
         names = {name for item in entries if isinstance(name := item.get("name"), str)}
         return names - {message.name for message in self.messages_of(node)}
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """Return the protocol facts in effect for a node: the facts of included nodes, overridden by its own."""
+        """Return the protocol facts in effect for a node: the facts of included nodes,
+        overridden by its own.
+        """
         merged: dict[str, Any] = {}
         for owner in self.scope(node):
             merged.update(owner.protocol)
         return merged
 
     def fact(self, node: Node, *path: str) -> Any:
-        """Return the protocol fact in effect for a node at a path; None if it is absent."""
+        """Return the protocol fact in effect for a node at a path.
+
+        Returns None if it is absent.
+        """
         return at_path(self.protocol_of(node), path)
 
     def is_linked(self, node: Node) -> bool:
-        """Return whether the protocol describes links on which each message needs an id and one length.
+        """Return whether the protocol describes links on which each message needs an id
+        and one length.
 
         A `stream` needs neither.
         """

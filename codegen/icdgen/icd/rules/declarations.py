@@ -1,4 +1,6 @@
-"""Identifiers that languages declare for a model, without those of lines that have errors."""
+"""Identifiers that languages declare for a model, without those of lines that have
+errors.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,18 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
 
 # Rules about names that occur twice.
-DUPLICATE_NAMES = frozenset({"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"})
+DUPLICATE_NAMES = frozenset(
+    {"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"}
+)
 
 _TEXT = attrgetter("text")
 
 
 class Declared(NamedTuple):
-    """Identifiers that one language declares. There can be hundreds of thousands, so rules select some by text."""
+    """Identifiers that one language declares.
+
+    There can be hundreds of thousands, so rules select some by text.
+    """
 
     language: str
     reserved: frozenset[str]
@@ -27,7 +34,11 @@ class Declared(NamedTuple):
 
     def spelled(self, texts: Set[str]) -> list[Identifier]:
         """Return the identifiers that have one of these texts."""
-        return [identifier for identifier in self.identifiers if identifier.text in texts] if texts else []
+        return (
+            [identifier for identifier in self.identifiers if identifier.text in texts]
+            if texts
+            else []
+        )
 
 
 def declared(ctx: Context) -> list[Declared]:
@@ -36,23 +47,38 @@ def declared(ctx: Context) -> list[Declared]:
         left_out = _left_out(ctx)
         ctx.declared = []
         for language in ctx.languages if ctx.icd.nodes else ():
-            identifiers = [symbol for symbol in language.identifiers(ctx.icd) if id(symbol.source) not in left_out]
+            identifiers = [
+                symbol
+                for symbol in language.identifiers(ctx.icd)
+                if id(symbol.source) not in left_out
+            ]
             texts = Counter(map(_TEXT, identifiers))
-            ctx.declared.append(Declared(language.name, language.reserved, identifiers, texts))
+            ctx.declared.append(
+                Declared(language.name, language.reserved, identifiers, texts)
+            )
     return ctx.declared
 
 
 def _left_out(ctx: Context) -> set[int]:
     """Return the id() of the mappings whose names are not compared.
 
-    These are fields with an error of their own, and nodes, messages and structs that have the name of an earlier one, with
-    all that they declare: the user will change these lines anyway.
+    These are fields with an error of their own, and nodes, messages and structs that
+    have the name of an earlier one, with all that they declare: the user will change
+    these lines anyway.
     """
-    errors = ((code, fault) for code, fault in ctx.raised if REGISTERED[code].severity == "error")
+    errors = (
+        (code, fault)
+        for code, fault in ctx.raised
+        if REGISTERED[code].severity == "error"
+    )
     faulty = {id(fault.owner) for code, fault in errors if not ctx.accepts(code, fault)}
-    duplicates = {id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES}
+    duplicates = {
+        id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES
+    }
     first = {node.name: node for node in reversed(ctx.icd.nodes)}
-    left_out = {id(node.source) for node in ctx.icd.nodes if first[node.name] is not node}
+    left_out = {
+        id(node.source) for node in ctx.icd.nodes if first[node.name] is not node
+    }
     for owner, icd_node in ctx.owners:
         fields = {id(node.source) for node in owner.layout.nodes}
         if id(owner.source) in duplicates or first[icd_node.name] is not icd_node:

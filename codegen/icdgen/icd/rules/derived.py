@@ -44,10 +44,14 @@ def _faults(message: Message) -> Iterator[Fault]:
             continue
         text, later = item["formula"], {other["name"] for other in items[index:]}
         try:
-            derivation = derived.parse(text, {*(node.name for node in nodes), *later, *failed})
+            derivation = derived.parse(
+                text, {*(node.name for node in nodes), *later, *failed}
+            )
             if failed.isdisjoint(derivation.fields):
                 check_operands(derivation, nodes)
         except FormulaError as error:
-            message_text = f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
+            message_text = (
+                f"{quote(item['name'])} cannot be derived by {quote(text)}: {error}"
+            )
             yield Fault.at(item, "formula", message_text, _HELP)
         failed.add(item["name"])

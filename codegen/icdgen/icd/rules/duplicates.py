@@ -38,23 +38,35 @@ def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T
             seen[value] = item
 
 
-def in_scope(ctx: Context, node: Node, items: Callable[[Node], Iterable[T]]) -> list[tuple[Node, T]]:
-    """Return the items of a node and of its included nodes, each with the node that declares it."""
+def in_scope(
+    ctx: Context, node: Node, items: Callable[[Node], Iterable[T]]
+) -> list[tuple[Node, T]]:
+    """Return the items of a node and of its included nodes, each with the node that
+    declares it.
+    """
     return [(owner, item) for owner in ctx.scope(node) for item in items(owner)]
 
 
 def brings_together(ctx: Context, node: Node, first: Node, second: Node) -> bool:
-    """Return whether ``node`` is the first that has both nodes in its scope, so that a clash is reported once."""
+    """Return whether ``node`` is the first that has both nodes in its scope, so that a
+    clash is reported once.
+    """
     return second is node or (first is not second and first not in ctx.scope(second))
 
 
 def together(node: Node, second: Node) -> str:
-    """Return the end of a message about a clash of two included nodes; empty if ``node`` itself declares the second item."""
+    """Return the end of a message about a clash of two included nodes.
+
+    Returns empty if ``node`` itself declares the second item.
+    """
     return "" if second is node else f", and `{node.name}` includes both"
 
 
 def duplicate_names(
-    ctx: Context, what: str, items: Callable[[Node], Iterable[Message | Enum | Struct]], help: str
+    ctx: Context,
+    what: str,
+    items: Callable[[Node], Iterable[Message | Enum | Struct]],
+    help: str,
 ) -> Iterator[Fault]:
     """Yield a fault for each name that two items in the scope of a node have."""
     for node in ctx.icd.nodes:
@@ -69,7 +81,9 @@ def duplicate_names(
 
 @rule("ICD050")
 def message_names_are_unique(ctx: Context) -> Iterator[Fault]:
-    yield from duplicate_names(ctx, "a message", lambda node: node.messages, PRINTED_TWICE)
+    yield from duplicate_names(
+        ctx, "a message", lambda node: node.messages, PRINTED_TWICE
+    )
 
 
 @rule("ICD051")
@@ -101,7 +115,9 @@ def field_names_are_unique(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD052")
 def enumeration_names_are_unique(ctx: Context) -> Iterator[Fault]:
-    yield from duplicate_names(ctx, "an enumeration", lambda node: node.enums, "rename one, or use the other")
+    yield from duplicate_names(
+        ctx, "an enumeration", lambda node: node.enums, "rename one, or use the other"
+    )
 
 
 @rule("ICD053")
@@ -109,13 +125,19 @@ def enumeration_values_are_unique(ctx: Context) -> Iterator[Fault]:
     for enum in ctx.enums:
         for first, second in _members_with_common_values(enum):
             owner = f"{quote(first.name)} ({line_of(first.source.at('value'), second.source.at('value'))})"
-            related = Related(first.source.at("value"), f"the value of {quote(first.name)}")
+            related = Related(
+                first.source.at("value"), f"the value of {quote(first.name)}"
+            )
             text = f"{owner} already has the value {max(first.value, second.value)}"
-            yield Fault.at(second.source, "value", text, "correct one of them", related=related)
+            yield Fault.at(
+                second.source, "value", text, "correct one of them", related=related
+            )
 
 
 def _members_with_common_values(enum: Enum) -> Iterator[tuple[Member, Member]]:
-    """Yield pairs of members that have a value in common, sorted by the order of the second in the file."""
+    """Yield pairs of members that have a value in common, sorted by the order of the
+    second in the file.
+    """
     order = {id(member): index for index, member in enumerate(enum.members)}
     # Of the members with smaller values, the one with the largest last value.
     furthest: Member | None = None
@@ -125,13 +147,18 @@ def _members_with_common_values(enum: Enum) -> Iterator[tuple[Member, Member]]:
             pairs.append(sorted((furthest, member), key=lambda each: order[id(each)]))
         if furthest is None or member.last > furthest.last:
             furthest = member
-    yield from ((first, second) for first, second in sorted(pairs, key=lambda pair: order[id(pair[1])]))
+    yield from (
+        (first, second)
+        for first, second in sorted(pairs, key=lambda pair: order[id(pair[1])])
+    )
 
 
 @rule("ICD054")
 def member_names_are_unique(ctx: Context) -> Iterator[Fault]:
     for enum in ctx.enums:
-        for first, second in _twice(enum.members, lambda member: (member.name, member.identifier)):
+        for first, second in _twice(
+            enum.members, lambda member: (member.name, member.identifier)
+        ):
             value = f"{first.value} ({line_of(first.source.at('name'), second.source.at('name'))})"
             message = f"{quote(second.name)} is already the name of {value}"
             help = "if the manual prints it so, give each its own `identifier:`"
@@ -159,13 +186,17 @@ def aliases_are_unambiguous(ctx: Context) -> Iterator[Fault]:
                     yield fault
     for owner, node in ctx.owners:
         if any(line.aliases for line in owner.layout.nodes):
-            yield from _ambiguous_aliases([place.node for place in places_in(owner.layout)], node.vocabulary)
+            yield from _ambiguous_aliases(
+                [place.node for place in places_in(owner.layout)], node.vocabulary
+            )
     for node in ctx.icd.nodes:
         for enum in node.enums:
             yield from _ambiguous_aliases(enum.members, node.vocabulary)
 
 
-def _ambiguous_aliases(items: Sequence[Aliased], vocabulary: tuple[str, ...]) -> Iterator[Fault]:
+def _ambiguous_aliases(
+    items: Sequence[Aliased], vocabulary: tuple[str, ...]
+) -> Iterator[Fault]:
     """Yield a fault for each alias that equals a name, or another alias, of the items."""
     if not any(item.aliases for item in items):
         return
@@ -174,7 +205,12 @@ def _ambiguous_aliases(items: Sequence[Aliased], vocabulary: tuple[str, ...]) ->
         """Return the form in which a search compares names."""
         return "".join(naming.words(text, vocabulary)) or text.casefold()
 
-    names = {words(text): item for item in reversed(items) for text in (item.name, item.identifier) if text}
+    names = {
+        words(text): item
+        for item in reversed(items)
+        for text in (item.name, item.identifier)
+        if text
+    }
     by_alias: dict[str, Aliased] = {}  # the first item of each alias
     for item in items:
         for index, alias in enumerate(item.aliases):
@@ -188,12 +224,18 @@ def _ambiguous_aliases(items: Sequence[Aliased], vocabulary: tuple[str, ...]) ->
                 text, help = f"{text}its own name", "remove the alias"
             elif key in names:
                 line = line_of(other.source.at("name"), place)
-                text, help = f"{text}also the name of {quote(other.name)}, in {line}", "choose another alias"
+                text, help = (
+                    f"{text}also the name of {quote(other.name)}, in {line}",
+                    "choose another alias",
+                )
             elif other is item:
                 text, help = f"{text}listed twice", "remove one of them"
             else:
                 line = line_of(other.source.at("aliases"), place)
-                text, help = f"{text}also an alias of {quote(other.name)}, in {line}", "keep one of them"
+                text, help = (
+                    f"{text}also an alias of {quote(other.name)}, in {line}",
+                    "keep one of them",
+                )
             yield Fault(item.source, place, text, help)
 
 
@@ -202,24 +244,39 @@ def node_names_are_unique(ctx: Context) -> Iterator[Fault]:
     for first, second in _twice(ctx.icd.nodes, lambda node: node.name):
         head = second.source["node"]
         message = f"another file has declared the node `{second.name}`: {first.file}"
-        yield Fault.at(head, "name", message, "name one of them differently, or leave one file out")
+        yield Fault.at(
+            head, "name", message, "name one of them differently, or leave one file out"
+        )
 
 
 @rule("ICD058")
 def unit_symbols_are_unique(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         pairs = in_scope(ctx, node, _declared_units)
-        for (first_node, first), (second_node, second) in _twice(pairs, lambda pair: pair[1]["symbol"]):
+        for (first_node, first), (second_node, second) in _twice(
+            pairs, lambda pair: pair[1]["symbol"]
+        ):
             if brings_together(ctx, node, first_node, second_node):
                 line = line_of(first.at("symbol"), second.at("symbol"))
                 included = together(node, second_node)
                 message = f"the unit {quote(second['symbol'])} is already declared, in {line}{included}"
                 related = Related(first.at("symbol"), "the first declaration")
-                yield Fault.at(second, "symbol", message, "remove one of the declarations", related=related)
+                yield Fault.at(
+                    second,
+                    "symbol",
+                    message,
+                    "remove one of the declarations",
+                    related=related,
+                )
         for unit in _declared_units(node):
             if unit["symbol"] in STANDARD:
                 message = f"the unit {quote(unit['symbol'])} is built in: {STANDARD[unit['symbol']].quantity}"
-                yield Fault.at(unit, "symbol", message, "remove the declaration, or choose another symbol")
+                yield Fault.at(
+                    unit,
+                    "symbol",
+                    message,
+                    "remove the declaration, or choose another symbol",
+                )
 
 
 def _declared_units(node: Node) -> Iterator[Map]:

@@ -1,4 +1,6 @@
-"""Protocol section `stream`: links whose frames have header and trailer fields with roles."""
+"""Protocol section `stream`: links whose frames have header and trailer fields with
+roles.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,12 @@ MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # largest number of bytes that a field can be in
 DATA = "data"
 # Keys that only fields of one role can have.
-ONLY_WITH = {"counts": "length", "plus": "length", "per": "sequence", "checksum": "checksum"}
+ONLY_WITH = {
+    "counts": "length",
+    "plus": "length",
+    "per": "sequence",
+    "checksum": "checksum",
+}
 # Keys of a protocol section with `stream`.
 ALLOWED_WITH_STREAM = ("stream", "checksums", "client", "uart", "boot")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
@@ -46,7 +53,9 @@ def links(ctx: Context) -> Iterator[Link]:
     for node in ctx.icd.nodes:
         section = section_of(node, "stream")
         if section is not None:
-            rows = [(part, row) for part in PARTS for row in mappings(section.get(part))]
+            rows = [
+                (part, row) for part in PARTS for row in mappings(section.get(part))
+            ]
             # Otherwise the schema check reports the fields.
             if all(_is_sound(row) for _, row in rows):
                 yield Link(node, section, rows)
@@ -55,7 +64,11 @@ def links(ctx: Context) -> Iterator[Link]:
 def _is_sound(row: Map) -> bool:
     """Return whether the values of a field that these rules use conform to the schema."""
     numbers: list[Any] = [row.get("at"), row.get("bits"), row.get("plus", 0)]
-    if not all(type(number) is int for number in numbers) or numbers[0] < 0 or not 0 < numbers[1] <= WORD:
+    if (
+        not all(type(number) is int for number in numbers)
+        or numbers[0] < 0
+        or not 0 < numbers[1] <= WORD
+    ):
         return False
     return isinstance(row.get("role"), str) and isinstance(row.get("checksum", ""), str)
 
@@ -67,7 +80,9 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
         for key in protocol:
             if key not in ALLOWED_WITH_STREAM:
                 message = f"`{key}` belongs to another kind of link than `stream` and has no effect"
-                yield Fault.at_key(protocol, key, message, f"remove `{key}` or `stream`")
+                yield Fault.at_key(
+                    protocol, key, message, f"remove `{key}` or `stream`"
+                )
         uart = protocol.get("uart")
         client = protocol.get("client")
         for key in ("poll_interval_ms", "poll_timeout_ms"):
@@ -77,13 +92,20 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
         for key in ("framing", "acknowledge"):
             if isinstance(uart, Map) and key in uart:
                 message = f"`uart: {key}` and `stream` are two ways to delimit messages, and a device uses one of them"
-                yield Fault.at_key(uart, key, message, f"remove `{key}`, or remove `stream`")
+                yield Fault.at_key(
+                    uart, key, message, f"remove `{key}`, or remove `stream`"
+                )
     for node in ctx.icd.nodes:
         checksums = section_of(node, "checksums")
         if checksums is not None and "stream" not in ctx.protocol_of(node):
             protocol = node.source["protocol"]
             message = "there is no `stream` whose messages these checksums could be of"
-            yield Fault.at_key(protocol, "checksums", message, "describe the link as a `stream`, or remove them")
+            yield Fault.at_key(
+                protocol,
+                "checksums",
+                message,
+                "describe the link as a `stream`, or remove them",
+            )
 
 
 @rule("ICD171")
@@ -94,17 +116,34 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
             role = row["role"]
             if role in seen and role not in FIXED:
                 message = f"there are two fields of the role `{role}`"
-                yield Fault.at(row, "role", message, "give one of them its own role, or make it a `constant`")
+                yield Fault.at(
+                    row,
+                    "role",
+                    message,
+                    "give one of them its own role, or make it a `constant`",
+                )
             seen.add(role)
             if role in FIXED and "value" not in row:
-                yield Fault.at(row, "role", f"a `{role}` has no `value`", "add `value:`, what it always is")
+                yield Fault.at(
+                    row,
+                    "role",
+                    f"a `{role}` has no `value`",
+                    "add `value:`, what it always is",
+                )
             if role in ("id", "length", "checksum") and "value" in row:
                 message = f"the {role} follows from the message, so it has no `value`"
-                yield Fault.at_key(row, "value", message, "remove `value`, or make the field a `constant`")
+                yield Fault.at_key(
+                    row,
+                    "value",
+                    message,
+                    "remove `value`, or make the field a `constant`",
+                )
             for key, owner in ONLY_WITH.items():
                 if key in row and role != owner:
                     message = f"`{key}` applies to a field of the role `{owner}`, not of a `{role}`"
-                    yield Fault.at_key(row, key, message, "remove it, or correct `role`")
+                    yield Fault.at_key(
+                        row, key, message, "remove it, or correct `role`"
+                    )
         yield from _missing(ctx, link)
 
 
@@ -116,21 +155,31 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             help = "add one, or choose another value of `delimited_by`"
             message = "no field has the role `length`, which delimits messages"
             yield Fault.at(link.section, "delimited_by", message, help)
-        elif any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
+        elif any(
+            part == "trailer" for part, row in link.rows if row["role"] == "length"
+        ):
             message = "the length that delimits messages is after their data"
             yield Fault.at(lengths[0], "role", message, "move it to `header`")
     for direction in DIRECTIONS:
-        if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of("id"):
+        if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of(
+            "id"
+        ):
             message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
             yield Fault.at(
-                link.section, "delimited_by", message, "add one: the link has no other way to distinguish them"
+                link.section,
+                "delimited_by",
+                message,
+                "add one: the link has no other way to distinguish them",
             )
             return
 
 
 def _ids(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
     """Return the messages of a node in a direction, with their ids."""
-    messages = [(getattr(message, f"{direction}_id"), message) for message in ctx.messages_of(node)]
+    messages = [
+        (getattr(message, f"{direction}_id"), message)
+        for message in ctx.messages_of(node)
+    ]
     return [(id, message) for id, message in messages if id is not None]
 
 
@@ -143,20 +192,34 @@ def frame_fields_fit(ctx: Context) -> Iterator[Fault]:
 
 
 def _places(link: Link) -> Iterator[Fault]:
-    """Yield the faults of fields that are in too many bytes, or not contiguous. ICD092 reports overlaps."""
+    """Yield the faults of fields that are in too many bytes, or not contiguous.
+
+    ICD092 reports overlaps.
+    """
     for _, row in link.rows:
         bits = range(row["at"], row["at"] + row["bits"])
         size = bits[-1] // 8 - bits[0] // 8 + 1
         if size > MOST_SPAN:
-            message = f"the {row['role']} spans {count(size, 'byte')}, more than {MOST_SPAN}"
-            yield Fault.at(row, "bits", message, "make it narrower, or begin it at a whole byte")
+            message = (
+                f"the {row['role']} spans {count(size, 'byte')}, more than {MOST_SPAN}"
+            )
+            yield Fault.at(
+                row, "bits", message, "make it narrower, or begin it at a whole byte"
+            )
         # A field across bytes is contiguous only if the byte order continues the bit
         # order: big with msb0, little with lsb0.
         order = row.get("byte_order", link.node.byte_order)
-        if size > 1 and row["bits"] % 8 + row["at"] % 8 and (order == "big") != (link.node.bit_order == "msb0"):
+        if (
+            size > 1
+            and row["bits"] % 8 + row["at"] % 8
+            and (order == "big") != (link.node.bit_order == "msb0")
+        ):
             message = f"the {row['role']} crosses bytes in {order} order, though bits are {link.node.bit_order}"
             yield Fault.at(
-                row, "at", message, "use whole bytes: only these can have a byte order that differs from the bit order"
+                row,
+                "at",
+                message,
+                "use whole bytes: only these can have a byte order that differs from the bit order",
             )
 
 
@@ -174,8 +237,12 @@ def _values(link: Link) -> Iterator[Fault]:
 
 
 def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
-    """Yield the faults of fields that are too narrow for the ids and lengths of the messages."""
-    messages = [pair for direction in DIRECTIONS for pair in _ids(ctx, link.node, direction)]
+    """Yield the faults of fields that are too narrow for the ids and lengths of the
+    messages.
+    """
+    messages = [
+        pair for direction in DIRECTIONS for pair in _ids(ctx, link.node, direction)
+    ]
     for row in link.of("id"):
         id, message = max(messages, key=lambda pair: pair[0], default=(0, None))
         if message is not None and id >> row["bits"]:
@@ -183,29 +250,51 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
             yield Fault.at(row, "bits", text, "make the field wider, or correct the id")
     overhead = 0  # bytes of header and trailer
     for part in PARTS:
-        ends = (row["at"] + row["bits"] for part_of_row, row in link.rows if part_of_row == part)
+        ends = (
+            row["at"] + row["bits"]
+            for part_of_row, row in link.rows
+            if part_of_row == part
+        )
         # Round up to whole bytes.
         overhead += -(-max(ends, default=0) // 8)
-    empty = next((message for _, message in messages if message.layout.shortest == 0 and overhead == 0), None)
+    empty = next(
+        (
+            message
+            for _, message in messages
+            if message.layout.shortest == 0 and overhead == 0
+        ),
+        None,
+    )
     if empty is not None:
         text = f"no byte is sent for {quote(empty.name)}, which can have no data"
-        yield Fault.at(link.section, "delimited_by", text, "add a field to `header`, such as an id")
+        yield Fault.at(
+            link.section, "delimited_by", text, "add a field to `header`, such as an id"
+        )
     for row in link.of("length"):
         plus = row.get("plus", 0) + (overhead if row.get("counts") == "message" else 0)
         for _, message in messages:
             shortest, longest = message.layout.shortest + plus, message.length + plus
             if longest >= 1 << row["bits"]:
                 text = f"a length of {count(row['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
-                yield Fault.at(row, "bits", text, "make the field wider, or the message shorter")
+                yield Fault.at(
+                    row, "bits", text, "make the field wider, or the message shorter"
+                )
                 break
             if shortest < 0:
                 text = f"the length of {quote(message.name)} would be {shortest}"
-                yield Fault.at(row, "plus", text, "correct `plus`, or let the message have more bytes")
+                yield Fault.at(
+                    row,
+                    "plus",
+                    text,
+                    "correct `plus`, or let the message have more bytes",
+                )
                 break
     for row in link.of("sequence"):
         if row["bits"] > MOST_SEQUENCE_BITS:
             text = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
-            yield Fault.at(row, "bits", text, "make it narrower, and the rest a `constant`")
+            yield Fault.at(
+                row, "bits", text, "make it narrower, and the rest a `constant`"
+            )
 
 
 @rule("ICD173")
@@ -220,34 +309,71 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
             used.add(name)
             declared = checksums.get(name)
             if declared is None:
-                message = f"no checksum is called {quote(name)}" if name else "the field names no checksum"
-                names = listing(f"`{key}`" for key in checksums) if checksums else "there are none"
-                yield Fault.at(row, "role", message, f"name one of `checksums` in `checksum:`: {names}")
+                message = (
+                    f"no checksum is called {quote(name)}"
+                    if name
+                    else "the field names no checksum"
+                )
+                names = (
+                    listing(f"`{key}`" for key in checksums)
+                    if checksums
+                    else "there are none"
+                )
+                yield Fault.at(
+                    row,
+                    "role",
+                    message,
+                    f"name one of `checksums` in `checksum:`: {names}",
+                )
             elif _is_valid(declared):
                 yield from _checksum(ctx, link, part, row, declared)
         for name in checksums:
             if name not in used:
                 message = f"no field of the frame has the checksum {quote(name)}"
                 help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
-                yield Fault(section_of(link.node), checksums.key_at(name), message, help)
+                yield Fault(
+                    section_of(link.node), checksums.key_at(name), message, help
+                )
 
 
 def _is_valid(checksum: object) -> bool:
-    """Return whether the values of a checksum that these rules use conform to the schema."""
-    if not isinstance(checksum, Map) or type(checksum.get("width")) is not int or not 0 < checksum["width"] <= 32:
+    """Return whether the values of a checksum that these rules use conform to the
+    schema.
+    """
+    if (
+        not isinstance(checksum, Map)
+        or type(checksum.get("width")) is not int
+        or not 0 < checksum["width"] <= 32
+    ):
         return False
     covers = checksum.get("covers")
-    bounds = [covers.get(key) for key in ("from", "to")] if isinstance(covers, Map) else [None]
-    return isinstance(checksum.get("kind"), str) and all(isinstance(bound, str) for bound in bounds)
+    bounds = (
+        [covers.get(key) for key in ("from", "to")]
+        if isinstance(covers, Map)
+        else [None]
+    )
+    return isinstance(checksum.get("kind"), str) and all(
+        isinstance(bound, str) for bound in bounds
+    )
 
 
-def _checksum(ctx: Context, link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
+def _checksum(
+    ctx: Context, link: Link, part: str, row: Map, checksum: Map
+) -> Iterator[Fault]:
     """Yield the faults of a checksum and of the field that it is sent in."""
     width: int = checksum["width"]
     required = BITS_OF.get(checksum["kind"])
     if required and width != required:
-        message = f"a checksum of kind `{checksum['kind']}` has {required} bits, not {width}"
-        yield Fault.at(checksum, "width", message, f"write `width: {required}`, or correct `kind`", str(required))
+        message = (
+            f"a checksum of kind `{checksum['kind']}` has {required} bits, not {width}"
+        )
+        yield Fault.at(
+            checksum,
+            "width",
+            message,
+            f"write `width: {required}`, or correct `kind`",
+            str(required),
+        )
         width = required  # the values below are checked against the right width
     elif width != row["bits"]:
         message = f"the checksum has {width} bits, its field {row['bits']}"
@@ -260,27 +386,40 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, checksum: Map) -> I
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         if isinstance(checksum.get(key), int) and checksum[key] >> width > 0:
             yield Fault.at(
-                checksum, key, f"`{key}` does not fit {count(width, 'bit')}", *of_wide_value(key, checksum[key], width)
+                checksum,
+                key,
+                f"`{key}` does not fit {count(width, 'bit')}",
+                *of_wide_value(key, checksum[key], width),
             )
     if checksum["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
             if key in checksum:
                 message = f"`{key}` applies to a CRC, not to a checksum of kind `{checksum['kind']}`"
-                yield Fault.at_key(checksum, key, message, "remove it, or correct `kind`")
+                yield Fault.at_key(
+                    checksum, key, message, "remove it, or correct `kind`"
+                )
     yield from _covered(link, part, row, checksum)
     yield from _seeds(ctx, link, checksum)
 
 
 def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
-    """Yield the faults of `covers`, which must include the data but not the checksum itself."""
+    """Yield the faults of `covers`, which must include the data but not the checksum
+    itself.
+    """
     covers = checksum["covers"]
     bounds: dict[str, Map | None] = {}
     for key, where in (("from", "header"), ("to", "trailer")):
         role = covers[key]
-        matches = [(part_of_row, field) for part_of_row, field in link.rows if field["role"] == role]
+        matches = [
+            (part_of_row, field)
+            for part_of_row, field in link.rows
+            if field["role"] == role
+        ]
         if role != DATA and not matches:
             message = f"no field has the role `{role}`"
-            yield Fault.at(covers, key, message, "name the role of a field of the frame, or `data`")
+            yield Fault.at(
+                covers, key, message, "name the role of a field of the frame, or `data`"
+            )
             return
         if role != DATA and matches[0][0] != where:
             message = f"a checksum covers the data, but `{key}: {role}` names a field of the {matches[0][0]}"
@@ -292,13 +431,24 @@ def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
     begin = first["at"] if first else None
     end = last["at"] + last["bits"] if last else 0
     if begin is not None and begin % 8:
-        yield Fault.at(covers, "from", "it begins within a byte", "begin with a field at a whole byte")
+        yield Fault.at(
+            covers,
+            "from",
+            "it begins within a byte",
+            "begin with a field at a whole byte",
+        )
     # A checksum in the header must come before the first covered byte, one in the
     # trailer after the last.
-    inside = part == "header" and begin is not None and row["at"] + row["bits"] > begin // 8 * 8
+    inside = (
+        part == "header"
+        and begin is not None
+        and row["at"] + row["bits"] > begin // 8 * 8
+    )
     if inside or (part == "trailer" and row["at"] // 8 < -(-end // 8)):
         message = "the checksum covers itself"
-        help = "correct `covers`, so that it ends before the checksum or begins after it"
+        help = (
+            "correct `covers`, so that it ends before the checksum or begins after it"
+        )
         yield Fault.at(covers, "from" if inside else "to", message, help)
 
 
@@ -307,7 +457,9 @@ def _seeds(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
     seeds = checksum.get("seeds")
     if not isinstance(seeds, Map):
         return
-    names, broken = [message.name for message in ctx.messages_of(link.node)], ctx.broken_messages(link.node)
+    names, broken = [
+        message.name for message in ctx.messages_of(link.node)
+    ], ctx.broken_messages(link.node)
     for name in seeds:
         if name not in names and name not in broken:
             help = suggestion(name, names, "correct the name")
@@ -317,14 +469,17 @@ def _seeds(ctx: Context, link: Link, checksum: Map) -> Iterator[Fault]:
         message = f"{quote(without_seed[0])} has no seed" + (
             f", nor have {len(without_seed) - 1} others" if without_seed[1:] else ""
         )
-        yield Fault.at_key(checksum, "seeds", message, "give every message a seed, or remove `seeds`")
+        yield Fault.at_key(
+            checksum, "seeds", message, "give every message a seed, or remove `seeds`"
+        )
 
 
 @rule("ICD174")
 def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
     """Report messages that share an id and differ in seed or `may_end_early`.
 
-    A receiver can distinguish them only by their data, after it has checked and removed the framing.
+    A receiver can distinguish them only by their data, after it has checked and removed
+    the framing.
     """
     for link in links(ctx):
         checksums = section_of(link.node, "checksums") or unread()
@@ -335,17 +490,28 @@ def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
                 first = first_of_id.setdefault(id, message)
                 if bool(message.may_end_early) != bool(first.may_end_early):
                     early = message if message.may_end_early else first
-                    text = (
-                        f"zeros of {quote(early.name)} may be omitted, but not the zeros of another message with its id"
+                    text = f"zeros of {quote(early.name)} may be omitted, but not the zeros of another message with its id"
+                    yield Fault.at(
+                        early.source,
+                        "may_end_early",
+                        text,
+                        "add `may_end_early` to both, or to neither",
                     )
-                    yield Fault.at(early.source, "may_end_early", text, "add `may_end_early` to both, or to neither")
                 for seeds in all_seeds:
-                    if not isinstance(seeds, Map) or not {message.name, first.name} <= seeds.keys():
+                    if (
+                        not isinstance(seeds, Map)
+                        or not {message.name, first.name} <= seeds.keys()
+                    ):
                         continue
                     if seeds[message.name] != seeds[first.name]:
                         names = f"{quote(message.name)} has a seed different from that of {quote(first.name)}"
                         text = f"{names}, which has the same id"
-                        yield Fault.at(seeds, message.name, text, "give both the same seed, or other ids")
+                        yield Fault.at(
+                            seeds,
+                            message.name,
+                            text,
+                            "give both the same seed, or other ids",
+                        )
 
 
 @rule("ICD176")
@@ -356,8 +522,16 @@ def replies_exist(ctx: Context) -> Iterator[Fault]:
             continue
         broken = ctx.broken_messages(link.node)
         for request, response in replies.items():
-            for direction, name, fault in ((TELECOMMAND, request, Fault.at_key), (TELEMETRY, response, Fault.at)):
+            for direction, name, fault in (
+                (TELECOMMAND, request, Fault.at_key),
+                (TELEMETRY, response, Fault.at),
+            ):
                 names = {message.name for _, message in _ids(ctx, link.node, direction)}
                 if isinstance(name, str) and name not in names and name not in broken:
                     help = suggestion(name, names, "correct the name")
-                    yield fault(replies, request, f"there is no {direction} {quote(name)}", *help)
+                    yield fault(
+                        replies,
+                        request,
+                        f"there is no {direction} {quote(name)}",
+                        *help,
+                    )

@@ -23,9 +23,13 @@ def accepted_findings_exist(ctx: Context) -> Iterator[Fault]:
             if code in REGISTERED and (code, id(owner)) not in raised:
                 unmatched.setdefault((code, place), []).append(owner.place)
     for (code, place), targets in unmatched.items():
-        more = f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""
+        more = (
+            f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""
+        )
         message = f"there is no finding {code} to accept in {line_of(targets[0], place)}{more}"
-        yield Fault(None, place, message, f"remove {code} here: the finding no longer exists")
+        yield Fault(
+            None, place, message, f"remove {code} here: the finding no longer exists"
+        )
 
 
 @rule("ICD085")
@@ -33,5 +37,7 @@ def accepted_rules_exist(ctx: Context) -> Iterator[Fault]:
     for applied in ctx.applied:
         for code, place, _ in applied.accepts:
             if code not in REGISTERED:
-                help, fix = suggestion(code, REGISTERED, "`icdgen rule` lists the rules")
+                help, fix = suggestion(
+                    code, REGISTERED, "`icdgen rule` lists the rules"
+                )
                 yield Fault.of_place(None, place, f"there is no rule {code}", help, fix)

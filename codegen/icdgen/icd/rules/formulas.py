@@ -27,7 +27,11 @@ _ONLY_RAW = "nothing to do if setting the raw value is enough; else correct the 
 @rule("ICD060")
 def formulas_are_valid(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["formula"]:
-        if not field.has_formula and field.type in SCALED and "points" not in field.source:
+        if (
+            not field.has_formula
+            and field.type in SCALED
+            and "points" not in field.source
+        ):
             text = field.source["formula"]
             try:
                 curve.parse(text)
@@ -42,8 +46,15 @@ def only_numbers_have_formulas(ctx: Context) -> Iterator[Fault]:
     for key, what in (("formula", "formula"), ("points", "lookup table")):
         for field, _ in ctx.fields_with[key]:
             if field.type not in SCALED:
-                message = f"{quote(field.name)} is `{field.type}`, which takes no {what}"
-                yield Fault.at(field.source, key, message, "only numbers have one: uint, int and float")
+                message = (
+                    f"{quote(field.name)} is `{field.type}`, which takes no {what}"
+                )
+                yield Fault.at(
+                    field.source,
+                    key,
+                    message,
+                    "only numbers have one: uint, int and float",
+                )
 
 
 @rule("ICD067")
@@ -68,32 +79,46 @@ def tables_declare_outside(ctx: Context) -> Iterator[Fault]:
         if table is None or not table.points or "outside" in source:
             continue
         if field.type == "float" or not table.covers(field.raw_min, field.raw_max):
-            ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
-            extent = " to ".join(f"{raw:g}" for raw in (table.points[0][0], table.points[-1][0]))
-            message = (
-                f"raw values of {quote(field.name)} are {ends}, its points go from {extent}, and `outside` is missing"
+            ends = (
+                "any number"
+                if field.type == "float"
+                else f"{field.raw_min:,} to {field.raw_max:,}"
             )
+            extent = " to ".join(
+                f"{raw:g}" for raw in (table.points[0][0], table.points[-1][0])
+            )
+            message = f"raw values of {quote(field.name)} are {ends}, its points go from {extent}, and `outside` is missing"
             yield Fault.at(source, "points", message, _BEYOND)
     for field, _ in ctx.fields_with["outside"]:
         if "points" not in field.source:
             message = f"{quote(field.name)} has `outside` and no points"
-            yield Fault.at(field.source, "outside", message, "add `points`, or remove it")
+            yield Fault.at(
+                field.source, "outside", message, "add `points`, or remove it"
+            )
 
 
 @rule("ICD069", severity="warning")
 def raw_values_reach_the_table(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["points"]:
         table, source = field.curve, field.source
-        if table is None or table.outside not in (curve.CLAMP, curve.REFUSE) or field.type == "float":
+        if (
+            table is None
+            or table.outside not in (curve.CLAMP, curve.REFUSE)
+            or field.type == "float"
+        ):
             continue
         first, last = table.points[0][0], table.points[-1][0]
         if last < field.raw_min or field.raw_max < first:
-            what = "the same physical value" if table.outside == curve.CLAMP else "no physical value"
-            values = f"its raw values from {field.raw_min:,} to {field.raw_max:,}"
-            message = (
-                f"the points of {quote(field.name)} go from {first:g} to {last:g}, {values}: each of them has {what}"
+            what = (
+                "the same physical value"
+                if table.outside == curve.CLAMP
+                else "no physical value"
             )
-            yield Fault.at(source, "points", message, "correct the points, or `bits` or `type`")
+            values = f"its raw values from {field.raw_min:,} to {field.raw_max:,}"
+            message = f"the points of {quote(field.name)} go from {first:g} to {last:g}, {values}: each of them has {what}"
+            yield Fault.at(
+                source, "points", message, "correct the points, or `bits` or `type`"
+            )
 
 
 @rule("ICD062")
@@ -106,9 +131,7 @@ def formulas_have_the_stated_direction(ctx: Context) -> Iterator[Fault]:
         elif stated != (gives := _gives(field)):
             expected = f"should give the {stated} value according to the manual"
             message = f"the formula of {quote(field.name)} {expected}, but gives the {gives} one"
-            help = (
-                "decide in an erratum: `held` has `formula_for: null` if the formula is right, else the right formula"
-            )
+            help = "decide in an erratum: `held` has `formula_for: null` if the formula is right, else the right formula"
         else:
             message = f"the formula of {quote(field.name)} gives the {stated} value, as the manual says, so the key is not needed"
             help = "remove `formula_for`"
@@ -120,7 +143,9 @@ def formulas_have_the_stated_direction(ctx: Context) -> Iterator[Fault]:
 
 
 def _stated(stated: Map, node: Node) -> Iterator[Fault]:
-    """Yield the faults of `formula_for` of the ICD, which applies to all messages of a kind."""
+    """Yield the faults of `formula_for` of the ICD, which applies to all messages of a
+    kind.
+    """
     for kind, stated_for in stated.items():
         contrary = [
             field
@@ -137,9 +162,7 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
             message = f"the formulas of {kind} messages should give the {stated_for} value according to the manual, but {other}"
             help = f"decide in an erratum: `held` has `{kind}: null` if the formulas are right"
         else:
-            message = (
-                f"no formula of a {kind} message gives anything but the {stated_for} value, so the key is not needed"
-            )
+            message = f"no formula of a {kind} message gives anything but the {stated_for} value, so the key is not needed"
             help = f"remove `{kind}`"
         yield Fault.at(stated, kind, message, help)
 
@@ -154,7 +177,9 @@ def only_numbers_have_units(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["unit"]:
         if field.type in ("bool", "enum") or field.is_bytes:
             message = f"{quote(field.name)} is `{field.type}`, which has no unit"
-            yield Fault.at(field.source, "unit", message, "remove `unit`, or correct `type`")
+            yield Fault.at(
+                field.source, "unit", message, "remove `unit`, or correct `type`"
+            )
 
 
 @rule("ICD064")
@@ -162,7 +187,11 @@ def formulas_are_computable(ctx: Context) -> Iterator[Fault]:
     checked: dict[str, bool] = {}
     for field, _ in (*ctx.fields_with["formula"], *ctx.fields_with["points"]):
         scale, own = field.scale, field.curve
-        if own is not None and field.type != "float" and not curve.is_finite(own, field.raw_min, field.raw_max):
+        if (
+            own is not None
+            and field.type != "float"
+            and not curve.is_finite(own, field.raw_min, field.raw_max)
+        ):
             key, what = _calibration(field)
             message = f"the {what} of {quote(field.name)} exceeds the range of a double"
             yield Fault.at(field.source, key, message, "correct an exponent, or `bits`")
@@ -193,7 +222,11 @@ def sent_formulas_are_invertible(ctx: Context) -> Iterator[Fault]:
         if field.type == "float":
             why = "for a float, only a linear formula can be inverted"
         elif field.bits > curve.MOST_BITS:
-            what = "table" if field.curve is not None and field.curve.points else "polynomial"
+            what = (
+                "table"
+                if field.curve is not None and field.curve.points
+                else "polynomial"
+            )
             why = f"for a {what}, this is only computed for fields of up to {curve.MOST_BITS} bits"
         elif field.settable_raws[0] >= field.settable_raws[1]:
             why = "no two raw values lie between its points"
@@ -205,7 +238,9 @@ def sent_formulas_are_invertible(ctx: Context) -> Iterator[Fault]:
 
 
 def _senders(ctx: Context) -> dict[int, Message]:
-    """Return the first sent message that contains each layout, by the id() of the layout."""
+    """Return the first sent message that contains each layout, by the id() of the
+    layout.
+    """
     senders: dict[int, Message] = {}
     for message, node in ctx.messages:
         if message.telecommand_id is not None:
@@ -219,11 +254,19 @@ def _senders(ctx: Context) -> dict[int, Message]:
 
 def _calibration(field: Scalar) -> tuple[str, str]:
     """Return the key for the calibration of a field, and a word for messages."""
-    return ("points", "table") if field.curve is not None and field.curve.points else ("formula", "formula")
+    return (
+        ("points", "table")
+        if field.curve is not None and field.curve.points
+        else ("formula", "formula")
+    )
 
 
 def _shown(number: int) -> str:
     """Return a number in words that do not grow with its size."""
     if abs(number) < 1 << 64:
         return f"{number:,}"
-    return f"{number:.2e}" if abs(number) < 1 << 1000 else f"(a number of {number.bit_length():,} bits)"
+    return (
+        f"{number:.2e}"
+        if abs(number) < 1 << 1000
+        else f"(a number of {number.bit_length():,} bits)"
+    )

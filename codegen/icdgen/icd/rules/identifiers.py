@@ -1,4 +1,6 @@
-"""Identifiers of generated code: reserved words, clashes and invalid names, in all languages at once."""
+"""Identifiers of generated code: reserved words, clashes and invalid names, in all
+languages at once.
+"""
 
 from __future__ import annotations
 
@@ -27,34 +29,54 @@ def _place(ctx: Context, identifier: Identifier) -> Place:
     # The source of a node is its complete file.
     if isinstance(source.get("node"), Map):
         source = source["node"]
-    return source.at(next((key for key in ("identifier", "name", "symbol") if key in source), ""))
+    return source.at(
+        next((key for key in ("identifier", "name", "symbol") if key in source), "")
+    )
 
 
 def _help(identifier: Identifier) -> str:
     """Return the help for a name that gives no usable identifier."""
     if identifier.source is not None and "node" in identifier.source:
         return "give the node another name"
-    another = "another" if identifier.source and "identifier" in identifier.source else "an"
+    another = (
+        "another" if identifier.source and "identifier" in identifier.source else "an"
+    )
     return f"give it {another} `identifier:`, other words from which its names in all languages are built"
 
 
 class _Clashes:
-    """Faults of identifiers, joined so that each line of the ICD has one finding for all languages."""
+    """Faults of identifiers, joined so that each line of the ICD has one finding for
+    all languages.
+    """
 
     def __init__(self) -> None:
         # Each value has an identifier, the other identifier of a clash, and the
         # languages by the text of the identifier.
-        self.entries: dict[tuple[int, ...], tuple[Identifier, Identifier | None, dict[str, list[str]]]] = {}
+        self.entries: dict[
+            tuple[int, ...], tuple[Identifier, Identifier | None, dict[str, list[str]]]
+        ] = {}
 
-    def add(self, language: str, identifier: Identifier, other: Identifier | None = None) -> None:
-        """Add a fault in a language; ``other`` is the identifier of a clash. Only the first text per language is stored."""
+    def add(
+        self, language: str, identifier: Identifier, other: Identifier | None = None
+    ) -> None:
+        """Add a fault in a language; ``other`` is the identifier of a clash.
+
+        Only the first text per language is stored.
+        """
         identifiers = (identifier, other) if other else (identifier,)
-        key = tuple(sorted(id(each.source) if each.source is not None else hash(each.owner) for each in identifiers))
+        key = tuple(
+            sorted(
+                id(each.source) if each.source is not None else hash(each.owner)
+                for each in identifiers
+            )
+        )
         texts = self.entries.setdefault(key, (identifier, other, {}))[2]
         if not any(language in languages for languages in texts.values()):
             texts.setdefault(identifier.text, []).append(language)
 
-    def __iter__(self) -> Iterator[tuple[Identifier, Identifier | None, dict[str, list[str]]]]:
+    def __iter__(
+        self,
+    ) -> Iterator[tuple[Identifier, Identifier | None, dict[str, list[str]]]]:
         yield from self.entries.values()
 
 
@@ -71,18 +93,26 @@ def names_are_not_reserved(ctx: Context) -> Iterator[Fault]:
             for text, languages in texts.items()
         )
         message = f"{identifier.owner} becomes {words}"
-        yield Fault(identifier.source, _place(ctx, identifier), message, _help(identifier))
+        yield Fault(
+            identifier.source, _place(ctx, identifier), message, _help(identifier)
+        )
 
 
 @rule("ICD071")
 def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
-    reported = {id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES}
+    reported = {
+        id(fault.owner) for code, fault in ctx.raised if code in DUPLICATE_NAMES
+    }
     clashes = _Clashes()
     for names in declared(ctx):
         seen: dict[tuple[str, str], Identifier] = {}
-        for identifier in names.spelled({text for text, times in names.texts.items() if times > 1}):
+        for identifier in names.spelled(
+            {text for text, times in names.texts.items() if times > 1}
+        ):
             first = seen.setdefault((identifier.scope, identifier.text), identifier)
-            if first is identifier or (first.source is None and identifier.source is None):
+            if first is identifier or (
+                first.source is None and identifier.source is None
+            ):
                 continue
             if not (reported and reported & {id(first.source), id(identifier.source)}):
                 clashes.add(names.language, identifier, first)
@@ -96,8 +126,15 @@ def identifiers_do_not_clash(ctx: Context) -> Iterator[Fault]:
         )
         later, earlier = (other, identifier) if is_earlier else (identifier, other)
         place = _place(ctx, later)
-        line = f" ({line_of(_place(ctx, earlier), place)})" if earlier.source is not None else ""
-        words = listing(f"{quote(text)} in {listing(languages)}" for text, languages in texts.items())
+        line = (
+            f" ({line_of(_place(ctx, earlier), place)})"
+            if earlier.source is not None
+            else ""
+        )
+        words = listing(
+            f"{quote(text)} in {listing(languages)}"
+            for text, languages in texts.items()
+        )
         message = f"{later.owner} and {earlier.owner}{line} both become {words}"
         yield Fault(
             later.source,
@@ -114,7 +151,9 @@ def _is_name(text: str) -> bool:
 
 
 def _is_file(text: str) -> bool:
-    """Return whether a name is a file: backends also declare the files that they write, so that clashes are reported."""
+    """Return whether a name is a file: backends also declare the files that they write,
+    so that clashes are reported.
+    """
     return "." in text or "/" in text
 
 
@@ -124,11 +163,19 @@ def names_give_identifiers(ctx: Context) -> Iterator[Fault]:
     for names in declared(ctx):
         # Two passes of C functions over hundreds of thousands of texts; the few that
         # remain are checked in Python.
-        suspects = chain(filterfalse(str.isidentifier, names.texts), filterfalse(str.isascii, names.texts))
+        suspects = chain(
+            filterfalse(str.isidentifier, names.texts),
+            filterfalse(str.isascii, names.texts),
+        )
         for identifier in names.spelled(set(filterfalse(_is_name, suspects))):
             clashes.add(names.language, identifier)
     for identifier, _, texts in clashes:
-        quoted = ((quote(text) if text else "nothing", listing(languages)) for text, languages in texts.items())
+        quoted = (
+            (quote(text) if text else "nothing", listing(languages))
+            for text, languages in texts.items()
+        )
         becomes = listing(f"{text} in {languages}" for text, languages in quoted)
         message = f"{identifier.owner} becomes {becomes}, which is not a valid name"
-        yield Fault(identifier.source, _place(ctx, identifier), message, _help(identifier))
+        yield Fault(
+            identifier.source, _place(ctx, identifier), message, _help(identifier)
+        )

@@ -36,7 +36,14 @@ def _uses(node: Node) -> Iterator[Use]:
     """Yield the ids of the messages of a node, and of its entries of `missing`."""
     for message in node.messages:
         for key, direction in KEYS_OF_IDS[message.kind]:
-            yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key, message)
+            yield Use(
+                node,
+                direction,
+                wire_ids.number(message.source[key]),
+                message.source,
+                key,
+                message,
+            )
     for item in mappings(node.source.get("missing")):
         if item.get("kind") in (TELECOMMAND, TELEMETRY) and _is_id(item.get("id")):
             yield Use(node, item["kind"], wire_ids.number(item["id"]), item, "id")
@@ -49,10 +56,15 @@ def _uses_in_scope(ctx: Context, node: Node) -> Iterator[Use]:
 
 
 def _is_id(value: object) -> bool:
-    """Return whether a value is a valid id; an entry of `missing` may violate the schema."""
+    """Return whether a value is a valid id.
+
+    An entry of `missing` may violate the schema.
+    """
     if isinstance(value, list):
         most = wire_ids.size(wire_ids.MOST_BITS)
-        return 0 < len(value) <= most and all(isinstance(byte, int) and 0 <= byte <= 255 for byte in value)
+        return 0 < len(value) <= most and all(
+            isinstance(byte, int) and 0 <= byte <= 255 for byte in value
+        )
     return isinstance(value, int) and 0 <= value < 1 << wire_ids.MOST_BITS
 
 
@@ -67,7 +79,9 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
             for first in before:
                 if not is_linked and _are_distinguishable(first, use):
                     continue
-                if brings_together(ctx, node, first.node, use.node) or (is_linked and not ctx.is_linked(use.node)):
+                if brings_together(ctx, node, first.node, use.node) or (
+                    is_linked and not ctx.is_linked(use.node)
+                ):
                     yield _same_id(ctx, node, first, use, is_linked)
                     break
             before.append(use)
@@ -75,14 +89,18 @@ def messages_of_one_id_are_distinguishable(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD181")
 def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
-    """Report distinguishable messages with the same id that do not both have the key `shares_id`.
+    """Report distinguishable messages with the same id that do not both have the key
+    `shares_id`.
 
-    Copying a message and forgetting to change its id also gives two messages that differ in length or in a constant.
-    Therefore a difference does not show that the id is shared on purpose.
+    Copying a message and forgetting to change its id also gives two messages that
+    differ in length or in a constant. Therefore a difference does not show that the id
+    is shared on purpose.
     """
     for node in filter(lambda node: not ctx.is_linked(node), ctx.icd.nodes):
         seen: dict[tuple[str, int], Use] = {}
-        for use in (use for use in _uses_in_scope(ctx, node) if use.message is not None):
+        for use in (
+            use for use in _uses_in_scope(ctx, node) if use.message is not None
+        ):
             first = seen.setdefault((use.direction, use.id), use)
             if (
                 first is use
@@ -90,43 +108,64 @@ def shared_ids_are_confirmed(ctx: Context) -> Iterator[Fault]:
                 or not _are_distinguishable(first, use)
             ):
                 continue
-            unconfirmed = [each for each in (first, use) if each.source.get("shares_id") is not True]
+            unconfirmed = [
+                each
+                for each in (first, use)
+                if each.source.get("shares_id") is not True
+            ]
             if unconfirmed:
                 yield _unconfirmed(ctx, node, first, use, unconfirmed)
 
 
-def _unconfirmed(ctx: Context, node: Node, first: Use, use: Use, unconfirmed: list[Use]) -> Fault:
+def _unconfirmed(
+    ctx: Context, node: Node, first: Use, use: Use, unconfirmed: list[Use]
+) -> Fault:
     """Return the fault of two uses of an id, of which one or both lack `shares_id`."""
     line = line_of(first.source.at(first.key), use.source.at(use.key))
     first_name = quote(first.source.get("name"))
     message = f"{_id(ctx, use)} already belongs to {first_name} ({line}){together(node, use.node)}"
     if len(unconfirmed) == 1:
         message += ", and only one of the two has `shares_id`"
-    to = "each of the two" if len(unconfirmed) == 2 else quote(unconfirmed[0].source.get("name"))
+    to = (
+        "each of the two"
+        if len(unconfirmed) == 2
+        else quote(unconfirmed[0].source.get("name"))
+    )
     help = f"correct one `{use.key}`; or, if they share the id on purpose, add `shares_id: true` to {to}"
     return Fault.at(use.source, use.key, message, help, related=_first_use(first))
 
 
 @rule("ICD182", severity="warning", needs_complete=True)
 def confirmed_ids_are_shared(ctx: Context) -> Iterator[Fault]:
-    """Report `shares_id` of a message whose id no other message has: the key would later confirm an id that was copied."""
+    """Report `shares_id` of a message whose id no other message has: the key would
+    later confirm an id that was copied.
+    """
     shared: set[int] = set()
     for node in ctx.icd.nodes:
         users: dict[tuple[str, int], list[Use]] = {}
         for use in _uses_in_scope(ctx, node):
             users.setdefault((use.direction, use.id), []).append(use)
-        shared.update(id(use.source) for uses in users.values() if len(uses) > 1 for use in uses)
+        shared.update(
+            id(use.source) for uses in users.values() if len(uses) > 1 for use in uses
+        )
     for message, _ in ctx.messages:
         if message.source.get("shares_id") is True and id(message.source) not in shared:
             text = f"{quote(message.name)} has `shares_id`, but no other message has its id"
-            yield Fault.at(message.source, "shares_id", text, "remove the key, or correct the id")
+            yield Fault.at(
+                message.source, "shares_id", text, "remove the key, or correct the id"
+            )
 
 
 def _are_distinguishable(first: Use, second: Use) -> bool:
-    """Return whether frames of two uses of an id are distinguishable. Entries of `missing` never are."""
+    """Return whether frames of two uses of an id are distinguishable.
+
+    Entries of `missing` never are.
+    """
     if first.message is None or second.message is None:
         return False
-    return variants.are_distinguishable((first.message, first.node), (second.message, second.node))
+    return variants.are_distinguishable(
+        (first.message, first.node), (second.message, second.node)
+    )
 
 
 def _same_id(ctx: Context, node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
@@ -165,8 +204,12 @@ def ids_are_in_range(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(use.source, use.key, message, help)
 
 
-def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
-    """Return the range of the protocol section in its spelling, ``0x80 to 0xFF``, or else the range of `id_bits`."""
+def _range_text(
+    ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]
+) -> str:
+    """Return the range of the protocol section in its spelling, ``0x80 to 0xFF``, or
+    else the range of `id_bits`.
+    """
     if use.direction not in ranges:
         return f"0 to {(1 << node.id_bits) - 1}"
     section = section_in_effect(ctx, node, "message_id", use.direction)
@@ -174,7 +217,9 @@ def _range_text(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int,
     return f"{ctx.written(section, 'first')} to {ctx.written(section, 'last')}"
 
 
-def _remedy(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+def _remedy(
+    ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int]]
+) -> str:
     """Return the help for an id that is out of range."""
     if not ranges and ctx.is_linked(node):
         return f"correct `{use.key}`: the links that `protocol` describes carry ids of one byte, except a `stream`"
@@ -183,16 +228,29 @@ def _remedy(ctx: Context, node: Node, use: Use, ranges: dict[str, tuple[int, int
         widths = (29, 32) if node.id_bits == 11 else (8, 16, 24, 32)
         needed = next(bits for bits in widths if use.id < 1 << bits)
         return f"correct `{use.key}`, or widen the ids of all messages: `id_bits: {needed}` in `node`"
-    other = next((direction for direction, (first, last) in ranges.items() if first <= use.id <= last), None)
+    other = next(
+        (
+            direction
+            for direction, (first, last) in ranges.items()
+            if first <= use.id <= last
+        ),
+        None,
+    )
     written = ctx.written(use.source, use.key)
-    wrong = f"{written} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
+    wrong = (
+        f"{written} is a {other} id: correct `{use.key}` or `kind`"
+        if other
+        else f"correct `{use.key}`"
+    )
     return f"{wrong}, or the range in `protocol: message_id`"
 
 
 def _has_its_bytes(use: Use) -> bool:
     """Return whether an id is a number, or a list of the right number of bytes."""
     written = use.source[use.key]
-    return not isinstance(written, list) or len(written) == wire_ids.size(use.node.id_bits)
+    return not isinstance(written, list) or len(written) == wire_ids.size(
+        use.node.id_bits
+    )
 
 
 @rule("ICD111")
@@ -227,9 +285,15 @@ def uart_ids_determine_the_direction(ctx: Context) -> Iterator[Fault]:
             continue
         uses = [use for use in _uses_in_scope(ctx, node) if use.message is not None]
         ids = [use.id for use in uses if use.direction == TELEMETRY]
-        first, last = declared.get(TELEMETRY, (min(ids, default=0), max(ids, default=-1)))
+        first, last = declared.get(
+            TELEMETRY, (min(ids, default=0), max(ids, default=-1))
+        )
         for use in uses:
-            if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in reported:
+            if (
+                use.direction == TELECOMMAND
+                and first <= use.id <= last
+                and id(use.source) not in reported
+            ):
                 # Once, although several nodes can include the message.
                 reported.add(id(use.source))
                 among = f"{_id(ctx, use)} is in the range of telemetry ids, {first} to {last}"
@@ -246,7 +310,9 @@ def id_keys_match_the_kind(ctx: Context) -> Iterator[Fault]:
             if key in message.source and key not in own:
                 text = f"a {message.kind} message has no `{key}`"
                 names = listing(f"`{name}`" for name in own)
-                yield Fault.at(message.source, key, text, f"remove it: {message.kind} has {names}")
+                yield Fault.at(
+                    message.source, key, text, f"remove it: {message.kind} has {names}"
+                )
 
 
 @rule("ICD065")
@@ -256,14 +322,20 @@ def telemetry_has_no_keys_of_telecommands(ctx: Context) -> Iterator[Fault]:
             for key in ("acknowledge", "hazard"):
                 if key in message.source:
                     text = f"`{key}` is for messages that are sent to the node; {quote(message.name)} is telemetry"
-                    yield Fault.at(message.source, key, text, "remove it, or correct `kind`")
+                    yield Fault.at(
+                        message.source, key, text, "remove it, or correct `kind`"
+                    )
 
 
 def _ranges(ctx: Context, node: Node) -> dict[str, tuple[int, int]]:
-    """Return the first and last id of each direction that the protocol section `message_id` declares."""
+    """Return the first and last id of each direction that the protocol section
+    `message_id` declares.
+    """
     ranges = {}
     for direction in (TELECOMMAND, TELEMETRY):
-        first, last = (ctx.fact(node, "message_id", direction, key) for key in ("first", "last"))
+        first, last = (
+            ctx.fact(node, "message_id", direction, key) for key in ("first", "last")
+        )
         if isinstance(first, int) and isinstance(last, int):
             ranges[direction] = first, last
     return ranges

@@ -1,4 +1,6 @@
-"""Layout of messages and structs: positions and widths of fields, overlaps, and bytes without a field."""
+"""Layout of messages and structs: positions and widths of fields, overlaps, and bytes
+without a field.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,14 @@ from icdgen.diagnostics import Related
 from icdgen.icd import division, variable_length
 from icdgen.icd.conditions import are_exclusive, are_valid
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import Array, Derived, Layout, LayoutNode, stride, struct_layout_of
+from icdgen.icd.layout import (
+    Array,
+    Derived,
+    Layout,
+    LayoutNode,
+    stride,
+    struct_layout_of,
+)
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, places_in, scalars_in
 from icdgen.icd.rules.context import Context, Owner, is_overlay
@@ -28,7 +37,9 @@ WIDTHS = {
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
 _OVERLAPPING = "correct `at` or `bits`"
-_ALTERNATIVES = "let them depend on different values of the same field, or correct `at` or `bits`"
+_ALTERNATIVES = (
+    "let them depend on different values of the same field, or correct `at` or `bits`"
+)
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
@@ -48,12 +59,16 @@ def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
         end = node.at + _fixed_bits(node)
         # ICD121 reports fields of fixed size after a variable-length field.
         if end > room and id(source) not in ctx.behind_variable_fields:
-            is_array, size_key = isinstance(node, Array), "struct" if struct_layout_of(node) else "bits"
+            is_array, size_key = isinstance(node, Array), (
+                "struct" if struct_layout_of(node) else "bits"
+            )
             key = "at" if node.at >= room else "count" if is_array else size_key
             has = f"{quote(owner.name)} has {count(room, 'bit')} ({count(owner.length, 'byte')})"
             length = line_of(owner.source.at("length"), source.at(key))
             help = f"correct `at`{', `count`' if is_array else ''} or `{size_key}`, or the `length` in {length}"
-            yield Fault.at(source, key, f"{quote(node.name)} ends at bit {end:,}, but {has}", help)
+            yield Fault.at(
+                source, key, f"{quote(node.name)} ends at bit {end:,}, but {has}", help
+            )
 
 
 @rule("ICD021")
@@ -68,16 +83,28 @@ def fields_do_not_overlap(ctx: Context) -> Iterator[Fault]:
 
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
-    """Yield the overlaps within each message and struct. A struct in it counts as one field."""
+    """Yield the overlaps within each message and struct.
+
+    A struct in it counts as one field.
+    """
     for owner, icd_node in ctx.owners:
         if _are_apart(owner.layout):
             continue
         own = [place for place in places_in(owner.layout) if _has_own_bits(place)]
-        elements = [element for place in own for element in (place.elements() if place.count else (place,))]
+        elements = [
+            element
+            for place in own
+            for element in (place.elements() if place.count else (place,))
+        ]
         # Positions of different bit orders, and optional fields, must be compared in
         # pairs.
-        if any("when" in place.source or place.bit_order not in ("", icd_node.bit_order) for place in own):
-            with_valid_conditions = (element for element in elements if are_valid(element.node))
+        if any(
+            "when" in place.source or place.bit_order not in ("", icd_node.bit_order)
+            for place in own
+        ):
+            with_valid_conditions = (
+                element for element in elements if are_valid(element.node)
+            )
             yield from _overlaps_among(owner, icd_node, with_valid_conditions)
             continue
         # Otherwise, one pass in the order of positions finds each element that begins
@@ -86,13 +113,17 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
         for index in sorted(range(len(elements)), key=lambda index: elements[index].at):
             element = elements[index]
             if element.at < end:
-                yield Overlap(elements[min(index, furthest)], elements[max(index, furthest)])
+                yield Overlap(
+                    elements[min(index, furthest)], elements[max(index, furthest)]
+                )
             if element.at + element.bits > end:
                 end, furthest = element.at + element.bits, index
 
 
 def _are_apart(layout: Layout) -> bool:
-    """Return whether no two nodes have common bits, by a fast check that succeeds for most layouts."""
+    """Return whether no two nodes have common bits, by a fast check that succeeds for
+    most layouts.
+    """
     end = 0
     for node in sorted(layout.fixed, key=attrgetter("at")):
         if node.at < end or node.orders.bit:
@@ -107,23 +138,36 @@ def _fixed_bits(node: LayoutNode) -> int:
 
 
 def _has_own_bits(place: NodePlace) -> bool:
-    """Return whether a place has its own bits: it is not an overlay field, a derived value or a count without bits."""
-    return not (place.is_count or isinstance(place.node, Derived) or is_overlay(place.node))
+    """Return whether a place has its own bits: it is not an overlay field, a derived
+    value or a count without bits.
+    """
+    return not (
+        place.is_count or isinstance(place.node, Derived) or is_overlay(place.node)
+    )
 
 
 def _overlaps_within_structs(ctx: Context) -> Iterator[Overlap]:
-    """Yield the overlaps in structs that are used with another bit order than the one they are declared with."""
+    """Yield the overlaps in structs that are used with another bit order than the one
+    they are declared with.
+    """
     for owner, icd_node in ctx.owners:
         if not any(map(struct_layout_of, owner.layout.nodes)):
             continue
         for place in places_in(owner.layout):
             _, home = ctx.struct_of.get(id(place.struct), (None, None))
-            if home is not None and place.orders_in_effect(icd_node.orders).bit != home.bit_order:
+            if (
+                home is not None
+                and place.orders_in_effect(icd_node.orders).bit != home.bit_order
+            ):
                 # All elements have the same layout.
-                yield from _overlaps_among(owner, icd_node, place.elements()[0].scalars())
+                yield from _overlaps_among(
+                    owner, icd_node, place.elements()[0].scalars()
+                )
 
 
-def _overlaps_among(owner: Owner, icd_node: Node, fields: Iterable[NodePlace]) -> Iterator[Overlap]:
+def _overlaps_among(
+    owner: Owner, icd_node: Node, fields: Iterable[NodePlace]
+) -> Iterator[Overlap]:
     """Yield the overlaps of fields with different bit orders or conditions.
 
     Fields that are never present in the same frame can have the same bits.
@@ -149,7 +193,10 @@ def _bits_of(mask: int) -> str:
 
 
 def _mask(begin: int, bits: int, bit_order: str) -> int:
-    """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b + w."""
+    """Return a mask of the bits of a field in the frame.
+
+    Bit w of byte b is bit 8 * b + w.
+    """
     # Whole bytes have the same mask in both bit orders.
     if bit_order == "lsb0" or begin % 8 == 0 == bits % 8:
         return ((1 << bits) - 1) << begin
@@ -159,9 +206,15 @@ def _mask(begin: int, bits: int, bit_order: str) -> int:
 def _fault(overlap: Overlap) -> Fault:
     """Return the fault of an overlap, at its second field."""
     first, second, bits = overlap
-    start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
-    bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
-    other = f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
+    start, end = max(first.at, second.at), min(
+        first.at + first.bits, second.at + second.bits
+    )
+    bits = bits or (
+        f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}"
+    )
+    other = (
+        f"{quote(first.name)} ({line_of(first.source.place, second.source.at('at'))})"
+    )
     text = f"{quote(second.name)} overlaps {other} in {bits}"
     text += ", and both can be present" if first.conditions or second.conditions else ""
     related = Related(first.source.at("at"), f"{quote(first.name)} begins here")
@@ -172,7 +225,9 @@ def _help(first: NodePlace, second: NodePlace) -> str:
     """Return the help for an overlap."""
     if first.conditions and second.conditions:
         return _ALTERNATIVES
-    help = "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
+    help = (
+        "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING
+    )
     for place in (first, second):
         # If an element other than the first overlaps, the array may be too long.
         if place.index and type(place.source.get("count")) is int:
@@ -192,9 +247,13 @@ def widths_suit_the_types(ctx: Context) -> Iterator[Fault]:
             fits = field.bits in allowed
         if not fits:
             article = "an" if field.type[0] in "aeio" else "a"
-            message = f"{article} `{field.type}` field takes {words}, not {field.bits:,}"
+            message = (
+                f"{article} `{field.type}` field takes {words}, not {field.bits:,}"
+            )
             fix = "1" if field.type == "bool" else ""
-            yield Fault.at(field.source, "bits", message, "correct `bits` or `type`", fix)
+            yield Fault.at(
+                field.source, "bits", message, "correct `bits` or `type`", fix
+            )
 
 
 @rule("ICD023")
@@ -212,7 +271,11 @@ def orders_have_an_effect(ctx: Context) -> Iterator[Fault]:
     for key in ("byte_order", "bit_order"):
         for field, _ in ctx.fields_with[key]:
             if field.is_bytes or (field.type == "bool" and key == "byte_order"):
-                what = f"{_ORDERLY[field.type]} are sent in order" if field.is_bytes else "it is one bit"
+                what = (
+                    f"{_ORDERLY[field.type]} are sent in order"
+                    if field.is_bytes
+                    else "it is one bit"
+                )
                 message = f"{quote(field.name)} is `{field.type}`: {what}, so `{key}` has no effect"
                 yield Fault.at(field.source, key, message, f"remove `{key}`")
 
@@ -224,11 +287,20 @@ def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
         if not isinstance(message, Message):
             continue  # ICD143 reports overlay fields of structs
         source, name = field.source, quote(field.name)
-        if not is_overlay(node) or "bitfields" in source or node.at + field.bits > message.length * 8:
+        if (
+            not is_overlay(node)
+            or "bitfields" in source
+            or node.at + field.bits > message.length * 8
+        ):
             continue  # not an overlay field, or ICD025 or ICD020 reports it
         if isinstance(node, Array):
             help = "write an overlay field for each element"
-            yield Fault.at(source, "view", f"{name} is an array, but an overlay field is one number", help)
+            yield Fault.at(
+                source,
+                "view",
+                f"{name} is an array, but an overlay field is one number",
+                help,
+            )
             continue
         if field.is_bytes:
             text = f"{name} is `{field.type}`, but an overlay field is a number"
@@ -236,15 +308,24 @@ def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
             continue
         if field.const is not None:
             text = f"{name} is an overlay field, whose value is never set, so it cannot have `const`"
-            yield Fault.at(source, "const", text, "give `const` to the field that has the bits")
+            yield Fault.at(
+                source, "const", text, "give `const` to the field that has the bits"
+            )
         free = _mask(node.at, field.bits, line.orders.bit)
         for other in scalars_in(message.layout):
             if _has_own_bits(other) and not other.conditions:
-                free &= ~_mask(other.at, other.bits, other.orders_in_effect(icd_node.orders).bit)
+                free &= ~_mask(
+                    other.at, other.bits, other.orders_in_effect(icd_node.orders).bit
+                )
         if free and is_read(message):
             always = "always " if message.has_conditions else ""
             text = f"{name} is an overlay of {_bits_of(free)} that no field {always}has"
-            yield Fault.at(source, "at", text, "describe these bits as a field, or correct `at` or `bits`")
+            yield Fault.at(
+                source,
+                "at",
+                text,
+                "describe these bits as a field, or correct `at` or `bits`",
+            )
 
 
 def is_read(message: Message) -> bool:
@@ -253,24 +334,42 @@ def is_read(message: Message) -> bool:
     If it does not, bits without a field may belong to a field with errors.
     """
     sources = {id(node.source) for node in message.layout.nodes}
-    return all(id(item) in sources or "bitfields" in item for item in message.source.get("fields", ()))
+    return all(
+        id(item) in sources or "bitfields" in item
+        for item in message.source.get("fields", ())
+    )
 
 
 def covered_bytes(message: Message) -> int:
     """Return the number of bytes up to the end of the last field of the longest frame."""
     if message.layout.sequence:
         return message.layout.longest
-    return max((node.at + _fixed_bits(node) + 7 for node in message.layout.fixed), default=0) // 8
+    return (
+        max(
+            (node.at + _fixed_bits(node) + 7 for node in message.layout.fixed),
+            default=0,
+        )
+        // 8
+    )
 
 
 @rule("ICD027", needs_complete=True)
 def reserved_bytes_have_no_field(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
-        free = max(message.length - covered_bytes(message), 0) if message.reserved else 0
+        free = (
+            max(message.length - covered_bytes(message), 0) if message.reserved else 0
+        )
         # ICD121 reports `reserved` of messages of variable length.
-        if message.reserved > free and not variable_length.variable_fields(message.source):
+        if message.reserved > free and not variable_length.variable_fields(
+            message.source
+        ):
             text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, but `reserved` is {message.reserved}"
-            yield Fault.at(message.source, "reserved", text, "correct `reserved` or `length`, or the fields")
+            yield Fault.at(
+                message.source,
+                "reserved",
+                text,
+                "correct `reserved` or `length`, or the fields",
+            )
 
 
 @rule("ICD024", needs_complete=True)
@@ -279,17 +378,30 @@ def all_bytes_are_described(ctx: Context) -> Iterator[Fault]:
         covered = covered_bytes(message)
         if covered + message.reserved < message.length and is_read(message):
             undescribed = message.length - covered - message.reserved
-            described = f"its fields describe {covered:,}" if message.layout.nodes else "no field describes them"
+            described = (
+                f"its fields describe {covered:,}"
+                if message.layout.nodes
+                else "no field describes them"
+            )
             text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
             missing = (
                 "the last byte"
                 if undescribed == 1 and not message.reserved
                 else f"the last {count(undescribed, 'byte')}"
             )
-            missing = f"{count(undescribed, 'byte')} before those" if message.reserved else missing
+            missing = (
+                f"{count(undescribed, 'byte')} before those"
+                if message.reserved
+                else missing
+            )
             pronoun = "it" if undescribed + message.reserved == 1 else "them"
             reserve = f"write `reserved: {undescribed + message.reserved}` beside `length` if the manual calls {pronoun} reserved"
-            yield Fault.at(message.source, "length", text, f"describe {missing}, or correct `length`; {reserve}")
+            yield Fault.at(
+                message.source,
+                "length",
+                text,
+                f"describe {missing}, or correct `length`; {reserve}",
+            )
 
 
 @rule("ICD025")

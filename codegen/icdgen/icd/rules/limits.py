@@ -31,7 +31,9 @@ class Bounds(NamedTuple):
         """Whether no value is in the interval."""
         if self.low is None or self.high is None:
             return False
-        return self.low > self.high or (self.low == self.high and (self.above or self.below))
+        return self.low > self.high or (
+            self.low == self.high and (self.above or self.below)
+        )
 
 
 def bounds(field: Scalar) -> Bounds:
@@ -39,9 +41,15 @@ def bounds(field: Scalar) -> Bounds:
     limits = field.limits or Limits()
     # Of equal limits, the tuples sort the open one as the higher lower limit and as the
     # lower upper limit.
-    lows = ((value, is_open) for value, is_open in ((limits.min, False), (limits.above, True)) if value is not None)
+    lows = (
+        (value, is_open)
+        for value, is_open in ((limits.min, False), (limits.above, True))
+        if value is not None
+    )
     highs = (
-        (value, is_closed) for value, is_closed in ((limits.max, True), (limits.below, False)) if value is not None
+        (value, is_closed)
+        for value, is_closed in ((limits.max, True), (limits.below, False))
+        if value is not None
     )
     low, above = max(lows, default=(None, False))
     high, inside = min(highs, default=(None, True))
@@ -55,7 +63,9 @@ def _limited(ctx: Context) -> Iterator[Scalar]:
 
 def _shown(field: Scalar, *keys: str) -> str:
     """Return the limits of a field with these keys, as the ICD declares them."""
-    return " and ".join(f"`{key}: {field.source[key]}`" for key in keys if key in field.source)
+    return " and ".join(
+        f"`{key}: {field.source[key]}`" for key in keys if key in field.source
+    )
 
 
 def _first(field: Scalar, *keys: str) -> str:
@@ -69,7 +79,12 @@ def limits_leave_a_value(ctx: Context) -> Iterator[Fault]:
         source = field.source
         if field.type == "bool" or field.is_bytes:
             key = _first(field, *LIMITS)
-            yield Fault.at(source, key, f"`{key}` has no meaning for type `{field.type}`", f"remove `{key}`")
+            yield Fault.at(
+                source,
+                key,
+                f"`{key}` has no meaning for type `{field.type}`",
+                f"remove `{key}`",
+            )
         elif bounds(field).is_empty:
             message = f"{_shown(field, *LIMITS)} leave no value for {quote(field.name)}"
             help = "correct them: `min` and `above` are lower limits, `max` and `below` are upper limits"
@@ -80,21 +95,43 @@ def limits_leave_a_value(ctx: Context) -> Iterator[Fault]:
 def limits_are_in_the_range_of_the_field(ctx: Context) -> Iterator[Fault]:
     for field in _limited(ctx):
         # Floats and curves are not checked. Other rules report invalid formulas.
-        if field.type not in NUMBERS or (("points" in field.source or field.formula) and field.scale is None):
+        if field.type not in NUMBERS or (
+            ("points" in field.source or field.formula) and field.scale is None
+        ):
             continue
         within, source = bounds(field), field.source
         if within.is_empty:
             continue
         allowed = _raw_values(field, within)
         if not allowed:
-            key = _first(field, *(("min", "above") if within.low is not None else ("max", "below")))
-            message = f"no value of {quote(field.name)} is within {_shown(field, *LIMITS)}"
-            low, high = sorted(_physical(field, raw) for raw in (field.raw_min, field.raw_max))
-            yield Fault.at(source, key, message, f"its values go from {_number(low)} to {_number(high)}")
-        elif field.const is not None and field.raw_min <= field.const <= field.raw_max and field.const not in allowed:
+            key = _first(
+                field,
+                *(("min", "above") if within.low is not None else ("max", "below")),
+            )
+            message = (
+                f"no value of {quote(field.name)} is within {_shown(field, *LIMITS)}"
+            )
+            low, high = sorted(
+                _physical(field, raw) for raw in (field.raw_min, field.raw_max)
+            )
+            yield Fault.at(
+                source,
+                key,
+                message,
+                f"its values go from {_number(low)} to {_number(high)}",
+            )
+        elif (
+            field.const is not None
+            and field.raw_min <= field.const <= field.raw_max
+            and field.const not in allowed
+        ):
             message = f"`const: {field.const}` of {quote(field.name)} is outside {_shown(field, *LIMITS)}"
             value = _number(_physical(field, field.const))
-            help = f"its physical value is {value}" if field.scale else "correct one of them"
+            help = (
+                f"its physical value is {value}"
+                if field.scale
+                else "correct one of them"
+            )
             yield Fault.at(source, "const", message, help)
 
 
@@ -112,8 +149,16 @@ def _raw_values(field: Scalar, within: Bounds) -> range:
         # A negative factor exchanges the lower and the upper limit.
         if field.scale.factor < 0:
             low, high, above, below = high, low, below, above
-    first = field.raw_min if low is None else max(field.raw_min, floor(low) + 1 if above else ceil(low))
-    last = field.raw_max if high is None else min(field.raw_max, ceil(high) - 1 if below else floor(high))
+    first = (
+        field.raw_min
+        if low is None
+        else max(field.raw_min, floor(low) + 1 if above else ceil(low))
+    )
+    last = (
+        field.raw_max
+        if high is None
+        else min(field.raw_max, ceil(high) - 1 if below else floor(high))
+    )
     return range(first, last + 1)
 
 

@@ -17,20 +17,33 @@ from icdgen.wording import count, quote
 
 def _telemetry(ctx: Context, node: Node) -> dict[int, Message]:
     """Return the telemetry messages of a node by id."""
-    return {message.telemetry_id: message for message in ctx.messages_of(node) if message.telemetry_id is not None}
+    return {
+        message.telemetry_id: message
+        for message in ctx.messages_of(node)
+        if message.telemetry_id is not None
+    }
 
 
 def _id_key(message: Message) -> str:
     """Return the key of the telemetry id of a message: `id` or `get_id`."""
-    return next(key for key, direction in KEYS_OF_IDS[message.kind] if direction == TELEMETRY)
+    return next(
+        key for key, direction in KEYS_OF_IDS[message.kind] if direction == TELEMETRY
+    )
 
 
 @rule("ICD043", needs_complete=True)
 def loggable_frames_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         frames = _telemetry(ctx, node)
-        missing = {entry.id for owner in ctx.scope(node) for entry in owner.missing if entry.kind != "telecommand"}
-        by_name = {frame.name: (frame.source, _id_key(frame)) for frame in frames.values()}
+        missing = {
+            entry.id
+            for owner in ctx.scope(node)
+            for entry in owner.missing
+            if entry.kind != "telecommand"
+        }
+        by_name = {
+            frame.name: (frame.source, _id_key(frame)) for frame in frames.values()
+        }
         for row in node.loggable:
             if row.id not in frames and row.id not in missing:
                 close = close_to(row.name, by_name) if row.name else ""
@@ -38,9 +51,7 @@ def loggable_frames_exist(ctx: Context) -> Iterator[Fault]:
                 if close:
                     fix = ctx.written(*by_name[close])
                     help = f"{quote(close)} has id {fix}"
-                message = (
-                    f"loggable bit {row.bit} points nowhere: there is no telemetry {ctx.written(row.source, 'id')}"
-                )
+                message = f"loggable bit {row.bit} points nowhere: there is no telemetry {ctx.written(row.source, 'id')}"
                 yield Fault.at(row.source, "id", message, help, fix)
 
 
@@ -56,13 +67,19 @@ def loggable_entries_are_unique(ctx: Context) -> Iterator[Fault]:
                 if value in seen:
                     first = seen[value].at(key)
                     what = f"{'mask bit' if key == 'bit' else 'frame'} {ctx.written(source, key)}"
-                    message = f"{what} is in the table twice, first in line {first.line}"
+                    message = (
+                        f"{what} is in the table twice, first in line {first.line}"
+                    )
                     related = Related(first, f"the first `{key}` of this value")
-                    yield Fault.at(source, key, message, f"correct one `{key}`", related=related)
+                    yield Fault.at(
+                        source, key, message, f"correct one `{key}`", related=related
+                    )
                 seen.setdefault(value, source)
             if isinstance(size, int) and row.bit >= size * 8:
                 message = f"bit {row.bit} is outside the mask of {count(size, 'byte')}"
-                yield Fault.at(source, "bit", message, f"its bits are 0 to {size * 8 - 1}")
+                yield Fault.at(
+                    source, "bit", message, f"its bits are 0 to {size * 8 - 1}"
+                )
 
 
 @rule("ICD045")
@@ -80,4 +97,6 @@ def loggable_entries_match_the_messages(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(source, "name", text, "correct `name` or `id`")
             if isinstance(size, int) and frame.length != size:
                 message = f"{quote(frame.name)} has {count(frame.length, 'byte')}, a frame in the log has {size}"
-                yield Fault.at(source, "id", message, "correct `id`, or the `length` of the frame")
+                yield Fault.at(
+                    source, "id", message, "correct `id`, or the `length` of the frame"
+                )

@@ -1,4 +1,6 @@
-"""Pages of the rules in ``<theme>.md``, which are read only for `icdgen rule` and the documentation."""
+"""Pages of the rules in ``<theme>.md``, which are read only for `icdgen rule` and the
+documentation.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,10 @@ class Page(NamedTuple):
 
 @cache
 def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
-    """Return the pages of a theme by code. Raises `ValueError` if a page does not have the usual form."""
+    """Return the pages of a theme by code.
+
+    Raises `ValueError` if a page does not have the usual form.
+    """
     pages = {}
     _, *parts = _SECTION.split((folder / f"{theme}.md").read_text(encoding="utf-8"))
     for code, title, text in zip(parts[0::3], parts[1::3], parts[2::3], strict=True):
@@ -40,7 +45,9 @@ def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
     return pages
 
 
-def text(code: str, severity: str, page: Page, labels: tuple[str, str] = ("Wrong", "Right")) -> str:
+def text(
+    code: str, severity: str, page: Page, labels: tuple[str, str] = ("Wrong", "Right")
+) -> str:
     """Return a page as Markdown."""
     wrong, right = labels
     return (

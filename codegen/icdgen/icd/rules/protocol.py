@@ -1,4 +1,7 @@
-"""Protocol section: I2C addresses, check values of checksums, and rows of layouts. Every key is optional."""
+"""Protocol section: I2C addresses, check values of checksums, and rows of layouts.
+
+Every key is optional.
+"""
 
 from __future__ import annotations
 
@@ -43,26 +46,56 @@ def i2c_address_forms_agree(ctx: Context) -> Iterator[Fault]:
         if _is_byte(write) and _is_byte(read) and not write & 1 and read != write | 1:
             message = f"the read address {_hex(read)} does not follow the write address {_hex(write)}"
             correct = _hex(write | 1)
-            yield Fault.at(i2c["read"], "address_8bit", message, f"the read address is {correct}", correct)
+            yield Fault.at(
+                i2c["read"],
+                "address_8bit",
+                message,
+                f"the read address is {correct}",
+                correct,
+            )
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
-    """Yield the faults of an address whose 8-bit, 7-bit and binary forms differ; ``bit`` is its lowest bit."""
-    eight, seven, binary = (address.get(form) for form in ("address_8bit", "address_7bit", "binary"))
+    """Yield the faults of an address whose 8-bit, 7-bit and binary forms differ.
+
+    ``bit`` is its lowest bit.
+    """
+    eight, seven, binary = (
+        address.get(form) for form in ("address_8bit", "address_7bit", "binary")
+    )
     if not _is_byte(eight):
         return
     if eight & 1 != bit:
         message = f"{_hex(eight)} cannot be a {key} address"
-        yield Fault.at(address, "address_8bit", message, f"correct it: the last bit of a {key} address is {bit}")
+        yield Fault.at(
+            address,
+            "address_8bit",
+            message,
+            f"correct it: the last bit of a {key} address is {bit}",
+        )
     elif isinstance(seven, int) and seven << 1 | bit != eight:
         message = f"the 7-bit address {_hex(seven)} gives the {key} address {_hex(seven << 1 | bit)}, not {_hex(eight)}"
         right = _hex(eight >> 1)
-        yield Fault.at(address, "address_7bit", message, f"{_hex(eight)} is {right} with 7 bits", right)
+        yield Fault.at(
+            address,
+            "address_7bit",
+            message,
+            f"{_hex(eight)} is {right} with 7 bits",
+            right,
+        )
     if isinstance(binary, str) and _binary(binary) != eight:
         value = _binary(binary)
-        states = f"states {_hex(value)}" if value is not None else "is not a binary number"
+        states = (
+            f"states {_hex(value)}" if value is not None else "is not a binary number"
+        )
         message = f"the binary form {quote(binary)} {states}, but the address is {_hex(eight)}"
-        yield Fault.at(address, "binary", message, f"{_hex(eight)} is 0b{eight:08b}", f'"0b{eight:08b}"')
+        yield Fault.at(
+            address,
+            "binary",
+            message,
+            f"{_hex(eight)} is 0b{eight:08b}",
+            f'"0b{eight:08b}"',
+        )
 
 
 def _is_byte(value: object) -> TypeGuard[int]:
@@ -70,7 +103,10 @@ def _is_byte(value: object) -> TypeGuard[int]:
 
 
 def _binary(text: str) -> int | None:
-    """Return the value of a binary number such as ``0b1010 0001``; None if the text is not one."""
+    """Return the value of a binary number such as ``0b1010 0001``.
+
+    Returns None if the text is not one.
+    """
     digits = text.removeprefix("0b").replace(" ", "")
     return int(digits, 2) if digits and not digits.strip("01") else None
 
@@ -84,25 +120,49 @@ def checksum_parameters_give_the_check_value(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
             stated, actual = section.get("check"), _check_value(section)
-            if type(stated) is int and actual not in (None, stated) and 0 <= stated < 1 << section["width"]:
+            if (
+                type(stated) is int
+                and actual not in (None, stated)
+                and 0 <= stated < 1 << section["width"]
+            ):
                 message = f"these parameters give {_hex(actual)} over 123456789, not the check value {_hex(stated)}"
-                yield Fault.at(section, "check", message, "correct the parameters or `check`")
+                yield Fault.at(
+                    section, "check", message, "correct the parameters or `check`"
+                )
 
 
 def _check_value(section: Map) -> int | None:
-    """Return the checksum of `CHECKED` with the parameters of a section; None if they are incomplete or out of range."""
+    """Return the checksum of `CHECKED` with the parameters of a section.
+
+    Returns None if they are incomplete or out of range.
+    """
     kind = section.get("kind", checksum.CRC)
-    values = [section.get("width"), section.get("init", 0), section.get("xor_out", 0), section.get("polynomial")]
-    numbers = [value for value in (values if kind == checksum.CRC else values[:3]) if type(value) is int]
+    values = [
+        section.get("width"),
+        section.get("init", 0),
+        section.get("xor_out", 0),
+        section.get("polynomial"),
+    ]
+    numbers = [
+        value
+        for value in (values if kind == checksum.CRC else values[:3])
+        if type(value) is int
+    ]
     if kind not in checksum.KINDS or len(numbers) != (4 if kind == checksum.CRC else 3):
         return None
     width, init, xor_out, *polynomial = numbers
-    if not 1 <= width <= MAX_WIDTH or not all(0 <= number < 1 << width for number in numbers[1:]):
+    if not 1 <= width <= MAX_WIDTH or not all(
+        0 <= number < 1 << width for number in numbers[1:]
+    ):
         return None
     if kind != checksum.CRC:
         return checksum.plain(kind, CHECKED, width, init, xor_out)
-    reflect_in, reflect_out = (bool(section.get(key)) for key in ("reflect_in", "reflect_out"))
-    return checksum.crc(CHECKED, width, polynomial[0], init, reflect_in, reflect_out, xor_out)
+    reflect_in, reflect_out = (
+        bool(section.get(key)) for key in ("reflect_in", "reflect_out")
+    )
+    return checksum.crc(
+        CHECKED, width, polynomial[0], init, reflect_in, reflect_out, xor_out
+    )
 
 
 @rule("ICD092")
@@ -122,10 +182,17 @@ def _name_of_row(row: Map, otherwise: str) -> str:
 
 
 def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fault]:
-    """Yield the faults of rows that overlap or end outside of the section. ``at`` and ``size`` are their keys."""
+    """Yield the faults of rows that overlap or end outside of the section.
+
+    ``at`` and ``size`` are their keys.
+    """
     named = f"{key}_{size}" if f"{key}_{size}" in section else size
     room = section.get(named)
-    placed = [row for row in mappings(rows) if isinstance(row.get(at), int) and isinstance(row.get(size), int)]
+    placed = [
+        row
+        for row in mappings(rows)
+        if isinstance(row.get(at), int) and isinstance(row.get(size), int)
+    ]
     last: Map | None = None  # the row that ends last, of those before
     for row in sorted(placed, key=lambda row: row[at]):
         end = row[at] + row[size]

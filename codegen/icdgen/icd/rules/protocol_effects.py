@@ -24,7 +24,17 @@ INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")
 ROWS = (("uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
     ("unsolicited_log", "message"))  # fmt: skip
 ROWS_AS_BYTES = ("mask", "meta")
-STEPS = ("reset", "advance", "load", "burst", "initiate", "begin", "packet", "finalize", "request")
+STEPS = (
+    "reset",
+    "advance",
+    "load",
+    "burst",
+    "initiate",
+    "begin",
+    "packet",
+    "finalize",
+    "request",
+)
 
 
 @rule("ICD115")
@@ -36,7 +46,9 @@ def keys_have_an_effect(ctx: Context) -> Iterator[Fault]:
 
 
 def _acknowledges(node: Node) -> Iterator[Fault]:
-    """Yield a fault if a node does not require acknowledges, for which clients wait in any case."""
+    """Yield a fault if a node does not require acknowledges, for which clients wait in
+    any case.
+    """
     for bus in ("uart", "i2c"):
         section = section_of(node, bus, "acknowledge")
         if section is not None and section.get("required_before_next") is False:
@@ -48,7 +60,11 @@ def _acknowledges(node: Node) -> Iterator[Fault]:
 def _can_data(node: Node) -> Iterator[Fault]:
     """Yield the faults of acknowledges and requests on CAN that have data."""
     for direction, key, what in (
-        (TELECOMMAND, "acknowledge_bytes", "an acknowledge on CAN is taken with no data only"),
+        (
+            TELECOMMAND,
+            "acknowledge_bytes",
+            "an acknowledge on CAN is taken with no data only",
+        ),
         (TELEMETRY, "request_bytes", "a request on CAN is sent with no data"),
     ):
         section = section_of(node, "can", direction)
@@ -58,7 +74,9 @@ def _can_data(node: Node) -> Iterator[Fault]:
 
 
 def _unsolicited(node: Node) -> Iterator[Fault]:
-    """Yield the faults of unsolicited logs without framing, or on another bus than the UART."""
+    """Yield the faults of unsolicited logs without framing, or on another bus than the
+    UART.
+    """
     log = section_of(node, "unsolicited_log")
     if log is None:
         return
@@ -68,7 +86,12 @@ def _unsolicited(node: Node) -> Iterator[Fault]:
     buses = log.get("buses")
     for bus, place in buses.placed() if isinstance(buses, Seq) else ():
         if bus in BUSES and bus != "uart":
-            yield Fault(log, place, "unsolicited logs are received on the UART only", f"remove `{bus}`")
+            yield Fault(
+                log,
+                place,
+                "unsolicited logs are received on the UART only",
+                f"remove `{bus}`",
+            )
 
 
 @rule("ICD116", needs_complete=True)
@@ -84,7 +107,9 @@ def fields_can_have_their_roles(ctx: Context) -> Iterator[Fault]:
         yield from _telecommands_once(node)
 
 
-def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Iterator[Fault]:
+def _fields(
+    owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]
+) -> Iterator[Fault]:
     """Yield the faults of fields that have two roles, or a role that they cannot have."""
     by_name = {field.name: field for field in fields if not field.is_read_only}
     seen: dict[str, str] = {}
@@ -94,27 +119,40 @@ def _fields(owner: Map, keys: Iterable[str], fields: Iterable[NodePlace]) -> Ite
             continue
         first_role = seen.setdefault(field.name, key)
         if first_role != key:
-            yield Fault.at(owner, key, f"{quote(field.name)} is `{first_role}` already", "name the field of each part")
-        elif reasons := reasons_against(field.scalar, PROTOCOL.get(key, Role(INTEGERS))):
+            yield Fault.at(
+                owner,
+                key,
+                f"{quote(field.name)} is `{first_role}` already",
+                "name the field of each part",
+            )
+        elif reasons := reasons_against(
+            field.scalar, PROTOCOL.get(key, Role(INTEGERS))
+        ):
             text = f"{quote(field.name)} cannot be `{key}`: it {reasons[0]}"
             yield Fault.at(owner, key, text, "name another field")
 
 
 def _telecommands_once(node: Node) -> Iterator[Fault]:
-    """Yield a fault for each telecommand of two steps of a file transfer, which a receiver cannot distinguish."""
+    """Yield a fault for each telecommand of two steps of a file transfer, which a
+    receiver cannot distinguish.
+    """
     files = section_of(node, "file_transfer") or unread()
     seen: dict[str, str] = {}
     for procedure, key in product(files, STEPS):
         name, step = at_path(files, (procedure, key, "message")), f"{procedure}.{key}"
         if name is not None and seen.setdefault(name, step) != step:
             message = f"{quote(name)} is the telecommand of `{seen[name]}` already"
-            yield Fault.at(files[procedure][key], "message", message, "name that of each step")
+            yield Fault.at(
+                files[procedure][key], "message", message, "name that of each step"
+            )
 
 
 @rule("ICD117", needs_complete=True)
 def packets_match_their_message(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        sizes = numbers(section_of(node, "file_transfer"), "packet_bytes", "packet_counter_bytes")
+        sizes = numbers(
+            section_of(node, "file_transfer"), "packet_bytes", "packet_counter_bytes"
+        )
         if sizes is None:
             continue
         messages = {message.name: message for message in ctx.messages_of(node)}
@@ -128,7 +166,12 @@ def packets_match_their_message(ctx: Context) -> Iterator[Fault]:
                     continue  # on the UART, packets can have any id
                 if message.telemetry_id is None or message.length != sum(sizes):
                     text = f"a packet has {count(sizes[1], 'byte')} of counter and {sizes[0]} of the file, which "
-                    yield Fault.at(section, key, f"{text}{quote(message.name)} has not", "name its frame")
+                    yield Fault.at(
+                        section,
+                        key,
+                        f"{text}{quote(message.name)} has not",
+                        "name its frame",
+                    )
 
 
 @rule("ICD118")
@@ -144,4 +187,6 @@ def rows_have_readable_types(ctx: Context) -> Iterator[Fault]:
                         yield Fault.at(row, "type", message, "correct `type` or `role`")
     for index in ctx.sections("index_file"):
         if any("role" in row for row in mappings(index.get("entry"))):
-            yield from roles_occur_once(index, "entry", INDEX_ROLES, "an entry of the index has no part for")
+            yield from roles_occur_once(
+                index, "entry", INDEX_ROLES, "an entry of the index has no part for"
+            )

@@ -1,4 +1,6 @@
-"""Protocol section: numbers that must fit their bits and bytes, and lists that need certain parts."""
+"""Protocol section: numbers that must fit their bits and bytes, and lists that need
+certain parts.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifie
 
 
 def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
-    """Return the mapping at a path of the protocol section in effect for a node: its own, or that of an included node."""
+    """Return the mapping at a path of the protocol section in effect for a node: its
+    own, or that of an included node.
+    """
     for owner in reversed(ctx.scope(node)):
         if section_of(owner, path[0]) is not None:
             return section_of(owner, *path)
@@ -32,7 +36,9 @@ def section_in_effect(ctx: Context, node: Node, *path: str) -> Map | None:
 @rule("ICD099")
 def packet_counter_fits_a_byte(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        can, extended = section_in_effect(ctx, node, "can"), section_in_effect(ctx, node, "can", "extended")
+        can, extended = section_in_effect(ctx, node, "can"), section_in_effect(
+            ctx, node, "can", "extended"
+        )
         size = extended.get("data_bytes") if extended is not None else None
         if can is None or extended is None or not isinstance(size, int) or size < 1:
             continue
@@ -61,9 +67,15 @@ def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
     """Yield the messages that are sent as several packets."""
     room = can.get("max_data_bytes", CAN_DATA_BYTES)
     types = (("telecommand", "extended_request"), ("telemetry", "extended_response"))
-    directions = {direction for direction, key in types if at_path(can, (direction, key)) is not None}
+    directions = {
+        direction
+        for direction, key in types
+        if at_path(can, (direction, key)) is not None
+    }
     for message in ctx.messages_of(node) if isinstance(room, int) else ():
-        if message.length > room and any(direction in directions for _, direction in KEYS_OF_IDS[message.kind]):
+        if message.length > room and any(
+            direction in directions for _, direction in KEYS_OF_IDS[message.kind]
+        ):
             yield message
 
 
@@ -72,8 +84,15 @@ def numbers_fit_their_bits(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _on_can(ctx, node)
     for errors in ctx.sections("errors"):
-        for first, role, code in of_one_number(errors, "none", "unknown_id", "length", "parameter", "checksum"):
-            yield Fault.at(errors, role, f"{code} stands for both `{first}` and `{role}`", "give each its own code")
+        for first, role, code in of_one_number(
+            errors, "none", "unknown_id", "length", "parameter", "checksum"
+        ):
+            yield Fault.at(
+                errors,
+                role,
+                f"{code} stands for both `{first}` and `{role}`",
+                "give each its own code",
+            )
     for name in ("crc8", "crc16"):
         for crc in ctx.sections(name):
             yield from _checksum(crc)
@@ -93,18 +112,30 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
         for row in mappings(own_fact(node, "can", "message_types", "values")):
             yield from _fits(ctx, row, "value", bits.get("type"), "a message type")
         for role in ("source", "destination"):
-            yield from _fits(ctx, own, "node_address", bits.get(role), f"a {role} address")
+            yield from _fits(
+                ctx, own, "node_address", bits.get(role), f"a {role} address"
+            )
     for message in ctx.messages_of(node):
         for key, _ in KEYS_OF_IDS[message.kind]:
-            yield from _fits(ctx, message.source, key, bits.get("channel"), "the channel of a CAN identifier")
+            yield from _fits(
+                ctx,
+                message.source,
+                key,
+                bits.get("channel"),
+                "the channel of a CAN identifier",
+            )
 
 
-def _fits(ctx: Context, owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
+def _fits(
+    ctx: Context, owner: Map, key: str, bits: int | None, what: str
+) -> Iterator[Fault]:
     """Yield a fault if the number of a key has more than ``bits`` bits."""
     value = owner.get(key)
     if bits is not None and isinstance(value, int) and value >= 1 << bits:
         message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {ctx.written(owner, key)}"
-        yield Fault.at(owner, key, message, f"correct `{key}`, or `bits` of the identifier")
+        yield Fault.at(
+            owner, key, message, f"correct `{key}`, or `bits` of the identifier"
+        )
 
 
 def _checksum(crc: Map) -> Iterator[Fault]:
@@ -115,28 +146,51 @@ def _checksum(crc: Map) -> Iterator[Fault]:
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         value = crc.get(key)
         if isinstance(value, int) and value >= 1 << width:
-            yield Fault.at(crc, key, f"`{key}` does not fit {width} bits", *of_wide_value(key, value, width))
+            yield Fault.at(
+                crc,
+                key,
+                f"`{key}` does not fit {width} bits",
+                *of_wide_value(key, value, width),
+            )
     for direction in ("telecommand", "telemetry"):
         extra = at_path(crc, (direction, "extra_bytes"))
         if isinstance(extra, int) and extra * 8 < width:
             message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
-            yield Fault.at(crc[direction], "extra_bytes", message, "correct `extra_bytes` or `width`")
+            yield Fault.at(
+                crc[direction],
+                "extra_bytes",
+                message,
+                "correct `extra_bytes` or `width`",
+            )
 
 
 def _counter(files: Map) -> Iterator[Fault]:
-    """Yield a fault if the packet counter of a file transfer cannot number all packets of a block."""
-    sizes, first = numbers(files, "packet_counter_bytes", "block_packets"), files.get("first_packet", 0)
+    """Yield a fault if the packet counter of a file transfer cannot number all packets
+    of a block.
+    """
+    sizes, first = numbers(files, "packet_counter_bytes", "block_packets"), files.get(
+        "first_packet", 0
+    )
     if sizes is None or not isinstance(first, int):
         return
     size, packets = sizes
     if first + packets > 256**size:
         last = f"the last packet of a block has number {first + packets - 1}"
         message = f"{last}, which does not fit {count(size, 'byte')}"
-        yield Fault.at(files, "packet_counter_bytes", message, "correct it, `block_packets` or `first_packet`")
+        yield Fault.at(
+            files,
+            "packet_counter_bytes",
+            message,
+            "correct it, `block_packets` or `first_packet`",
+        )
 
 
 def roles_occur_once(
-    section: Map, key: str, roles: Sequence[str], lacks: str, help: str = "give the parts their `role`"
+    section: Map,
+    key: str,
+    roles: Sequence[str],
+    lacks: str,
+    help: str = "give the parts their `role`",
 ) -> Iterator[Fault]:
     """Yield the faults of a list of parts that must have each of the ``roles`` once.
 
@@ -158,7 +212,13 @@ def roles_occur_once(
             here = row.at(key_of_role)
             message = f"`{role}` is given twice, here and in {line_of(other, here)}"
             remedy = f"correct the `{key_of_role}` of one part, or remove it"
-            yield Fault.at(row, key_of_role, message, remedy, related=Related(other, f"the first `{role}`"))
+            yield Fault.at(
+                row,
+                key_of_role,
+                message,
+                remedy,
+                related=Related(other, f"the first `{role}`"),
+            )
     missing = [f"`{role}`" for role in roles if role not in first_with]
     if missing:
         yield Fault.at(section, key, f"{lacks} {listing(missing)}", help)
@@ -168,11 +228,15 @@ def roles_occur_once(
 def can_identifier_has_all_parts(ctx: Context) -> Iterator[Fault]:
     for can in ctx.sections("can"):
         if {"message_types", "telecommand", "telemetry"} & can.keys():
-            yield from roles_occur_once(can, "identifier", ROLES, "the identifier has no part for")
+            yield from roles_occur_once(
+                can, "identifier", ROLES, "the identifier has no part for"
+            )
 
 
 @rule("ICD102")
 def packed_time_has_all_parts(ctx: Context) -> Iterator[Fault]:
     for time in ctx.sections("msdos_time"):
         help = "add all parts from `year` to `second`"
-        yield from roles_occur_once(time, "parts", TIME_PARTS, "the packed time lacks", help)
+        yield from roles_occur_once(
+            time, "parts", TIME_PARTS, "the packed time lacks", help
+        )

@@ -1,4 +1,6 @@
-"""Protocol section: directions, message types, acknowledges, buses and packets that a receiver could not interpret."""
+"""Protocol section: directions, message types, acknowledges, buses and packets that a
+receiver could not interpret.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,10 @@ from icdgen.wording import count, quote
 ACKNOWLEDGE_ROLES = ("id", "error")
 # Keys of the CAN message types for data in each direction, in one packet and in several
 # packets.
-CAN_TYPES = {TELECOMMAND: ("request", "extended_request"), TELEMETRY: ("response", "extended_response")}
+CAN_TYPES = {
+    TELECOMMAND: ("request", "extended_request"),
+    TELEMETRY: ("response", "extended_response"),
+}
 
 
 @rule("ICD103")
@@ -37,30 +42,45 @@ def id_ranges_determine_the_direction(ctx: Context) -> Iterator[Fault]:
                 last, first = (ctx.written(section, key) for key in ("last", "first"))
                 message = f"the last id, {last}, comes before the first, {first}"
                 yield Fault.at(section, "last", message, "correct `first` or `last`")
-            yield from _bit(own_fact(node, "message_id", "direction_bit"), section, direction, *ends)
+            yield from _bit(
+                own_fact(node, "message_id", "direction_bit"), section, direction, *ends
+            )
         if len(ranges) == 2:
             yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
 
 
-def _bit(bit: object, section: Map, direction: str, first: int, last: int) -> Iterator[Fault]:
+def _bit(
+    bit: object, section: Map, direction: str, first: int, last: int
+) -> Iterator[Fault]:
     """Yield a fault if a range has an id with the direction bit of the other direction."""
     wanted = section.get("direction")
-    if not isinstance(bit, int) or bit < 0 or wanted not in (0, 1) or not 0 <= first <= last <= 255:
+    if (
+        not isinstance(bit, int)
+        or bit < 0
+        or wanted not in (0, 1)
+        or not 0 <= first <= last <= 255
+    ):
         return
     other = next((id for id in range(first, last + 1) if id >> bit & 1 != wanted), None)
     if other is not None:
         message = f"the range contains {other}, whose bit {bit} is {1 - wanted}; in a {direction} id it is {wanted}"
         key = "first" if other == first else "last"
-        yield Fault.at(section, key, message, "correct the range, `direction` or `direction_bit`")
+        yield Fault.at(
+            section, key, message, "correct the range, `direction` or `direction_bit`"
+        )
 
 
 def _overlap(telecommands: Map, telemetry: Map) -> Iterator[Fault]:
     """Yield a fault if the ranges of ids of the two directions overlap."""
-    first, last = max(telecommands["first"], telemetry["first"]), min(telecommands["last"], telemetry["last"])
+    first, last = max(telecommands["first"], telemetry["first"]), min(
+        telecommands["last"], telemetry["last"]
+    )
     if first <= last:
         ids = f"ids {first} to {last} are" if first < last else f"id {first} is"
         message = f"{ids} in the range of telecommands, too"
-        yield Fault.at(telemetry, "first", message, "correct the ranges: they must not overlap")
+        yield Fault.at(
+            telemetry, "first", message, "correct the ranges: they must not overlap"
+        )
 
 
 @rule("ICD104")
@@ -70,25 +90,39 @@ def can_message_types_are_unique(ctx: Context) -> Iterator[Fault]:
         for row in mappings(types.get("values")):
             for key in ("value", "name"):
                 value = row.get(key)
-                first = seen.setdefault((key, value), row) if isinstance(value, int | str) else row
+                first = (
+                    seen.setdefault((key, value), row)
+                    if isinstance(value, int | str)
+                    else row
+                )
                 if first is not row:
                     line = line_of(first.at(key), row.at(key))
-                    message = f"the name {quote(value)} is given twice, here and in {line}"
+                    message = (
+                        f"the name {quote(value)} is given twice, here and in {line}"
+                    )
                     if key == "value":
                         message = f"the value {value} already belongs to {quote(first.get('name'))} ({line})"
                     related = Related(first.at(key), f"the first `{key}`")
-                    yield Fault.at(row, key, message, f"correct one `{key}`", related=related)
+                    yield Fault.at(
+                        row, key, message, f"correct one `{key}`", related=related
+                    )
 
 
 @rule("ICD105")
 def acknowledges_have_all_parts(ctx: Context) -> Iterator[Fault]:
     for section in ctx.sections("uart", "acknowledge"):
-        yield from roles_occur_once(section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for")
+        yield from roles_occur_once(
+            section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for"
+        )
         for row in mappings(section.get("data")):
             role, size = row.get("role"), row.get("bytes")
             if role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
-                message = f"the {role} has {count(size, 'byte')}, but icdgen reads one byte"
-                yield Fault.at(row, "bytes", message, "correct `bytes`, or leave the section out")
+                message = (
+                    f"the {role} has {count(size, 'byte')}, but icdgen reads one byte"
+                )
+                yield Fault.at(
+                    row, "bytes", message, "correct `bytes`, or leave the section out"
+                )
 
 
 @rule("ICD106", needs_complete=True)
@@ -99,7 +133,10 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
             buses = own_fact(node, *path, "buses")
             for bus, place in buses.placed() if buses is not None else ():
                 if not any(bus in ctx.protocol_of(user) for user in users):
-                    text, help = f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`"
+                    text, help = (
+                        f"the protocol has no section `{bus}`",
+                        f"add it, or remove `{bus}`",
+                    )
                     yield Fault(section_of(node, *path), place, text, help)
 
 
@@ -114,7 +151,9 @@ def messages_fit_their_can_packets(ctx: Context) -> Iterator[Fault]:
         room = can.get("max_data_bytes", CAN_DATA_BYTES)
         short = {direction for direction in CAN_TYPES if _is_short(can, direction)}
         for message in ctx.messages_of(node):
-            is_short = any(direction in short for _, direction in KEYS_OF_IDS[message.kind])
+            is_short = any(
+                direction in short for _, direction in KEYS_OF_IDS[message.kind]
+            )
             if is_short and message.length > room and id(message.source) not in seen:
                 seen.add(id(message.source))
                 text = f"{quote(message.name)} has {count(message.length, 'byte')}, but a packet has up to {room}"

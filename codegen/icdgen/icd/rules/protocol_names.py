@@ -1,4 +1,6 @@
-"""Protocol section: names of messages, fields, enumeration members, message types and nodes."""
+"""Protocol section: names of messages, fields, enumeration members, message types and
+nodes.
+"""
 
 from __future__ import annotations
 
@@ -23,18 +25,47 @@ from icdgen.wording import quote
 T = TypeVar("T")
 
 # Keys that name messages.
-MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names", "reset_by", "if_not_started")
+MESSAGES = (
+    "message",
+    "packet",
+    "id_of",
+    "stop_request",
+    "set_by",
+    "names",
+    "reset_by",
+    "if_not_started",
+)
 # Keys that name fields of the message of the key `message` in the same mapping.
 FIELDS = ("id", "until", "error", "parameter", "field")
 # Keys that name an enumeration, with the keys of the same mapping that have its values.
 MEMBERS = (
-    ("enum", ("value", "none", "unknown_id", "length", "parameter", "checksum", "selected", "success", "failed")),
+    (
+        "enum",
+        (
+            "value",
+            "none",
+            "unknown_id",
+            "length",
+            "parameter",
+            "checksum",
+            "selected",
+            "success",
+            "failed",
+        ),
+    ),
     ("failure_enum", ("failure",)),
     ("destination_enum", ("destinations",)),
     ("program_enum", ("programs", "destination")),
 )
 # Keys of `can.telecommand` and `can.telemetry` that name message types.
-TYPES = ("request", "extended_request", "acknowledge", "response", "extended_response", "failure")
+TYPES = (
+    "request",
+    "extended_request",
+    "acknowledge",
+    "response",
+    "extended_response",
+    "failure",
+)
 
 
 @rule("ICD093", needs_complete=True)
@@ -47,7 +78,13 @@ def named_messages_and_members_exist(ctx: Context) -> Iterator[Fault]:
                 for name, place in _values(section, key, str):
                     if name not in messages:
                         help, fix = suggestion(name, messages, VERBATIM)
-                        yield Fault.of_place(section, place, f"there is no message {quote(name)}", help, fix)
+                        yield Fault.of_place(
+                            section,
+                            place,
+                            f"there is no message {quote(name)}",
+                            help,
+                            fix,
+                        )
             for name, keys in MEMBERS:
                 enum = named(enums, section.get(name))
                 if enum is None:
@@ -56,11 +93,15 @@ def named_messages_and_members_exist(ctx: Context) -> Iterator[Fault]:
                     for value, place in _values(section, key, int):
                         if enum.member_of(value) is None:
                             text = f"the enumeration {quote(enum.name)} has no member {value}"
-                            yield Fault(section, place, text, f"correct `{key}` or `{name}`")
+                            yield Fault(
+                                section, place, text, f"correct `{key}` or `{name}`"
+                            )
 
 
 class _Named(NamedTuple):
-    """Name of a field in the protocol section: ``owner[key]`` is the name of a field of ``message``."""
+    """Name of a field in the protocol section: ``owner[key]`` is the name of a field of
+    ``message``.
+    """
 
     owner: Map
     key: str
@@ -71,7 +112,9 @@ def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
     """Yield the names of fields in the protocol section of a node."""
     messages = {message.name: message for message in ctx.messages_of(node)}
     for section in sections(node):
-        references = [(section, key, section.get("message")) for key in FIELDS if key in section]
+        references = [
+            (section, key, section.get("message")) for key in FIELDS if key in section
+        ]
         if isinstance(fields := section.get("fields"), Map):
             references += [(fields, key, section.get("message")) for key in fields]
         if isinstance(names := section.get("names"), Seq) and "field" in section:
@@ -89,13 +132,13 @@ def named_fields_exist(ctx: Context) -> Iterator[Fault]:
             fields = scalars_in(message.layout)
             names = {field.name for field in fields if not field.is_read_only}
             if any(field.name == owner[key] and field.is_read_only for field in fields):
-                text = (
-                    f"{quote(owner[key])} of {quote(message.name)} is an overlay field, but links read fields with bits"
-                )
+                text = f"{quote(owner[key])} of {quote(message.name)} is an overlay field, but links read fields with bits"
                 yield Fault.at(owner, key, text, "name the field that has the bits")
             elif owner[key] not in names:
                 text = f"{quote(message.name)} has no field {quote(owner[key])}"
-                yield Fault.at(owner, key, text, *suggestion(owner[key], names, VERBATIM))
+                yield Fault.at(
+                    owner, key, text, *suggestion(owner[key], names, VERBATIM)
+                )
 
 
 @rule("ICD113", needs_complete=True)
@@ -105,10 +148,16 @@ def named_fields_have_the_orders_of_the_node(ctx: Context) -> Iterator[Fault]:
             home = ctx.home_of(message, node)
             for field in scalars_in(message.layout):
                 own = field.orders_in_effect(home.orders)
-                if field.name == owner[key] and not field.is_bytes and own != node.orders:
+                if (
+                    field.name == owner[key]
+                    and not field.is_bytes
+                    and own != node.orders
+                ):
                     text = f"{quote(field.name)} is {own.byte} {own.bit}, the links of `{node.name}` read fields as"
                     help = f"give it the orders of the node, or leave `{key}` out"
-                    yield Fault.at(owner, key, f"{text} {node.byte_order} {node.bit_order}", help)
+                    yield Fault.at(
+                        owner, key, f"{text} {node.byte_order} {node.bit_order}", help
+                    )
 
 
 @rule("ICD095")
@@ -117,12 +166,16 @@ def message_types_exist(ctx: Context) -> Iterator[Fault]:
         values = at_path(can, ("message_types", "values"))
         if not isinstance(values, Seq):
             continue
-        names = {row["name"] for row in mappings(values) if isinstance(row.get("name"), str)}
+        names = {
+            row["name"] for row in mappings(values) if isinstance(row.get("name"), str)
+        }
         for direction, key in product(("telecommand", "telemetry"), TYPES):
             name = at_path(can, (direction, key))
             if isinstance(name, str) and name not in names:
                 message = f"there is no message type {quote(name)}"
-                yield Fault.at(can[direction], key, message, *suggestion(name, names, VERBATIM))
+                yield Fault.at(
+                    can[direction], key, message, *suggestion(name, names, VERBATIM)
+                )
 
 
 @rule("ICD109", needs_complete=True)
@@ -133,15 +186,26 @@ def named_nodes_exist(ctx: Context) -> Iterator[Fault]:
             for name, place in _values(section, "nodes", str):
                 # Only the given ICDs are loaded; the node can be in another file of the
                 # same folder.
-                if name not in names and not Path(place.file).with_name(f"{name}.yaml").exists():
-                    help, fix = suggestion(name, names, "correct it, or load the node's file too")
-                    yield Fault.of_place(section, place, f"there is no node {quote(name)}", help, fix)
+                if (
+                    name not in names
+                    and not Path(place.file).with_name(f"{name}.yaml").exists()
+                ):
+                    help, fix = suggestion(
+                        name, names, "correct it, or load the node's file too"
+                    )
+                    yield Fault.of_place(
+                        section, place, f"there is no node {quote(name)}", help, fix
+                    )
 
 
 def _values(section: Map, key: str, kind: type[T]) -> Iterator[tuple[T, Place]]:
-    """Yield the values of a type of a key, which is a single value or a list, each with its place."""
+    """Yield the values of a type of a key, which is a single value or a list, each with
+    its place.
+    """
     value = section.get(key)
     if isinstance(value, Seq):
-        yield from ((item, place) for item, place in value.placed() if isinstance(item, kind))
+        yield from (
+            (item, place) for item, place in value.placed() if isinstance(item, kind)
+        )
     elif isinstance(value, kind):
         yield value, section.at(key)

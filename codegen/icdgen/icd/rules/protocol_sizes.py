@@ -17,13 +17,18 @@ CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 
 
 def numbers(section: Map | None, *keys: str) -> tuple[int, ...] | None:
-    """Return the numbers of several keys; None if one of them is absent or not a number."""
+    """Return the numbers of several keys.
+
+    Returns None if one of them is absent or not a number.
+    """
     values = tuple(at_path(section, [key]) for key in keys)
     return values if all(isinstance(value, int) for value in values) else None
 
 
 def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (earlier key, key, number) for each key with the same number as an earlier key."""
+    """Yield (earlier key, key, number) for each key with the same number as an earlier
+    key.
+    """
     seen: dict[int, str] = {}
     for key in keys:
         value = section.get(key)
@@ -34,10 +39,14 @@ def of_one_number(section: Map, *keys: str) -> Iterator[tuple[str, str, int]]:
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
     for framing in ctx.sections("uart", "framing"):
-        for first, key, value in of_one_number(framing, "start_of_message", "end_of_message", "escaped_data"):
+        for first, key, value in of_one_number(
+            framing, "start_of_message", "end_of_message", "escaped_data"
+        ):
             message = f"after the escape byte 0x{value:02X} stands for both `{first}` and `{key}`"
             yield Fault.at(framing, key, message, "use a different byte for each")
-        for _, key, value in of_one_number(framing, "escape", "start_of_message", "end_of_message"):
+        for _, key, value in of_one_number(
+            framing, "escape", "start_of_message", "end_of_message"
+        ):
             # Other equal values are reported above.
             if value == framing["escape"]:
                 message = f"the escape byte 0x{value:02X} is also `{key}`"
@@ -64,11 +73,15 @@ def sizes_agree(ctx: Context) -> Iterator[Fault]:
 
 
 def _product(section: Map, total: str, count: str, part: str) -> Iterator[Fault]:
-    """Yield a fault if the number of the key ``total`` is not the product of the other two."""
+    """Yield a fault if the number of the key ``total`` is not the product of the other
+    two.
+    """
     values = numbers(section, total, count, part)
     if values and values[0] != values[1] * values[2]:
         message = f"`{total}` is {values[0]}, but `{count}` times `{part}` is {values[1] * values[2]}"
-        yield Fault.at(section, total, message, f"correct `{total}`, `{count}` or `{part}`")
+        yield Fault.at(
+            section, total, message, f"correct `{total}`, `{count}` or `{part}`"
+        )
 
 
 def _identifier(can: Map) -> Iterator[Fault]:
@@ -84,24 +97,45 @@ def _identifier(can: Map) -> Iterator[Fault]:
 
 
 def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
-    """Yield a fault if the byte that counts the packets left is in the data, or outside of the packet."""
-    data, left, room = extended.get("data_bytes"), extended.get("packets_left_byte"), can.get("max_data_bytes")
+    """Yield a fault if the byte that counts the packets left is in the data, or outside
+    of the packet.
+    """
+    data, left, room = (
+        extended.get("data_bytes"),
+        extended.get("packets_left_byte"),
+        can.get("max_data_bytes"),
+    )
     if isinstance(data, int) and isinstance(left, int) and left < data:
         message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
-        yield Fault.at(extended, "packets_left_byte", message, f"correct it: the first byte after the data is {data}")
+        yield Fault.at(
+            extended,
+            "packets_left_byte",
+            message,
+            f"correct it: the first byte after the data is {data}",
+        )
     elif isinstance(left, int) and isinstance(room, int) and left >= room:
         message = f"byte {left} is outside a packet of {room} bytes"
-        yield Fault.at(extended, "packets_left_byte", message, "correct it or `max_data_bytes`")
+        yield Fault.at(
+            extended, "packets_left_byte", message, "correct it or `max_data_bytes`"
+        )
 
 
 def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
-    """Yield a fault if the mask in a log does not have the size of `log_mask`, which readers of logs use."""
+    """Yield a fault if the mask in a log does not have the size of `log_mask`, which
+    readers of logs use.
+    """
     size = ctx.fact(node, "log_mask", "bytes")
     for path in (("telemetry_log", "header"), ("unsolicited_log", "message")):
         for row in mappings(own_fact(node, *path)) if isinstance(size, int) else ():
             given = row.get("bytes")
-            if row.get("role", row.get("name")) == "mask" and isinstance(given, int) and given != size:
-                message = f"the mask has {counted(given, 'byte')} here, {size} by `log_mask`"
+            if (
+                row.get("role", row.get("name")) == "mask"
+                and isinstance(given, int)
+                and given != size
+            ):
+                message = (
+                    f"the mask has {counted(given, 'byte')} here, {size} by `log_mask`"
+                )
                 yield Fault.at(row, "bytes", message, "correct one of them")
 
 
@@ -109,11 +143,15 @@ def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
     """Yield the faults of a hole map that has too few bits or names."""
     size, packets = hole_map.get("bytes"), files.get("block_packets")
     if isinstance(size, int) and isinstance(packets, int) and packets > size * 8:
-        message = f"a hole map of {size} bytes has {size * 8} bits, a block {packets} packets"
+        message = (
+            f"a hole map of {size} bytes has {size * 8} bits, a block {packets} packets"
+        )
         yield Fault.at(hole_map, "bytes", message, "correct `bytes` or `block_packets`")
     count, names = hole_map.get("messages"), hole_map.get("names")
     if isinstance(count, int) and isinstance(names, Seq) and len(names) != count:
-        message = f"`names` has {counted(len(names), 'message')}, `messages` says {count}"
+        message = (
+            f"`names` has {counted(len(names), 'message')}, `messages` says {count}"
+        )
         yield Fault.at(hole_map, "names", message, "correct `names` or `messages`")
 
 
@@ -127,7 +165,9 @@ def assumptions_name_existing_keys(ctx: Context) -> Iterator[Fault]:
             continue
         for key in assumptions:
             if key == "assumptions" or key not in owner:
-                message = f"`assumptions` lists `{key}`, which is not a key of this mapping"
+                message = (
+                    f"`assumptions` lists `{key}`, which is not a key of this mapping"
+                )
                 yield Fault(
                     owner,
                     assumptions.key_at(key),

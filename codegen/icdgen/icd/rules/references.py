@@ -23,27 +23,55 @@ def enumerations_exist(ctx: Context) -> Iterator[Fault]:
         if field.type != "enum":
             if "enum" in source:
                 message = f"{quote(field.name)} names an enumeration, but its type is `{field.type}`"
-                yield Fault.at(source, "enum", message, "write `type: enum` or remove `enum:`")
+                yield Fault.at(
+                    source, "enum", message, "write `type: enum` or remove `enum:`"
+                )
         elif "enum" not in source:
             message = f"{quote(field.name)} has the type `enum` but no `enum` key"
-            yield Fault.at(source, "type", message, "add `enum:`, the name of an enumeration")
+            yield Fault.at(
+                source, "type", message, "add `enum:`, the name of an enumeration"
+            )
         elif field.enum is None and ctx.complete:
-            yield Fault.at(source, "enum", *undeclared(ctx, node, "enumeration", "enums", source["enum"]))
+            yield Fault.at(
+                source,
+                "enum",
+                *undeclared(ctx, node, "enumeration", "enums", source["enum"]),
+            )
     if ctx.complete:
         for node in ctx.icd.nodes:
-            names = {enum.name for declaring in ctx.scope(node) for enum in declaring.enums}
+            names = {
+                enum.name for declaring in ctx.scope(node) for enum in declaring.enums
+            }
             for owner, key in _protocol_enums(node):
                 if owner[key] not in names:
-                    yield Fault.at(owner, key, *undeclared(ctx, node, "enumeration", "enums", owner[key]))
+                    yield Fault.at(
+                        owner,
+                        key,
+                        *undeclared(ctx, node, "enumeration", "enums", owner[key]),
+                    )
 
 
-def undeclared(ctx: Context, node: Node, what: str, section: str, name: str) -> tuple[str, str, str]:
-    """Return message, help and fix for a name that no ``section`` in the scope of a node declares."""
-    declaring = next((other for other in ctx.icd.nodes for item in getattr(other, section) if item.name == name), None)
+def undeclared(
+    ctx: Context, node: Node, what: str, section: str, name: str
+) -> tuple[str, str, str]:
+    """Return message, help and fix for a name that no ``section`` in the scope of a
+    node declares.
+    """
+    declaring = next(
+        (
+            other
+            for other in ctx.icd.nodes
+            for item in getattr(other, section)
+            if item.name == name
+        ),
+        None,
+    )
     if declaring is not None:
         help, fix = f"`{declaring.name}` declares it: include {declaring.file}", ""
     else:
-        names = (item.name for other in ctx.scope(node) for item in getattr(other, section))
+        names = (
+            item.name for other in ctx.scope(node) for item in getattr(other, section)
+        )
         help, fix = suggestion(name, names, f"declare it in `{section}:`")
     return f"there is no {what} {quote(name)}", help, fix
 
@@ -57,7 +85,10 @@ def enumerations_are_used(ctx: Context) -> Iterator[Fault]:
         # suggests.
         if field.enum is None:
             scope = ctx.scope(node)
-            close = close_to(field.source["enum"], (enum.name for owner in scope for enum in owner.enums))
+            close = close_to(
+                field.source["enum"],
+                (enum.name for owner in scope for enum in owner.enums),
+            )
             named |= {(id(owner), close) for owner in scope}
     for node in ctx.icd.nodes:
         for section, key in _protocol_enums(node):
@@ -65,13 +96,19 @@ def enumerations_are_used(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         names = [enum.name for enum in node.enums]
         for enum in node.enums:
-            if id(enum) not in used and (id(node), enum.name) not in named and names.count(enum.name) == 1:
+            if (
+                id(enum) not in used
+                and (id(node), enum.name) not in named
+                and names.count(enum.name) == 1
+            ):
                 text = f"no field uses the enumeration {quote(enum.name)}"
                 yield Fault.at(enum.source, "name", text, "use or remove it")
 
 
 def _protocol_enums(node: Node) -> Iterator[tuple[Map, str]]:
-    """Yield each mapping of the protocol section that names an enumeration, with the key of the name."""
+    """Yield each mapping of the protocol section that names an enumeration, with the
+    key of the name.
+    """
     for section in sections(node):
         for key, value in section.items():
             if (key == "enum" or key.endswith("_enum")) and isinstance(value, str):
@@ -83,9 +120,18 @@ def units_exist(ctx: Context) -> Iterator[Fault]:
     for field, (_, _, node) in ctx.fields_with["unit"]:
         if field.unit is None:
             unit = field.source["unit"]
-            help, fix = "declare it in `units:`; `icdgen units` lists the built-in units", ""
-            symbols = (declared.symbol for owner in ctx.scope(node) for declared in owner.units)
+            help, fix = (
+                "declare it in `units:`; `icdgen units` lists the built-in units",
+                "",
+            )
+            symbols = (
+                declared.symbol for owner in ctx.scope(node) for declared in owner.units
+            )
             if close := similar_unit(unit, symbols):
-                otherwise = "" if unit in SPELLINGS else " If not, declare it in `units:`"
+                otherwise = (
+                    "" if unit in SPELLINGS else " If not, declare it in `units:`"
+                )
                 help, fix = f"did you mean {quote(close)}?{otherwise}", yaml_text(close)
-            yield Fault.at(field.source, "unit", f"the unit {quote(unit)} is unknown", help, fix)
+            yield Fault.at(
+                field.source, "unit", f"the unit {quote(unit)} is unknown", help, fix
+            )

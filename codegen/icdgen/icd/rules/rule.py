@@ -43,19 +43,37 @@ REGISTERED: dict[str, Rule] = {}
 
 
 def rule(
-    code: str, *, severity: str = "error", needs_complete: bool = False, runs_last: bool = False
+    code: str,
+    *,
+    severity: str = "error",
+    needs_complete: bool = False,
+    runs_last: bool = False,
 ) -> Callable[[Check], Check]:
-    """Register the decorated function as the rule ``code``; the name of its module is the theme."""
+    """Register the decorated function as the rule ``code``.
+
+    The name of its module is the theme.
+    """
 
     def register(check: Check) -> Check:
-        add(Rule(code, check.__module__.rpartition(".")[2], check, severity, needs_complete, runs_last))
+        add(
+            Rule(
+                code,
+                check.__module__.rpartition(".")[2],
+                check,
+                severity,
+                needs_complete,
+                runs_last,
+            )
+        )
         return check
 
     return register
 
 
 def elsewhere(theme: str, *codes: str) -> None:
-    """Register codes whose findings are raised while files are read or overlays are applied."""
+    """Register codes whose findings are raised while files are read or overlays are
+    applied.
+    """
     for code in codes:
         add(Rule(code, theme))
 

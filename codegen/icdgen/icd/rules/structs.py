@@ -19,31 +19,59 @@ from icdgen.suggest import close_to
 from icdgen.wording import quote
 
 # Keys of a line that uses a struct.
-_KEYS_OF_USES = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary", "aliases"})
+_KEYS_OF_USES = frozenset(
+    {
+        "at",
+        "name",
+        "identifier",
+        "struct",
+        "count",
+        "after",
+        "up_to",
+        "summary",
+        "aliases",
+    }
+)
 
 
 def _uses(ctx: Context) -> Iterator[tuple[Map, Map, Node]]:
-    """Yield the lines that use a struct, each with the message or struct that contains it, and the node."""
+    """Yield the lines that use a struct, each with the message or struct that contains
+    it, and the node.
+    """
     for node in ctx.icd.nodes:
         for key in ("structs", "messages"):
             for owner in mappings(node.source.get(key)):
                 for row in mappings(owner.get("fields")):
-                    if isinstance(row.get("struct"), str) and isinstance(row.get("name"), str):
+                    if isinstance(row.get("struct"), str) and isinstance(
+                        row.get("name"), str
+                    ):
                         yield row, owner, node
 
 
 @rule("ICD140")
 def structs_exist(ctx: Context) -> Iterator[Fault]:
     for row, _, node in _uses(ctx) if ctx.complete else ():
-        if all(struct.name != row["struct"] for declaring in ctx.scope(node) for struct in declaring.structs):
-            yield Fault.at(row, "struct", *undeclared(ctx, node, "struct", "structs", row["struct"]))
+        if all(
+            struct.name != row["struct"]
+            for declaring in ctx.scope(node)
+            for struct in declaring.structs
+        ):
+            yield Fault.at(
+                row,
+                "struct",
+                *undeclared(ctx, node, "struct", "structs", row["struct"]),
+            )
 
 
 @rule("ICD141")
 def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         uses = {
-            struct["name"]: [row for row in mappings(struct.get("fields")) if isinstance(row.get("struct"), str)]
+            struct["name"]: [
+                row
+                for row in mappings(struct.get("fields"))
+                if isinstance(row.get("struct"), str)
+            ]
             for struct in mappings(node.source.get("structs"))
             if isinstance(struct.get("name"), str)
         }
@@ -56,8 +84,13 @@ def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
                     yield Fault.at(row, "struct", message, help)
 
 
-def _shortest_path(first: str, last: str, uses: dict[str, list[Map]]) -> list[str] | None:
-    """Return the structs from ``first`` to ``last``, each of which contains the next; None if there is no path."""
+def _shortest_path(
+    first: str, last: str, uses: dict[str, list[Map]]
+) -> list[str] | None:
+    """Return the structs from ``first`` to ``last``, each of which contains the next.
+
+    Returns None if there is no path.
+    """
     paths, seen = [[first]], {first}
     while paths:
         path = paths.pop(0)
@@ -96,34 +129,58 @@ def uses_have_no_keys_of_fields(ctx: Context) -> Iterator[Fault]:
         for field in struct.layout.nodes:
             if is_overlay(field):
                 message = f"{quote(field.name)} is an overlay field, which is not supported in a struct"
-                yield Fault.at(field.source, "view", message, "write the overlay field in the message")
+                yield Fault.at(
+                    field.source,
+                    "view",
+                    message,
+                    "write the overlay field in the message",
+                )
 
 
 @rule("ICD146", needs_complete=True)
 def variable_lengths_in_structs_are_determined(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        structs = {struct.name: struct for owner in ctx.scope(node) for struct in owner.structs}
+        structs = {
+            struct.name: struct for owner in ctx.scope(node) for struct in owner.structs
+        }
         lengths = {name: struct.length for name, struct in structs.items()}
         sources = {name: struct.source for name, struct in structs.items()}
-        variable = {name for name, struct in structs.items() if variable_structs.is_variable_struct(struct.source)}
+        variable = {
+            name
+            for name, struct in structs.items()
+            if variable_structs.is_variable_struct(struct.source)
+        }
         for struct in node.structs:
-            yield from variable_structs.faults_in_struct(struct.source, lengths, variable)
+            yield from variable_structs.faults_in_struct(
+                struct.source, lengths, variable
+            )
             sequence = set(map(id, variable_structs.sequence_of_struct(struct.source)))
             for row in mappings(struct.source.get("fields")):
-                if row.get("struct") in variable and id(row) not in sequence and isinstance(row.get("name"), str):
-                    text = (
-                        f"the struct {quote(row['struct'])} has a variable length, which is not supported in a struct"
+                if (
+                    row.get("struct") in variable
+                    and id(row) not in sequence
+                    and isinstance(row.get("name"), str)
+                ):
+                    text = f"the struct {quote(row['struct'])} has a variable length, which is not supported in a struct"
+                    yield Fault.at(
+                        row,
+                        "struct",
+                        text,
+                        f"write its fields into {quote(struct.name)}",
                     )
-                    yield Fault.at(row, "struct", text, f"write its fields into {quote(struct.name)}")
         for message in node.messages:
             for row in mappings(message.source.get("fields")):
                 if row.get("struct") in variable and isinstance(row.get("name"), str):
-                    yield from variable_structs.faults_of_inner_counts(message.source, row, sources)
+                    yield from variable_structs.faults_of_inner_counts(
+                        message.source, row, sources
+                    )
 
 
 @rule("ICD049")
 def struct_names_are_unique(ctx: Context) -> Iterator[Fault]:
-    yield from duplicate_names(ctx, "a struct", lambda node: node.structs, "rename one, or use the other")
+    yield from duplicate_names(
+        ctx, "a struct", lambda node: node.structs, "rename one, or use the other"
+    )
 
 
 @rule("ICD144", severity="warning", needs_complete=True)
@@ -131,14 +188,26 @@ def structs_are_used(ctx: Context) -> Iterator[Fault]:
     names = [struct.name for struct, _ in ctx.structs]
     # Look at the tree and not at the model: a message with errors uses its structs,
     # too.
-    structs = {id(item) for node in ctx.icd.nodes for item in mappings(node.source.get("structs"))}
+    structs = {
+        id(item)
+        for node in ctx.icd.nodes
+        for item in mappings(node.source.get("structs"))
+    }
     # Structs that each struct uses; under "" those that messages use.
     used_by: dict[str, set[str]] = {}
     for row, owner, node in _uses(ctx):
-        declared = [struct.name for declaring in ctx.scope(node) for struct in declaring.structs]
+        declared = [
+            struct.name for declaring in ctx.scope(node) for struct in declaring.structs
+        ]
         # A misspelt name counts as a use of the similar struct, which ICD140 suggests.
-        name = row["struct"] if row["struct"] in declared else close_to(row["struct"], declared)
-        used_by.setdefault(str(owner.get("name")) if id(owner) in structs else "", set()).add(name)
+        name = (
+            row["struct"]
+            if row["struct"] in declared
+            else close_to(row["struct"], declared)
+        )
+        used_by.setdefault(
+            str(owner.get("name")) if id(owner) in structs else "", set()
+        ).add(name)
     used: set[str] = set()
     queue = [""]
     while queue:
@@ -164,6 +233,8 @@ def split_fields_have_the_same_orders(ctx: Context) -> Iterator[Fault]:
             if "byte_order" not in split or "bit_order" not in split:
                 line_of_split = line_of(split.at("bitfields"), node.source.place)
                 bits = f"the bits of the split field {quote(split['name'])} ({line_of_split}) would be in other places"
-                message = f"{quote(node.name)} has other orders than `{home.name}`, so {bits}"
+                message = (
+                    f"{quote(node.name)} has other orders than `{home.name}`, so {bits}"
+                )
                 help = f"give {quote(split['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
                 yield Fault.at(node.source, "struct", message, help)

@@ -1,4 +1,6 @@
-"""Values of a field: enumeration members, constants and special values must be in its range."""
+"""Values of a field: enumeration members, constants and special values must be in its
+range.
+"""
 
 from __future__ import annotations
 
@@ -24,12 +26,22 @@ def members_fit_their_fields(ctx: Context) -> Iterator[Fault]:
     for field, _ in ctx.fields_with["enum"]:
         top = widest.get(id(field.enum)) if field.enum else None
         if field.enum and top is not None and not _can_represent(field, top):
-            misfits = sum(not _can_represent(field, member) for member in field.enum.members)
-            also = f" (nor do {misfits - 1} others)" if misfits > 2 else " (nor does another)" if misfits == 2 else ""
+            misfits = sum(
+                not _can_represent(field, member) for member in field.enum.members
+            )
+            also = (
+                f" (nor do {misfits - 1} others)"
+                if misfits > 2
+                else " (nor does another)" if misfits == 2 else ""
+            )
             member = f"{quote(top.name)} = {top.values} of the enumeration {quote(field.enum.name)}"
             text = f"{member} does not fit the {count(field.bits, 'bit')} of the field {quote(field.name)}{also}"
             help = f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
-            help += ", because the enumeration also has negative values" if field.is_signed and top.value >= 0 else ""
+            help += (
+                ", because the enumeration also has negative values"
+                if field.is_signed and top.value >= 0
+                else ""
+            )
             yield Fault.at(field.source, "bits", text, help)
 
 
@@ -44,9 +56,17 @@ def ranges_have_several_values(ctx: Context) -> Iterator[Fault]:
         for member in enum.members:
             if member.to is None or member.to > member.value:
                 continue
-            what = "is not a range" if member.to == member.value else "ends before it begins"
+            what = (
+                "is not a range"
+                if member.to == member.value
+                else "ends before it begins"
+            )
             message = f"{quote(member.name)}, {member.values}, {what}"
-            help = "leave `to` out" if member.to == member.value else f"`value: {member.to}, to: {member.value}`?"
+            help = (
+                "leave `to` out"
+                if member.to == member.value
+                else f"`value: {member.to}, to: {member.value}`?"
+            )
             yield Fault.at(member.source, "to", message, help)
 
 
@@ -68,33 +88,56 @@ def special_values_fit(ctx: Context) -> Iterator[Fault]:
                 continue
             problem = _not_special(field, given)
             # Two different numbers can be the same 32-bit float.
-            value = given if problem or field.type != "float" else float_bits(given, field.bits)
+            value = (
+                given
+                if problem or field.type != "float"
+                else float_bits(given, field.bits)
+            )
             if problem:
-                yield Fault(field.source, item.at("value"), f"the special value {problem[0]}", problem[1])
+                yield Fault(
+                    field.source,
+                    item.at("value"),
+                    f"the special value {problem[0]}",
+                    problem[1],
+                )
             elif value is not None and value in seen:
                 message = f"{given} has two entries in {quote(field.name)}"
-                yield Fault(field.source, item.at("value"), message, "join the two entries")
+                yield Fault(
+                    field.source, item.at("value"), message, "join the two entries"
+                )
             seen.add(value)
 
 
 def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | None:
-    """Return message and help if a value cannot be a special value of a field; None if it can."""
+    """Return message and help if a value cannot be a special value of a field.
+
+    Returns None if it can.
+    """
     if field.type == "float":
         if isinstance(given, str) and given not in floats.NAMED:
             return f"{quote(given)} is not a number", "write a number, nan, inf or -inf"
         if field.bits in floats.WIDTHS and float_bits(given, field.bits) is None:
-            return f"{given} does not fit {quote(field.name)}", f"it is beyond what a {field.bits}-bit float holds"
+            return (
+                f"{given} does not fit {quote(field.name)}",
+                f"it is beyond what a {field.bits}-bit float holds",
+            )
         return None
     if field.type not in NUMBERS:
         what = f"of {quote(field.name)} has no meaning for type `{field.type}`"
         return what, "only uint, int, enum and float fields have it"
     if isinstance(given, int):
         return _misfit(field, given)
-    return f"{quote(given)} of {quote(field.name)} is not an integer", f"`{field.type}` has whole raw values"
+    return (
+        f"{quote(given)} of {quote(field.name)} is not an integer",
+        f"`{field.type}` has whole raw values",
+    )
 
 
 def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
-    """Return message and help if a raw value is out of range for a field; None if it is in range."""
+    """Return message and help if a raw value is out of range for a field.
+
+    Returns None if it is in range.
+    """
     if field.type not in NUMBERS:
         what = f"of {quote(field.name)} has no meaning for type `{field.type}`"
         return what, "only uint, int and enum fields have it"
@@ -103,7 +146,11 @@ def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
     shown = str(value) if abs(value) < 1 << 64 else f"of {value.bit_length()} bits"
     what = f"{shown} does not fit {quote(field.name)}"
     limits = f"{count(field.bits, 'bit')} of `{field.type}` hold {field.raw_min} to {field.raw_max}"
-    return what, limits + (", because the enumeration has negative values" if field.enum and field.is_signed else "")
+    return what, limits + (
+        ", because the enumeration has negative values"
+        if field.enum and field.is_signed
+        else ""
+    )
 
 
 @rule("ICD036")
@@ -113,29 +160,55 @@ def display_suits(ctx: Context) -> Iterator[Fault]:
         if format_ is None:
             continue
         has_bits = field.type in ("uint", "enum") and not field.is_signed
-        is_scaled = field.type in ("uint", "int") and not field.source.keys().isdisjoint(("formula", "points"))
+        is_scaled = field.type in (
+            "uint",
+            "int",
+        ) and not field.source.keys().isdisjoint(("formula", "points"))
         if format_.kind in OF_BITS and is_scaled:
-            message = (
-                f"{name} has a scale, so that its value is a physical one, which `{format_.kind}` does not display"
+            message = f"{name} has a scale, so that its value is a physical one, which `{format_.kind}` does not display"
+            yield Fault.at(
+                field.source, "display", message, "use `{decimals: N}` or `{digits: N}`"
             )
-            yield Fault.at(field.source, "display", message, "use `{decimals: N}` or `{digits: N}`")
         elif format_.kind in OF_BITS and not has_bits:
             message = f"{name} is {_in_words(field, line.node)}, which `{format_.kind}` does not display"
-            help = "use `{decimals: N}` or `{digits: N}`" if field.type == "float" else "remove `display`"
-            help = "use `type: uint` for a bit pattern, or remove `display`" if field.type == "int" else help
+            help = (
+                "use `{decimals: N}` or `{digits: N}`"
+                if field.type == "float"
+                else "remove `display`"
+            )
+            help = (
+                "use `type: uint` for a bit pattern, or remove `display`"
+                if field.type == "int"
+                else help
+            )
             yield Fault.at(field.source, "display", message, help)
         elif format_.kind not in OF_BITS and field.type != "float" and not is_scaled:
             without = " without a scale" if field.type in ("uint", "int") else ""
             message = f"{name} is {_in_words(field, line.node)}{without}: its value has no {format_.kind}"
-            help = "remove `display`, or use `hex` or `binary`" if has_bits else "remove `display`"
+            help = (
+                "remove `display`, or use `hex` or `binary`"
+                if has_bits
+                else "remove `display`"
+            )
             yield Fault.at(field.source, "display", message, help)
 
 
 def _in_words(field: Scalar, node: LayoutNode) -> str:
-    """Return the type of a field in words: ``a float``, ``an enumeration with negative values``."""
+    """Return the type of a field in words: ``a float``, ``an enumeration with negative
+    values``.
+    """
     if isinstance(node, Derived):
         return "a derived value"
     if field.type == "enum":
-        return "an enumeration with negative values" if field.is_signed else "an enumeration"
-    words = {"uint": "an unsigned integer", "int": "a signed integer", "bool": "a flag", "float": "a float"}
+        return (
+            "an enumeration with negative values"
+            if field.is_signed
+            else "an enumeration"
+        )
+    words = {
+        "uint": "an unsigned integer",
+        "int": "a signed integer",
+        "bool": "a flag",
+        "float": "a float",
+    }
     return words.get(field.type, f"`{field.type}`")

@@ -1,4 +1,7 @@
-"""Messages of variable length: counters, positions and links; frames that may end early."""
+"""Messages of variable length: counters, positions and links.
+
+Frames that may end early.
+"""
 
 from __future__ import annotations
 
@@ -40,19 +43,25 @@ def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
     }
     for line in ctx.lines:
         source = line.node.source
-        if "after" in source and not variable_length.is_variable(source) and id(source) not in in_structs:
+        if (
+            "after" in source
+            and not variable_length.is_variable(source)
+            and id(source) not in in_structs
+        ):
             text = f"{quote(line.node.name)} has a fixed size, so its place is `at` and it cannot have `after`"
             help = "remove `after`; only a variable-length field can follow another one"
             yield Fault.at(source, "after", text, help)
     for message, node in ctx.messages:
-        lengths = {struct.name: struct.length for owner in ctx.scope(node) for struct in owner.structs}
+        lengths = {
+            struct.name: struct.length
+            for owner in ctx.scope(node)
+            for struct in owner.structs
+        }
         for item in variable_length.variable_fields(message.source):
             yield from variable_length.faults_of_place(message.source, item, lengths)
         for item in variable_length.fixed_fields_after(message.source):
             first = variable_length.variable_fields(message.source)[0]
-            text = (
-                f"{quote(item['name'])} follows {quote(first['name'])}, whose length varies, so it has no fixed place"
-            )
+            text = f"{quote(item['name'])} follows {quote(first['name'])}, whose length varies, so it has no fixed place"
             help = (
                 f"place it in front of {quote(first['name'])}: fields of fixed size after it are not supported, "
                 "but a checksum at the end of a frame can be part of the link (`protocol`)"
@@ -66,42 +75,70 @@ def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
             always = layout.length if len(layout.sequence) > 1 else layout.shortest
             end = overlay.at + stride(overlay)
             if isinstance(overlay, Overlay) and end > 8 * always:
-                parts = [place for place in places_in(layout) if place.node in layout.sequence and place.at < end]
+                parts = [
+                    place
+                    for place in places_in(layout)
+                    if place.node in layout.sequence and place.at < end
+                ]
                 text = f"{quote(overlay.name)} is an overlay of {quote(parts[-1].name)}, which not every frame has"
-                yield Fault.at(overlay.source, "at", text, "place the overlay on fields that every frame has")
+                yield Fault.at(
+                    overlay.source,
+                    "at",
+                    text,
+                    "place the overlay on fields that every frame has",
+                )
 
 
 @rule("ICD122")
 def variable_lengths_are_supported(ctx: Context) -> Iterator[Fault]:
-    """Report variable-length messages on links, and in composite messages: both need one length per message."""
+    """Report variable-length messages on links, and in composite messages: both need
+    one length per message.
+    """
     for node in filter(ctx.is_linked, ctx.icd.nodes):
         for message in ctx.messages_of(node):
             if message.layout.sequence:
-                lengths = f"{message.layout.shortest} to {count(message.length, 'byte')}"
+                lengths = (
+                    f"{message.layout.shortest} to {count(message.length, 'byte')}"
+                )
                 text = f"{quote(message.name)} has {lengths}, but the links in `protocol` need one length per message"
                 help = "leave `protocol` out of this ICD, or give the message a fixed `count`"
                 yield Fault.at(message.source, "length", text, help)
-    variable = {message.name: message for message, _ in ctx.messages if message.layout.sequence}
+    variable = {
+        message.name: message for message, _ in ctx.messages if message.layout.sequence
+    }
     for message, node in ctx.messages:
         for part in mappings(message.source.get("contains")):
             inner = named(variable, part.get("message"))
             if inner is not None and inner in ctx.messages_of(node):
                 text = f"{quote(inner.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
-                yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
+                yield Fault(
+                    message.source,
+                    part.at("message"),
+                    text,
+                    "remove it from `contains`",
+                )
 
 
 @rule("ICD150")
 def messages_can_end_early(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for message in ctx.messages_of(node):
-            why = _reason_against_early_end(message, ctx.is_linked(node)) if message.may_end_early else ""
+            why = (
+                _reason_against_early_end(message, ctx.is_linked(node))
+                if message.may_end_early
+                else ""
+            )
             if why:
                 text = f"{quote(message.name)} {why}"
-                yield Fault.at(message.source, "may_end_early", text, "remove `may_end_early`")
+                yield Fault.at(
+                    message.source, "may_end_early", text, "remove `may_end_early`"
+                )
 
 
 def _reason_against_early_end(message: Message, is_linked: bool) -> str:
-    """Return why no frame of a message can omit trailing zeros, as the end of a sentence; empty if a frame can."""
+    """Return why no frame of a message can omit trailing zeros, as the end of a
+    sentence; empty if a frame can.
+    """
     if variable_length.variable_fields(message.source):
         return "has a variable-length field, and the zeros at the end of a frame belong to it"
     if message.length < 2:

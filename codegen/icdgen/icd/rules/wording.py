@@ -8,8 +8,14 @@ VERBATIM = "names are the manual's, to the letter"
 
 
 def line_of(other: Place, here: Place) -> str:
-    """Return the line of a place: ``line 12``, or ``common.yaml:12`` if it is in another file than ``here``."""
-    return f"line {other.line}" if other.file == here.file else f"{other.file}:{other.line}"
+    """Return the line of a place: ``line 12``, or ``common.yaml:12`` if it is in
+    another file than ``here``.
+    """
+    return (
+        f"line {other.line}"
+        if other.file == here.file
+        else f"{other.file}:{other.line}"
+    )
 
 
 def of_wide_value(key: str, value: int, width: int) -> Remedy:

@@ -19,7 +19,8 @@ from icdgen.importer.words import join, unbroken
 
 _UNIT = r"(?:(?:[Bb]its?|[Bb]ytes?|[Oo]ctets?)\s*)?"
 _KEY = re.compile(
-    _UNIT + rf"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/~]|\.\.\.?|to)\s*{_UNIT}[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z"
+    _UNIT
+    + rf"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/~]|\.\.\.?|to)\s*{_UNIT}[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z"
 )
 KEYS = {
     "fields": ("at", "at_bytes"),
@@ -31,7 +32,10 @@ KEYS = {
 
 @dataclass(slots=True)
 class Band:
-    """Part of a table between two horizontal rules. ``edges`` are the sides of its cells, in order."""
+    """Part of a table between two horizontal rules.
+
+    ``edges`` are the sides of its cells, in order.
+    """
 
     page: int
     edges: list[float]
@@ -44,12 +48,18 @@ class Band:
 
     def texts(self, document_words: frozenset[str]) -> list[str]:
         """Return the texts of the cells."""
-        return [_cell(part, edge, document_words) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
+        return [
+            _cell(part, edge, document_words)
+            for part, edge in zip(self.parts(), self.edges[1:], strict=True)
+        ]
 
     def printed(self, document_words: frozenset[str]) -> PrintedRow:
         """Return the row as printed on the page."""
         cells = zip(self.parts(), self.edges[1:], strict=True)
-        texts = ["\n".join(unbroken(*_lines_of_cell(part, edge), document_words)) for part, edge in cells]
+        texts = [
+            "\n".join(unbroken(*_lines_of_cell(part, edge), document_words))
+            for part, edge in cells
+        ]
         return PrintedRow(texts, tuple(self.edges), self.continues, self.page)
 
     def parts(self) -> list[list[Word]]:
@@ -66,7 +76,9 @@ def _cell(words: list[Word], right: float, document_words: frozenset[str]) -> st
 
 
 def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[bool]]:
-    """Return the lines of a cell, and whether each is a single word that fills its line."""
+    """Return the lines of a cell, and whether each is a single word that fills its
+    line.
+    """
     lines_of_cell = lines(words)
     return [line.text for line in lines_of_cell], [
         len(n.words) == 1 and n.x1 > right - 1.6 * n.size for n in lines_of_cell
@@ -74,7 +86,9 @@ def _lines_of_cell(words: list[Word], right: float) -> tuple[list[str], list[boo
 
 
 def is_key(text: str) -> bool:
-    """Return whether the text of a key column is a key: a number, a range of numbers, two ids."""
+    """Return whether the text of a key column is a key: a number, a range of numbers,
+    two ids.
+    """
     return bool(_KEY.match(text.strip()))
 
 
@@ -91,29 +105,50 @@ def aligned(band: Band, edges: list[float]) -> Band:
         if not part:
             continue
         left, right = band.edges[index], band.edges[index + 1]
-        overlaps = [max(0.0, min(right, b) - max(left, a)) for a, b in itertools.pairwise(edges)]
-        covered = [i for i, o in enumerate(overlaps) if o > 0.5 * (edges[i + 1] - edges[i])]
+        overlaps = [
+            max(0.0, min(right, b) - max(left, a)) for a, b in itertools.pairwise(edges)
+        ]
+        covered = [
+            i for i, o in enumerate(overlaps) if o > 0.5 * (edges[i + 1] - edges[i])
+        ]
         target = covered[0] if covered else overlaps.index(max(overlaps))
         a, b = edges[target], edges[target + 1]
         if all(a <= w.centre <= b for w in part):
             moved += part
         else:  # do not split the lines of a cell over several columns
-            moved += [line.words[0]._replace(text=line.text, x0=a + 1, x1=b - 1) for line in lines(part)]
+            moved += [
+                line.words[0]._replace(text=line.text, x0=a + 1, x1=b - 1)
+                for line in lines(part)
+            ]
     return Band(band.page, edges, moved)
 
 
-def rows(band: Band, header: Header, document_words: frozenset[str], torn: bool = False) -> list[PrintedRow]:
+def rows(
+    band: Band, header: Header, document_words: frozenset[str], torn: bool = False
+) -> list[PrintedRow]:
     """Return the rows of a band with the columns of ``header``.
 
     ``torn``: the first row may continue the last row of the previous page.
     """
     lines_of_band = lines(band.words)
-    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(lines_of_band, band.edges)
+    key = (
+        _key_column(header)
+        if header.kind in KEYS
+        else _column_of_most_keys(lines_of_band, band.edges)
+    )
     if header.kind == "list" and (
-        groups := [i for i, line in enumerate(lines_of_band) if _is_group(line, band.edges, key)]
+        groups := [
+            i
+            for i, line in enumerate(lines_of_band)
+            if _is_group(line, band.edges, key)
+        ]
     ):
         return _around(band, lines_of_band, groups, header, document_words)
-    keyed = [i for i, line in enumerate(lines_of_band) if is_key(_text_in(line, band.edges, key))]
+    keyed = [
+        i
+        for i, line in enumerate(lines_of_band)
+        if is_key(_text_in(line, band.edges, key))
+    ]
     if len(keyed) <= (0 if torn else 1):
         return [band.printed(document_words)] if band.words else []
     printed = []
@@ -125,7 +160,11 @@ def rows(band: Band, header: Header, document_words: frozenset[str], torn: bool 
 def has_keys(band: Band, header: Header) -> bool:
     """Return whether a line has a key in the key column and words in another column."""
     lines_of_band = lines(band.words)
-    key = _key_column(header) if header.kind in KEYS else _column_of_most_keys(lines_of_band, band.edges)
+    key = (
+        _key_column(header)
+        if header.kind in KEYS
+        else _column_of_most_keys(lines_of_band, band.edges)
+    )
     for line in lines_of_band:
         columns = {index_of(w.centre, band.edges) for w in line.words}
         if len(columns) > 1 and is_key(_text_in(line, band.edges, key)):
@@ -134,23 +173,38 @@ def has_keys(band: Band, header: Header) -> bool:
 
 
 def _key_column(header: Header) -> int:
-    return next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+    return next(
+        (i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0
+    )
 
 
 def _column_of_most_keys(lines_of_band: list[Line], edges: list[float]) -> int:
     """Return the column in which most lines have a key, or the first column."""
-    counts = [sum(is_key(_text_in(line, edges, column)) for line in lines_of_band) for column in range(len(edges) - 1)]
+    counts = [
+        sum(is_key(_text_in(line, edges, column)) for line in lines_of_band)
+        for column in range(len(edges) - 1)
+    ]
     return counts.index(max(counts)) if counts else 0
 
 
 def _is_group(line: Line, edges: list[float], key: int) -> bool:
-    """Return whether the line is a group heading: words other than keys in the column of ids."""
+    """Return whether the line is a group heading: words other than keys in the column
+    of ids.
+    """
     first = [word.text for word in line.words if index_of(word.x0, edges) <= key]
-    return bool(first) and index_of(line.x0, edges) <= key and not any(is_key(word) for word in first)
+    return (
+        bool(first)
+        and index_of(line.x0, edges) <= key
+        and not any(is_key(word) for word in first)
+    )
 
 
 def _around(
-    band: Band, lines_of_band: list[Line], groups: list[int], header: Header, document_words: frozenset[str]
+    band: Band,
+    lines_of_band: list[Line],
+    groups: list[int],
+    header: Header,
+    document_words: frozenset[str],
 ) -> list[PrintedRow]:
     """Return the rows of a band that contains group headings."""
     printed: list[PrintedRow] = []
@@ -159,13 +213,17 @@ def _around(
         if start < index:
             printed += rows(band.of(lines_of_band[start:index]), header, document_words)
         if index < len(lines_of_band):
-            printed.append(group_row(lines_of_band[index].text, len(band.edges) - 1, band.page))
+            printed.append(
+                group_row(lines_of_band[index].text, len(band.edges) - 1, band.page)
+            )
         start = index + 1
     return printed
 
 
 def group_row(text: str, width: int, page: int) -> PrintedRow:
-    """Return the row of a group heading: ``width`` cells, of which only the first has a text."""
+    """Return the row of a group heading: ``width`` cells, of which only the first has a
+    text.
+    """
     return PrintedRow([text, *[""] * (width - 1)], page=page)
 
 
@@ -174,15 +232,24 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
 
 
 def _leading(band: Band) -> float:
-    """Return the smallest distance of two lines in a cell; infinite if no cell has two lines."""
+    """Return the smallest distance of two lines in a cell.
+
+    Infinite if no cell has two lines.
+    """
     columns = [lines(part) for part in band.parts() if part]
     return min(
-        (b.middle - a.middle for lines_of_column in columns for a, b in itertools.pairwise(lines_of_column)),
+        (
+            b.middle - a.middle
+            for lines_of_column in columns
+            for a, b in itertools.pairwise(lines_of_column)
+        ),
         default=math.inf,
     )
 
 
-def _stretches(lines_of_band: list[Line], keyed: list[int], leading: float, torn: bool) -> list[tuple[int, int]]:
+def _stretches(
+    lines_of_band: list[Line], keyed: list[int], leading: float, torn: bool
+) -> list[tuple[int, int]]:
     """Return the range of lines of each row.
 
     Lines before the first key continue a row of the previous page.
@@ -196,7 +263,9 @@ def _stretches(lines_of_band: list[Line], keyed: list[int], leading: float, torn
     return lead + list(zip(starts, ends, strict=True))
 
 
-def _first_start(keyed: list[int], gaps: list[float], leading: float, torn: bool, count: int) -> int:
+def _first_start(
+    keyed: list[int], gaps: list[float], leading: float, torn: bool, count: int
+) -> int:
     """Return the first line of the first row with a key.
 
     Lines above the key belong to its row if the key is vertically centred in the row.

@@ -33,7 +33,9 @@ def parted(items: Items, profile: Profile) -> Items:
         if not tables:
             tables = [item]
             while (
-                index < len(items) and isinstance(following := items[index], Draft) and _beside(tables[-1], following)
+                index < len(items)
+                and isinstance(following := items[index], Draft)
+                and _beside(tables[-1], following)
             ):
                 tables.append(following)
                 index += 1
@@ -58,7 +60,9 @@ def _beside(draft: Draft, other: Draft) -> bool:
         return False
     a, b = draft.boxes[0], other.boxes[0]
     is_beside = a.x1 <= b.x0 or b.x1 <= a.x0
-    return a.page == b.page and is_beside and min(a.bottom, b.bottom) > max(a.top, b.top)
+    return (
+        a.page == b.page and is_beside and min(a.bottom, b.bottom) > max(a.top, b.top)
+    )
 
 
 def _parts(table: Draft, profile: Profile) -> list[Draft]:
@@ -66,21 +70,31 @@ def _parts(table: Draft, profile: Profile) -> list[Draft]:
     if table.header is not None or len(table.head) < 2:
         return []
     titles = [squeezed(text) for text in table.head[0].lines]
-    starts = [index for index, title in enumerate(titles) if title and title == titles[0]]
+    starts = [
+        index for index, title in enumerate(titles) if title and title == titles[0]
+    ]
     if len(starts) < 2:
         return []
-    parts = [titles[a:b] for a, b in zip(starts, [*starts[1:], len(titles)], strict=True)]
+    parts = [
+        titles[a:b] for a, b in zip(starts, [*starts[1:], len(titles)], strict=True)
+    ]
     width = len(parts[-1])
     if any(part[:width] != parts[-1] or any(part[width:]) for part in parts):
         return []
     result = []
     for start in starts:
-        header = headings.match(table.head[0].lines[start : start + width], profile, loose=True)
+        header = headings.match(
+            table.head[0].lines[start : start + width], profile, loose=True
+        )
         if header is None:
             return []
         header.printed = [table.head[0].slice(start, width)]
         rows = [row.slice(start, width) for row in table.head[1:]]
-        result.append(Draft(list(table.boxes), header, rows=[row for row in rows if any(row.texts)]))
+        result.append(
+            Draft(
+                list(table.boxes), header, rows=[row for row in rows if any(row.texts)]
+            )
+        )
     return result
 
 
@@ -88,6 +102,8 @@ def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:
     """Return the parts of a line above tables, one for each table, or an empty list."""
     if len(mark.cells) != count or mark.kind == "heading":
         return []
-    if mark.kind == "caption" and not all(profile.caption.match(text) for _, text in mark.cells):
+    if mark.kind == "caption" and not all(
+        profile.caption.match(text) for _, text in mark.cells
+    ):
         return []
     return [replace(mark, text=text, cells=[(x, text)]) for x, text in mark.cells]

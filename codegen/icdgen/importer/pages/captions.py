@@ -19,7 +19,11 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
     ``is_part``: the document is cut off at both ends.
     """
     items = beside.parted(guessed.made(items), profile)
-    captions = [i for i, item in enumerate(items) if isinstance(item, Mark) and item.kind == "caption"]
+    captions = [
+        i
+        for i, item in enumerate(items)
+        if isinstance(item, Mark) and item.kind == "caption"
+    ]
     after = {i: _table_from(items, i, 1) for i in captions}
     before = {i: _table_from(items, i, -1) for i in captions}
     above = _stand_above(items, after, before, is_part)
@@ -40,13 +44,17 @@ def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Bloc
         elif index not in used:
             page, is_heading = item.box.page, item.kind == "heading" or item.strong
             blocks.append(
-                Heading(item.number, item.text, page, size=item.size) if is_heading else Text(item.text, page)
+                Heading(item.number, item.text, page, size=item.size)
+                if is_heading
+                else Text(item.text, page)
             )
     return blocks
 
 
 def _table_from(items: Items, index: int, step: int) -> int | None:
-    """Return the nearest table in a direction, unless a caption or more than a few lines are between."""
+    """Return the nearest table in a direction, unless a caption or more than a few
+    lines are between.
+    """
     between = 0
     position = index + step
     while 0 <= position < len(items):
@@ -60,7 +68,12 @@ def _table_from(items: Items, index: int, step: int) -> int | None:
     return None
 
 
-def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, int | None], is_part: bool) -> bool:
+def _stand_above(
+    items: Items,
+    after: dict[int, int | None],
+    before: dict[int, int | None],
+    is_part: bool,
+) -> bool:
     """Return whether captions are above their tables in this document.
 
     First criterion: only one direction gives each caption a table of its own. Second:
@@ -68,7 +81,8 @@ def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, i
     the number of captions with a table.
     """
     down_all, up_all = (
-        None not in captions.values() and len(set(captions.values())) == len(captions) for captions in (after, before)
+        None not in captions.values() and len(set(captions.values())) == len(captions)
+        for captions in (after, before)
     )
     if down_all != up_all and not is_part:
         return down_all
@@ -77,7 +91,9 @@ def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, i
         down, up = _distance(items, i, after[i], 1), _distance(items, i, before[i], -1)
         nearer += (down < up) - (up < down)
     if nearer == 0:
-        return sum(table is not None for table in after.values()) >= sum(table is not None for table in before.values())
+        return sum(table is not None for table in after.values()) >= sum(
+            table is not None for table in before.values()
+        )
     return nearer > 0
 
 
@@ -90,7 +106,9 @@ def _distance(items: Items, caption: int, index: int | None, step: int) -> float
     box = table.boxes[0 if step > 0 else -1]
     if box.page != mark.box.page:
         return 500.0
-    return max(0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom)
+    return max(
+        0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom
+    )
 
 
 def _name(table: SourceTable, mark: Mark, profile: Profile) -> None:

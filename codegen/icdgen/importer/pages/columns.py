@@ -39,11 +39,17 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
         columns = _in_one_line(block[0], profile) if count == 1 else None
         for cells in filter(None, (columns, _clustered(block))):
             header = headings.match([_text(cell) for cell in cells], profile)
-            if header and (best is None or header.known_words > best.header.known_words):
+            if header and (
+                best is None or header.known_words > best.header.known_words
+            ):
                 best = Columns(header, [_extent(cell) for cell in cells], count)
     if best is None and loose:
-        for cells in filter(None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))):
-            header = headings.match([_text(cell) for cell in cells], profile, loose=True)
+        for cells in filter(
+            None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))
+        ):
+            header = headings.match(
+                [_text(cell) for cell in cells], profile, loose=True
+            )
             if header and header.kind == "fields" and _is_sure(header):
                 return Columns(header, [_extent(cell) for cell in cells], 1)
     return best
@@ -55,7 +61,9 @@ def _is_sure(header: Header) -> bool:
     All are known, or all but one of four or more.
     """
     unknown = len(header.roles) - header.known
-    return header.titles[0][:1].isupper() and (unknown == 0 or (unknown == 1 and header.known >= 3))
+    return header.titles[0][:1].isupper() and (
+        unknown == 0 or (unknown == 1 and header.known >= 3)
+    )
 
 
 def _extent(cell: list[Word]) -> tuple[float, float]:
@@ -77,7 +85,10 @@ def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
 def _clustered(block: list[Line]) -> list[list[Word]]:
     """Return the cells of several lines: runs of words that are above each other."""
     cells: list[list[Word]] = []
-    for run in sorted((run for line in block for run in runs(line, 0.45)), key=lambda r: (r[0].top, r[0].x0)):
+    for run in sorted(
+        (run for line in block for run in runs(line, 0.45)),
+        key=lambda r: (r[0].top, r[0].x0),
+    ):
         x0, x1 = run[0].x0, run[-1].x1
         for cell in cells:
             left, right = _extent(cell)
@@ -96,7 +107,9 @@ def side_by_side(block: list[Line]) -> str:
     return " ".join(_text(cell) for cell in _clustered(block))
 
 
-def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float) -> list[float]:
+def boundaries(
+    spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float
+) -> list[float]:
     """Return the edges of the columns with headings at ``spans``.
 
     Between two headings, the edge is where it crosses the fewest words.
@@ -108,12 +121,20 @@ def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x
     for index, (low, high) in enumerate(itertools.pairwise(centres)):
         beyond = centres[index + 2] if index + 2 < len(centres) else last
         guess = (spans[index][1] + spans[index + 1][0]) / 2
-        edges.append(_river(words, low, high, guess, edges[-1], beyond, spans[index + 1][0]))
+        edges.append(
+            _river(words, low, high, guess, edges[-1], beyond, spans[index + 1][0])
+        )
     return [*edges, last]
 
 
 def _river(
-    words: list[Word], low: float, high: float, guess: float, before: float, beyond: float, heading: float
+    words: list[Word],
+    low: float,
+    high: float,
+    guess: float,
+    before: float,
+    beyond: float,
+    heading: float,
 ) -> float:
     """Return the middle of the gap between two headings that the fewest words cross.
 
@@ -125,7 +146,9 @@ def _river(
     near = [w for w in words if w.x1 > low and w.x0 < high]
     starts, ends = sorted(w.x0 for w in near), sorted(w.x1 for w in near)
     points = sorted({low, high, *(x for x in starts + ends if low < x < high)})
-    pieces: list[list[float]] = []  # [from, to, crossings], neighbours with the same count put together
+    pieces: list[list[float]] = (
+        []
+    )  # [from, to, crossings], neighbours with the same count put together
     for a, b in itertools.pairwise(points):
         crossings = bisect_left(starts, (a + b) / 2) - bisect_right(ends, (a + b) / 2)
         if pieces and pieces[-1][2] == crossings:
@@ -135,8 +158,12 @@ def _river(
     best, key = guess, None
     for a, b, count in pieces:
         middle = (a + b) / 2
-        empty = not _any_between(middles, before, middle) or not _any_between(middles, middle, beyond)
-        begin = bisect_left(begins, b + 1) - bisect_right(begins, b - 1)  # words with this left side, as in a column
+        empty = not _any_between(middles, before, middle) or not _any_between(
+            middles, middle, beyond
+        )
+        begin = bisect_left(begins, b + 1) - bisect_right(
+            begins, b - 1
+        )  # words with this left side, as in a column
         headed = abs(b - heading) < 1.5
         narrow = bool(words) and b - a < 0.5 * words[0].size
         this = (count, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
@@ -151,7 +178,10 @@ def _any_between(values: list[float], low: float, high: float) -> bool:
 
 
 def index_of(x: float, edges: list[float]) -> int:
-    """Return the column of ``x``. Outside of the table, return the first or last column."""
+    """Return the column of ``x``.
+
+    Outside of the table, return the first or last column.
+    """
     for index in range(1, len(edges) - 1):
         if x < edges[index]:
             return index - 1

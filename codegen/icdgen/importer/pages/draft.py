@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from icdgen.importer.document import Box, Cell, SourceRow, SourceTable
 
 SNAP = 3.0  # points: closer edges of cells count as one
-SAME_WIDTH = 8.0  # points: maximum difference of the widths of parts of a table on several pages
+SAME_WIDTH = (
+    8.0  # points: maximum difference of the widths of parts of a table on several pages
+)
 
 
 @dataclass(slots=True)
@@ -29,7 +31,12 @@ class PrintedRow:
     def slice(self, start: int, width: int) -> PrintedRow:
         """Return the cells of some columns."""
         end = start + width
-        return PrintedRow(self.texts[start:end], self.edges[start : end + 1], self.continues[start:end], self.page)
+        return PrintedRow(
+            self.texts[start:end],
+            self.edges[start : end + 1],
+            self.continues[start:end],
+            self.page,
+        )
 
     @property
     def lines(self) -> list[str]:
@@ -39,9 +46,13 @@ class PrintedRow:
 
 @dataclass(slots=True)
 class Header:
-    """The heading row of a table: the kind of table, and the role of each cell ("" if unknown)."""
+    """The heading row of a table: the kind of table, and the role of each cell ("" if
+    unknown).
+    """
 
-    kind: str  # "fields" | "enumeration" | "list" | "loggable", or a rule of the profile
+    kind: (
+        str  # "fields" | "enumeration" | "list" | "loggable", or a rule of the profile
+    )
     roles: list[str]
     titles: list[str]
     printed: list[PrintedRow] = field(default_factory=list, compare=False)
@@ -54,7 +65,11 @@ class Header:
     @property
     def known_words(self) -> int:
         """Number of words of cells with a role."""
-        return sum(len(title.split()) for title, role in zip(self.titles, self.roles, strict=True) if role)
+        return sum(
+            len(title.split())
+            for title, role in zip(self.titles, self.roles, strict=True)
+            if role
+        )
 
     @property
     def has_offsets(self) -> bool:
@@ -64,7 +79,10 @@ class Header:
 
 @dataclass(slots=True)
 class Draft:
-    """A draft of a table. ``head`` are the rows above the headings, ``rows`` the rows below."""
+    """A draft of a table.
+
+    ``head`` are the rows above the headings, ``rows`` the rows below.
+    """
 
     boxes: list[Box]
     header: Header | None = None
@@ -79,18 +97,32 @@ class Draft:
 
     def table(self) -> SourceTable:
         """Return the table."""
-        titles = (self.header.printed or [PrintedRow(self.header.titles)]) if self.header else []
-        return SourceTable(rows=_rows([*self.head, *titles, *self.rows], self.boxes[0].page), boxes=self.boxes)
+        titles = (
+            (self.header.printed or [PrintedRow(self.header.titles)])
+            if self.header
+            else []
+        )
+        return SourceTable(
+            rows=_rows([*self.head, *titles, *self.rows], self.boxes[0].page),
+            boxes=self.boxes,
+        )
 
 
 def _rows(printed: list[PrintedRow], page: int) -> list[SourceRow]:
-    """Return the rows with the spans of their cells. ``page`` is the default page of a row."""
+    """Return the rows with the spans of their cells.
+
+    ``page`` is the default page of a row.
+    """
     edges = _columns(printed)
     rows: list[SourceRow] = []
     above: dict[int, Cell] = {}  # first column of a cell of the row above -> the cell
     for row in printed:
         placed = _placed(row, edges)
-        is_open = row.continues if len(row.continues) == len(placed) else (False,) * len(placed)
+        is_open = (
+            row.continues
+            if len(row.continues) == len(placed)
+            else (False,) * len(placed)
+        )
         cells: list[Cell] = []
         here: dict[int, Cell] = {}
         for (cell, column), goes_on in zip(placed, is_open, strict=True):
@@ -112,14 +144,22 @@ def _shift(row: PrintedRow, first: Sequence[float]) -> float:
 
     The margins of facing pages differ.
     """
-    if not first or not row.edges or abs((row.edges[-1] - row.edges[0]) - (first[-1] - first[0])) > SAME_WIDTH:
+    if (
+        not first
+        or not row.edges
+        or abs((row.edges[-1] - row.edges[0]) - (first[-1] - first[0])) > SAME_WIDTH
+    ):
         return 0.0
     return first[0] - row.edges[0]
 
 
 def _columns(rows: list[PrintedRow]) -> list[float]:
     """Return the edges of the columns of the whole table, or none if no row has edges."""
-    first = max((row.edges for row in rows), key=lambda edges: edges[-1] - edges[0] if edges else 0.0, default=())
+    first = max(
+        (row.edges for row in rows),
+        key=lambda edges: edges[-1] - edges[0] if edges else 0.0,
+        default=(),
+    )
     edges: list[float] = []
     for x in sorted(x + _shift(row, first) for row in rows for x in row.edges):
         if not edges or x - edges[-1] > SNAP:
@@ -134,7 +174,10 @@ def _placed(row: PrintedRow, edges: list[float]) -> list[tuple[Cell, int]]:
             return [(Cell(row.texts[0], len(edges) - 1), 0)]
         return [(Cell(text), index) for index, text in enumerate(row.texts)]
     shift = _shift(row, edges)
-    places = [min(range(len(edges)), key=lambda i: abs(edges[i] - x - shift)) for x in row.edges]
+    places = [
+        min(range(len(edges)), key=lambda i: abs(edges[i] - x - shift))
+        for x in row.edges
+    ]
     placed: list[tuple[Cell, int]] = [(Cell(""), column) for column in range(places[0])]
     for text, start, end in zip(row.texts, places, places[1:], strict=False):
         if end > start:

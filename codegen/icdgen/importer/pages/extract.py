@@ -68,7 +68,11 @@ class Page:
     fills: list[Fill] = field(default_factory=list)
     images: int = 0
     unmapped: int = 0  # characters without a meaning
-    unseen: int = 0  # words outside the visible page; a reader of the manual does not see them either
+    unseen: int = (
+        # Words outside the visible page; a reader of the manual does not see them
+        # either.
+        0
+    )
     turned: int = 0  # words that are not upright
     failed: str = ""  # reason why the page cannot be read
 
@@ -93,7 +97,9 @@ def extract(page: Any) -> Page:
             _curve(content, thing, shift)
         elif isinstance(thing, LTImage):
             content.images += 1
-    for word in extract_words(chars, x_tolerance_ratio=GAP, y_tolerance=2.5, return_chars=True):
+    for word in extract_words(
+        chars, x_tolerance_ratio=GAP, y_tolerance=2.5, return_chars=True
+    ):
         _word(content, word)
     return content
 
@@ -122,19 +128,28 @@ def _drawn(page: Any) -> Iterator[Any]:
 
 
 class _Shift(NamedTuple):
-    """Conversion from coordinates of the sheet (y upwards) to its visible part (y downwards)."""
+    """Conversion from coordinates of the sheet (y upwards) to its visible part (y
+    downwards).
+    """
 
     x: float
     y: float
 
     def box(self, thing: Any) -> tuple[float, float, float, float]:
-        return thing.x0 + self.x, self.y - thing.y1, thing.x1 + self.x, self.y - thing.y0
+        return (
+            thing.x0 + self.x,
+            self.y - thing.y1,
+            thing.x1 + self.x,
+            self.y - thing.y0,
+        )
 
 
 def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
     """Return a character in the form from which pdfplumber assembles words."""
     x0, top, x1, bottom = shift.box(thing)
-    if thing.upright and _slanted(thing):  # the box of a slanted character overlaps the next one
+    if thing.upright and _slanted(
+        thing
+    ):  # the box of a slanted character overlaps the next one
         x0 = thing.matrix[4] + shift.x
         x1 = x0 + thing.adv * thing.matrix[0]
     return {"text": thing.get_text(), "x0": x0, "x1": x1, "top": top, "bottom": bottom, "doctop": top,
@@ -149,10 +164,23 @@ def _word(content: Page, word: Mapping[str, Any]) -> None:
         content.turned += 1
         return
     x0, top, x1, bottom = word["x0"], word["top"], word["x1"], word["bottom"]
-    if not (0 <= (x0 + x1) / 2 <= content.width and 0 <= (top + bottom) / 2 <= content.height):
+    if not (
+        0 <= (x0 + x1) / 2 <= content.width
+        and 0 <= (top + bottom) / 2 <= content.height
+    ):
         content.unseen += 1
         return
-    content.words.append(Word(text, x0, top, x1, bottom, _size(word["chars"]), _style(word["chars"][0]["from"])))
+    content.words.append(
+        Word(
+            text,
+            x0,
+            top,
+            x1,
+            bottom,
+            _size(word["chars"]),
+            _style(word["chars"][0]["from"]),
+        )
+    )
     content.unmapped += text.count("(cid:") + text.count("\ufffd")
 
 
@@ -164,12 +192,19 @@ def _style(char: Any) -> str:
     name = char.fontname
     if isinstance(name, bytes):
         name = name.decode("utf-8", "replace")
-    shade = " ".join(f"{v:.2f}" for v in _values(char.graphicstate.ncolor) if isinstance(v, (int, float)))
+    shade = " ".join(
+        f"{v:.2f}"
+        for v in _values(char.graphicstate.ncolor)
+        if isinstance(v, (int, float))
+    )
     return f"{name.rsplit('+', 1)[-1]} {shade}{' slanted' if _slanted(char) else ''}"
 
 
 def _slanted(char: Any) -> bool:
-    """Return whether the matrix slants an upright font. Writers without an italic font do this."""
+    """Return whether the matrix slants an upright font.
+
+    Writers without an italic font do this.
+    """
     a, b, c, _, _, _ = char.matrix
     return not b and abs(c) > 0.1 * abs(a)
 
@@ -198,7 +233,9 @@ def _line(content: Page, x0: float, top: float, x1: float, bottom: float) -> Non
         content.down.append(Rule((x0 + x1) / 2, top, bottom))
 
 
-def _rectangle(content: Page, rect: Any, x0: float, top: float, x1: float, bottom: float) -> None:
+def _rectangle(
+    content: Page, rect: Any, x0: float, top: float, x1: float, bottom: float
+) -> None:
     if x1 - x0 <= THIN or bottom - top <= THIN:
         _line(content, x0, top, x1, bottom)
         return
@@ -224,4 +261,8 @@ def _white(colour: object) -> bool:
     values = _values(colour)
     if not all(isinstance(v, (int, float)) for v in values):
         return False
-    return all(v <= 0.01 for v in values) if len(values) == 4 else all(v >= 0.99 for v in values)
+    return (
+        all(v <= 0.01 for v in values)
+        if len(values) == 4
+        else all(v >= 0.99 for v in values)
+    )

@@ -21,7 +21,8 @@ from icdgen.importer.words import folded
 
 _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
 _CONTINUED = re.compile(
-    r"\(?\s*(?:table )?continue[ds]\b.*|.*\bcontinued (?:on|from) (?:the )?(?:next|previous) page.*", re.I
+    r"\(?\s*(?:table )?continue[ds]\b.*|.*\bcontinued (?:on|from) (?:the )?(?:next|previous) page.*",
+    re.I,
 )
 
 
@@ -51,7 +52,9 @@ class Mark:
     size: float
     number: str = ""
     strong: bool = False  # looks like a heading without a number
-    cells: list[tuple[float, str]] = field(default_factory=list)  # left side and text of each run of words
+    cells: list[tuple[float, str]] = field(
+        default_factory=list
+    )  # left side and text of each run of words
 
 
 Item = Piece | Mark
@@ -65,30 +68,47 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
         inside = ruled[page.number]
         words = [w for w in page.words if not any(r.holds(w) for r in inside)]
         loose[page.number] = lines(words)
-    lines_of_page = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
+    lines_of_page = furniture.without(
+        pages, loose, lambda line, near: _is_of_a_table(line, near, profile)
+    )
     in_order: list[Item] = []
     flow = _Flow(profile, itertools.chain.from_iterable(loose.values()))
     for page in pages:
-        for regions_of, lines_of in gutter.parts(page, ruled[page.number], lines_of_page[page.number]):
+        for regions_of, lines_of in gutter.parts(
+            page, ruled[page.number], lines_of_page[page.number]
+        ):
             in_order += flow.page(page, regions_of, lines_of)
     return in_order
 
 
 def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
-    """Return whether a line in a margin certainly belongs to a table, even if pages repeat it."""
+    """Return whether a line in a margin certainly belongs to a table, even if pages
+    repeat it.
+    """
     if profile.caption.match(line.text) or labels.begins(line.text, profile):
         return True
     if headings.segmented(line.text.split(), profile) is not None:
         return True
-    if any(label.what and label.value for label in labels.parse(line.text, profile)[:1]):
+    if any(
+        label.what and label.value for label in labels.parse(line.text, profile)[:1]
+    ):
         return True
-    parts = folded(line.text)  # it may be one of several lines of headings, which are close together
-    tight = any(max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size for other in near)
-    return tight and bool(parts) and all(part in profile.heading_words for part in parts)
+    parts = folded(
+        line.text
+    )  # it may be one of several lines of headings, which are close together
+    tight = any(
+        max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size
+        for other in near
+    )
+    return (
+        tight and bool(parts) and all(part in profile.heading_words for part in parts)
+    )
 
 
 class _Flow:
-    """Reader of consecutive pages, with the columns of a table that the next page may continue."""
+    """Reader of consecutive pages, with the columns of a table that the next page may
+    continue.
+    """
 
     def __init__(self, profile: Profile, text: Iterable[Line]) -> None:
         """Determine the size and style of body text from all lines ``text``."""
@@ -100,7 +120,8 @@ class _Flow:
             styles[line.style] += len(line.text)
         self.body_size = max(sizes, key=sizes.__getitem__, default=10.0)
         self.body_style = max(styles, key=styles.__getitem__, default="")
-        # A table without vertical rules that the next page may continue: its columns, type size, left and right side.
+        # A table without vertical rules that the next page may continue: its columns,
+        # type size, left and right side.
         self.open: Columns | None = None
         self.size = 0.0
         self.extent = (0.0, 0.0)
@@ -110,7 +131,9 @@ class _Flow:
         index = 0
         waiting = list(ruled)
         while index < len(loose) or waiting:
-            if waiting and (index >= len(loose) or waiting[0].top <= loose[index].middle):
+            if waiting and (
+                index >= len(loose) or waiting[0].top <= loose[index].middle
+            ):
                 items_of_page.append(self.ruled(page, waiting.pop(0)))
                 self.open = None
                 continue
@@ -134,14 +157,26 @@ class _Flow:
             words = [w for w in inside if top <= w.middle < bottom]
             edges = region.separators(top, bottom)
             bands.append(Band(page.number, edges, words, region.open_above(top, edges)))
-        return Piece(Box(page.number, region.x0, region.top, region.x1, region.bottom), bands, ruled=True)
+        return Piece(
+            Box(page.number, region.x0, region.top, region.x1, region.bottom),
+            bands,
+            ruled=True,
+        )
 
-    def next(self, page: Page, following: list[Line], first: bool) -> tuple[int, Item | None]:
-        """Return the number of lines that belong to the item at the first line, and the item."""
+    def next(
+        self, page: Page, following: list[Line], first: bool
+    ) -> tuple[int, Item | None]:
+        """Return the number of lines that belong to the item at the first line, and the
+        item.
+        """
         line = following[0]
         if _CONTINUED.match(line.text):
             return 1, None
-        goes_on = first and self.open is not None and _begins_in_a_column(line, self.open.spans)
+        goes_on = (
+            first
+            and self.open is not None
+            and _begins_in_a_column(line, self.open.spans)
+        )
         if self.is_caption(line) and not goes_on:
             self.open = None
             return self.caption(page, following)
@@ -155,15 +190,30 @@ class _Flow:
         heading = _HEADING.match(line.text)
         if heading and self.stands_out(line) and len(line.text) < 120:
             kind, number, text = "heading", heading["number"], heading["text"]
-        strong = kind == "text" and self.stands_out(line) and len(text) < 80 and not text.endswith((".", ":", ",", ";"))
-        return 1, Mark(kind, text, box_around(page.number, [line]), line.size, number, strong, _cells(line))
+        strong = (
+            kind == "text"
+            and self.stands_out(line)
+            and len(text) < 80
+            and not text.endswith((".", ":", ",", ";"))
+        )
+        return 1, Mark(
+            kind,
+            text,
+            box_around(page.number, [line]),
+            line.size,
+            number,
+            strong,
+            _cells(line),
+        )
 
     def stands_out(self, line: Line) -> bool:
         return line.size > self.body_size + 0.6 or line.style != self.body_style
 
     def is_caption(self, line: Line) -> bool:
         match = self.profile.caption.match(line.text)
-        return match is not None and bool(match["mark"] or self.stands_out(line) or not match["title"])
+        return match is not None and bool(
+            match["mark"] or self.stands_out(line) or not match["title"]
+        )
 
     def caption(self, page: Page, following: list[Line]) -> tuple[int, Mark]:
         """Return the number of lines of a caption, and the caption.
@@ -185,10 +235,17 @@ class _Flow:
             taken += 1
         text = " ".join(line.text for line in following[:taken])
         cells = _cells(following[0]) if taken == 1 else []
-        return taken, Mark("caption", text, box_around(page.number, following[:taken]), following[0].size, cells=cells)
+        return taken, Mark(
+            "caption",
+            text,
+            box_around(page.number, following[:taken]),
+            following[0].size,
+            cells=cells,
+        )
 
     def head_length(self, following: list[Line]) -> tuple[int, Columns | None]:
-        """Return the number of lines above the headings of a table that begins here, and the headings.
+        """Return the number of lines above the headings of a table that begins here,
+        and the headings.
 
         Return ``(0, None)`` if no table begins here.
         """
@@ -225,15 +282,22 @@ class _Flow:
         if line.top - above.bottom > 0.5 * line.size:
             return False
         labelled = labels.parse(above.text, self.profile)
-        return bool(labelled) and bool(labels.meaning(f"{labelled[-1].label} {line.text}", self.profile))
+        return bool(labelled) and bool(
+            labels.meaning(f"{labelled[-1].label} {line.text}", self.profile)
+        )
 
     def labelled(self, following: list[Line]) -> int:
-        """Return the number of lines of the first row of a message table that begins here, or 0.
+        """Return the number of lines of the first row of a message table that begins
+        here, or 0.
 
         It has more than one line if its cells wrap.
         """
         for count in range(1, min(3, len(following)) + 1):
-            if count > 1 and following[count - 1].top - following[count - 2].bottom > 0.6 * following[0].size:
+            if (
+                count > 1
+                and following[count - 1].top - following[count - 2].bottom
+                > 0.6 * following[0].size
+            ):
                 return 0
             if labels.begins(columns.side_by_side(following[:count]), self.profile):
                 return count
@@ -242,16 +306,24 @@ class _Flow:
     def head(self, lines: list[Line]) -> list[str]:
         """Return the rows above the headings as text."""
         count = self.labelled(lines) if lines else 0
-        return ([columns.side_by_side(lines[:count])] if count else []) + [line.text for line in lines[count:]]
+        return ([columns.side_by_side(lines[:count])] if count else []) + [
+            line.text for line in lines[count:]
+        ]
 
-    def table(self, page: Page, following: list[Line], length: int, header: Columns | None) -> tuple[int, Piece]:
+    def table(
+        self, page: Page, following: list[Line], length: int, header: Columns | None
+    ) -> tuple[int, Piece]:
         head = self.head(following[:length])
         if header is None:
             self.open = None
-            return length, Piece(box_around(page.number, following[:length]), [], ruled=False, head=head)
+            return length, Piece(
+                box_around(page.number, following[:length]), [], ruled=False, head=head
+            )
         start = length + header.lines
         end = self.end(page, following, start, header)
-        x0, x1 = min(line.x0 for line in following[:start]), max(line.x1 for line in following[:start])
+        x0, x1 = min(line.x0 for line in following[:start]), max(
+            line.x1 for line in following[:start]
+        )
         body = self.cells(following[start:end], header)
         piece = Piece(
             box_around(page.number, following[:end]), [], ruled=False, columns=header, head=head, lines=body, page=page,
@@ -270,18 +342,27 @@ class _Flow:
         for line in body:
             first = runs(line, 0.45)[0]
             text = " ".join(w.text for w in first)
-            if first[-1].x1 <= columns.spans[0][0] and labels.meaning(text, self.profile) == "fields":
+            if (
+                first[-1].x1 <= columns.spans[0][0]
+                and labels.meaning(text, self.profile) == "fields"
+            ):
                 if len(first) < len(line.words):
                     cell_lines.append(Line(line.words[len(first) :]))
             else:
                 cell_lines.append(line)
         return cell_lines
 
-    def end(self, page: Page, following: list[Line], start: int, header: Columns) -> int:
+    def end(
+        self, page: Page, following: list[Line], start: int, header: Columns
+    ) -> int:
         """Return the index of the first line after the table."""
         size = following[start].size if start < len(following) else 0
         end = next(
-            (index for index in range(start, len(following)) if self.ends(following, index, header, size)),
+            (
+                index
+                for index in range(start, len(following))
+                if self.ends(following, index, header, size)
+            ),
             len(following),
         )
         bottom = following[-1].bottom + 8
@@ -290,10 +371,16 @@ class _Flow:
         ):  # exclude the upper rule of the next table
             bottom = (following[end - 1].bottom + following[end].top) / 2
         limit = _lowest_rule(page, following, start, header, bottom)
-        below = (i for i in range(start, end) if following[i].middle > limit and not self.is_row(following[i], header))
+        below = (
+            i
+            for i in range(start, end)
+            if following[i].middle > limit and not self.is_row(following[i], header)
+        )
         return next(below, end)
 
-    def ends(self, following: list[Line], index: int, header: Columns, size: float) -> bool:
+    def ends(
+        self, following: list[Line], index: int, header: Columns, size: float
+    ) -> bool:
         line = following[index]
         in_cell = _begins_in_a_column(line, header.spans)
         if self.is_caption(line) and not in_cell:
@@ -302,7 +389,11 @@ class _Flow:
             return True
         if abs(line.size - size) > 1.2 and not in_cell:
             return True
-        if _HEADING.match(line.text) and self.stands_out(line) and line.size > size + 0.6:
+        if (
+            _HEADING.match(line.text)
+            and self.stands_out(line)
+            and line.size > size + 0.6
+        ):
             return True
         if self.is_prose(following[index:], header):
             return True
@@ -317,7 +408,10 @@ class _Flow:
         line = following[index]
         if index and line.top < following[index - 1].bottom - 0.2 * line.size:
             return False
-        return columns.find(following[index : index + 3], self.profile, loose=False) is not None
+        return (
+            columns.find(following[index : index + 3], self.profile, loose=False)
+            is not None
+        )
 
     def is_prose(self, following: list[Line], header: Columns) -> bool:
         """Return whether the first line belongs to a paragraph instead of a table."""
@@ -343,21 +437,33 @@ class _Flow:
         )
 
     def is_group(self, following: list[Line], header: Columns) -> bool:
-        """Return whether a line is a group heading of a list of any width: the next line has a key."""
-        return header.header.kind == "list" and len(following) > 1 and self.has_key(following[1])
+        """Return whether a line is a group heading of a list of any width: the next
+        line has a key.
+        """
+        return (
+            header.header.kind == "list"
+            and len(following) > 1
+            and self.has_key(following[1])
+        )
 
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
         """Return whether text runs across three headings or more, as in a paragraph."""
         for run in runs(line, 0.9):
             x0, x1 = run[0].x0, run[-1].x1
-            if sum(1 for a, b in spans if min(b, x1) - max(a, x0) > 0.5 * (b - a)) >= min(3, len(spans)):
+            if sum(
+                1 for a, b in spans if min(b, x1) - max(a, x0) > 0.5 * (b - a)
+            ) >= min(3, len(spans)):
                 return True
         return False
 
     def continues(self, following: list[Line]) -> bool:
         """Return whether the lines at the top of a page continue the table before."""
         line = following[0]
-        if self.open is None or line.x0 < self.extent[0] - 8 or self.is_prose(following, self.open):
+        if (
+            self.open is None
+            or line.x0 < self.extent[0] - 8
+            or self.is_prose(following, self.open)
+        ):
             return False
         if _HEADING.match(line.text) and line.size > self.size + 0.6:
             return False
@@ -386,7 +492,9 @@ def _cells(line: Line) -> list[tuple[float, str]]:
 
 
 def _value_column(line: Line) -> float:
-    """Return the left side of the second run of words, which is the value next to a label."""
+    """Return the left side of the second run of words, which is the value next to a
+    label.
+    """
     runs_of_line = runs(line, 0.45)
     return runs_of_line[1][0].x0 if len(runs_of_line) > 1 else line.x0
 
@@ -396,14 +504,20 @@ def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
     return any(abs(line.x0 - a) < 3 for a, _ in spans[2:])
 
 
-def _lowest_rule(page: Page, following: list[Line], start: int, header: Columns, bottom: float) -> float:
+def _lowest_rule(
+    page: Page, following: list[Line], start: int, header: Columns, bottom: float
+) -> float:
     """Return the lowest horizontal rule of the table above ``bottom``.
 
     No row is below it. It is infinite if the body has no rule.
     """
     x0, x1 = header.spans[0][0], header.spans[-1][1]
     top = following[start - 1].bottom - 1 if start else 0
-    wide = [r for r in joined(page.across) if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]
+    wide = [
+        r
+        for r in joined(page.across)
+        if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top
+    ]
     wide = [r for r in wide if r.at <= bottom]
     head = (
         [r for r in wide if start < len(following) and r.at < following[start].top + 2]

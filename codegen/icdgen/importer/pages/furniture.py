@@ -12,11 +12,16 @@ from icdgen.importer.pages.lines import Line
 
 MARGIN = 0.12  # fraction of the height of the page, at top and bottom
 _FIGURES = re.compile("[0-9]+")
-_NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(?:of|/|von)\s*[0-9]+)?\s*[-–|]?\Z", re.I)
+_NUMBERING = re.compile(
+    r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(?:of|/|von)\s*[0-9]+)?\s*[-–|]?\Z",
+    re.I,
+)
 
 
 def without(
-    pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[Line, list[Line]], bool]
+    pages: list[Page],
+    lines: dict[int, list[Line]],
+    keep: Callable[[Line, list[Line]], bool],
 ) -> dict[int, list[Line]]:
     """Return the lines of each page without heads and feet.
 
@@ -35,20 +40,34 @@ def without(
         content = []
         lines_of_page = lines[page.number]
         for index, line in enumerate(lines_of_page):
-            repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
-            near = [*lines_of_page[max(0, index - 1) : index], *lines_of_page[index + 1 : index + 2]]
-            if not (repeated or _numbers_the_page(line, page, offset)) or keep(line, near):
+            repeated = (
+                any(len(seen[key]) >= needed for key in _keys(line))
+                if _in_margin(line, page)
+                else False
+            )
+            near = [
+                *lines_of_page[max(0, index - 1) : index],
+                *lines_of_page[index + 1 : index + 2],
+            ]
+            if not (repeated or _numbers_the_page(line, page, offset)) or keep(
+                line, near
+            ):
                 content.append(line)
         by_page[page.number] = content
     return by_page
 
 
 def _in_margin(line: Line, page: Page) -> bool:
-    return line.middle < MARGIN * page.height or line.middle > (1 - MARGIN) * page.height
+    return (
+        line.middle < MARGIN * page.height or line.middle > (1 - MARGIN) * page.height
+    )
 
 
 def _keys(line: Line) -> list[tuple[str, int]]:
-    """Return text and height of a line. Two roundings of the height allow a small difference."""
+    """Return text and height of a line.
+
+    Two roundings of the height allow a small difference.
+    """
     text = _FIGURES.sub("#", line.text)
     return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
 
@@ -59,7 +78,9 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
     match = _NUMBERING.match(line.text.strip())
     if match is None:
         return False
-    return not line.text.strip().isdigit() or (offset is not None and int(match[1]) == page.number + offset)
+    return not line.text.strip().isdigit() or (
+        offset is not None and int(match[1]) == page.number + offset
+    )
 
 
 def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
@@ -69,9 +90,21 @@ def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
     """
     offsets: Counter[Any] = Counter()
     for page in pages:
-        figures = {line.text.strip() for line in lines[page.number] if _in_margin(line, page)}
-        offsets.update({int(text) - page.number for text in figures if text.isdigit() and len(text) < 5})
+        figures = {
+            line.text.strip() for line in lines[page.number] if _in_margin(line, page)
+        }
+        offsets.update(
+            {
+                int(text) - page.number
+                for text in figures
+                if text.isdigit() and len(text) < 5
+            }
+        )
     if not offsets:
         return None
     offset, count = offsets.most_common(1)[0]
-    return offset if count >= max(2, len(pages) / 2) or (len(pages) == 1 and offset == 0) else None
+    return (
+        offset
+        if count >= max(2, len(pages) / 2) or (len(pages) == 1 and offset == 0)
+        else None
+    )

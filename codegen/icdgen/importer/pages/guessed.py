@@ -1,4 +1,6 @@
-"""Tables without vertical rules and with unknown headings: lines of several aligned cells."""
+"""Tables without vertical rules and with unknown headings: lines of several aligned
+cells.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ def made(items: list[Draft | Mark]) -> list[Draft | Mark]:
 
 
 def _tables(marks: list[Mark]) -> list[tuple[int, int, Draft]]:
-    """Return first and last index, and the table, of each run of text lines like a table."""
+    """Return first and last index, and the table, of each run of text lines like a
+    table.
+    """
     tables = []
     start = 0
     while start < len(marks):
@@ -51,10 +55,17 @@ def _end(marks: list[Mark], start: int) -> int:
     index = start + 1
     while index < len(marks):
         mark, above = marks[index], marks[index - 1]
-        if mark.kind != "text" or mark.box.page != first.box.page or mark.box.top - above.box.bottom > 2.5 * mark.size:
+        if (
+            mark.kind != "text"
+            or mark.box.page != first.box.page
+            or mark.box.top - above.box.bottom > 2.5 * mark.size
+        ):
             break
-        hits = sum(any(abs(x - column) < ALIGNED for column in columns) for x, _ in mark.cells)
-        # A single cell in the first column is more likely a line of text below the table.
+        hits = sum(
+            any(abs(x - column) < ALIGNED for column in columns) for x, _ in mark.cells
+        )
+        # A single cell in the first column is more likely a line of text below the
+        # table.
         alone = len(mark.cells) == 1 and abs(mark.cells[0][0] - columns[0]) < ALIGNED
         if alone or hits < min(2, len(mark.cells)):
             break

@@ -12,7 +12,9 @@ WORDS = 7  # minimum words of such a line
 FULL = 0.8  # minimum width of such a line, as a fraction of the column
 
 
-def parts(page: Page, regions: list[Region], lines_of_page: list[Line]) -> list[tuple[list[Region], list[Line]]]:
+def parts(
+    page: Page, regions: list[Region], lines_of_page: list[Line]
+) -> list[tuple[list[Region], list[Line]]]:
     """Return the regions and lines of the page, column by column."""
     words = words_of(lines_of_page)
     middle = _middle(page, regions, lines_of_page)
@@ -21,16 +23,22 @@ def parts(page: Page, regions: list[Region], lines_of_page: list[Line]) -> list[
     in_order = []
     for is_left in (True, False):
         inside = lines([word for word in words if (word.x1 <= middle) == is_left])
-        in_order.append(([region for region in regions if (region.x1 <= middle) == is_left], inside))
+        in_order.append(
+            ([region for region in regions if (region.x1 <= middle) == is_left], inside)
+        )
     return in_order
 
 
-def _middle(page: Page, regions: list[Region], lines_of_page: list[Line]) -> float | None:
+def _middle(
+    page: Page, regions: list[Region], lines_of_page: list[Line]
+) -> float | None:
     """Return the position of the gap between two columns of text.
 
     Return None if the page has one column, or little text left of the gap.
     """
-    spans = [(word.x0, word.x1) for word in words_of(lines_of_page)] + [(r.x0, r.x1) for r in regions]
+    spans = [(word.x0, word.x1) for word in words_of(lines_of_page)] + [
+        (r.x0, r.x1) for r in regions
+    ]
     low, high = 0.4 * page.width, 0.6 * page.width
     best, at = (0.0, 0.0), low
     for x0, x1 in sorted((x0, x1) for x0, x1 in spans if x1 > low and x0 < high):
@@ -42,7 +50,11 @@ def _middle(page: Page, regions: list[Region], lines_of_page: list[Line]) -> flo
     column = lines(word for word in words_of(lines_of_page) if word.x1 <= middle)
     right = max((line.x1 for line in column), default=0.0)
     text = [line for line in column if _is_text(line)]
-    full = [line for line in text if line.x1 - line.x0 > FULL * (right - min(line.x0 for line in text))]
+    full = [
+        line
+        for line in text
+        if line.x1 - line.x0 > FULL * (right - min(line.x0 for line in text))
+    ]
     return middle if len(full) >= FEWEST else None
 
 

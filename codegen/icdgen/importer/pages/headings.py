@@ -10,9 +10,14 @@ from icdgen.importer.words import folded, number
 
 
 def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | None:
-    """Return the heading row that these cells form, or None. ``loose``: fields may have no column of offsets."""
+    """Return the heading row that these cells form, or None.
+
+    ``loose``: fields may have no column of offsets.
+    """
     texts = [folded(cell) for cell in cells]
-    if sum(bool(text) for text in texts) < 2 or any(number(cell) is not None for cell in cells):
+    if sum(bool(text) for text in texts) < 2 or any(
+        number(cell) is not None for cell in cells
+    ):
         return None
     best, most = None, 0.0
     for kind, roles in profile.headings.items():
@@ -21,7 +26,9 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
         if kind == "fields" and "at_bytes" in given and "name" not in given:
             given = ["name" if role == "description" else role for role in given]
         given_roles = set(given)
-        if not all(any(role in given_roles for role in group) for group in profile.needs[kind]):
+        if not all(
+            any(role in given_roles for role in group) for group in profile.needs[kind]
+        ):
             continue
         unknown = sum(
             1 for text, role in zip(texts, given, strict=True)
@@ -32,20 +39,28 @@ def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | N
         if not has_offsets and not loose:
             continue
         score = header.known - 0.6 * unknown
-        score -= 0 if has_offsets else 0.7  # prefer another kind of table that matches as well
+        score -= (
+            0 if has_offsets else 0.7
+        )  # prefer another kind of table that matches as well
         if header.known > unknown and score > most:
             best, most = header, score
     return best
 
 
-def _roles(texts: list[tuple[str, ...]], roles: dict[str, list[tuple[str, ...]]]) -> list[str]:
+def _roles(
+    texts: list[tuple[str, ...]], roles: dict[str, list[tuple[str, ...]]]
+) -> list[str]:
     """Return the role of each cell.
 
     A role is assigned once, to the cell whose heading is first in the vocabulary.
     """
     given = [""] * len(texts)
     for role, headings in roles.items():
-        matches = [index for index, text in enumerate(texts) if text and not given[index] and text in headings]
+        matches = [
+            index
+            for index, text in enumerate(texts)
+            if text and not given[index] and text in headings
+        ]
         if matches:
             given[matches[0]] = role
     return given
@@ -62,7 +77,9 @@ def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
         groups, index, hits = [], 0, 0
         while index < len(words):
             for length in range(min(5, len(words) - index), 0, -1):
-                chunk = tuple(part for text in flat[index : index + length] for part in text)
+                chunk = tuple(
+                    part for text in flat[index : index + length] for part in text
+                )
                 if chunk in titles:
                     groups.append(list(range(index, index + length)))
                     index, hits = index + length, hits + 1
@@ -70,7 +87,9 @@ def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
             else:
                 groups.append([index])
                 index += 1
-        header = match([" ".join(words[i] for i in group) for group in groups], profile, loose=True)
+        header = match(
+            [" ".join(words[i] for i in group) for group in groups], profile, loose=True
+        )
         if header is not None and header.kind == kind and hits > best[0]:
             best = (hits, groups)
     return best[1] or None
@@ -95,7 +114,9 @@ def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
 
 
 def _is_lower_half(given: list[tuple[str, ...]], titles: list[tuple[str, ...]]) -> bool:
-    """Return whether the cells are the second line of headings, such as ``(bits) (bits) Type``."""
+    """Return whether the cells are the second line of headings, such as ``(bits) (bits)
+    Type``.
+    """
     ends = [title[1:] for title in titles if len(title) > 1]
     places = []
     for text in given:

@@ -41,7 +41,9 @@ def lines(words: Iterable[Word]) -> list[Line]:
 
     Words of a line overlap vertically by more than half the height of the lower one.
     """
-    groups: list[list[Any]] = []  # [top, bottom, words] of the tall words first, so that raised marks find their line
+    groups: list[list[Any]] = (
+        []
+    )  # [top, bottom, words] of the tall words first, so that raised marks find their line
     for word in sorted(words, key=lambda w: (w.top, w.x0)):
         best, most = None, 0.5
         for group in groups[-8:]:
@@ -69,12 +71,19 @@ def text_of(words: list[Word]) -> str:
         part = word.text
         if last is not None:
             near = word.x0 - last.x1 < TOUCH * max(word.size, last.size)
-            raised = word.size <= SMALL * last.size and word.bottom < last.bottom - 0.12 * last.size
+            raised = (
+                word.size <= SMALL * last.size
+                and word.bottom < last.bottom - 0.12 * last.size
+            )
             text += "" if near else " "
             if raised and near:
                 part = part.translate(SUPERSCRIPTS)
         text += part
-        last = word if last is None or word.size > SMALL * last.size else last._replace(x1=word.x1)
+        last = (
+            word
+            if last is None or word.size > SMALL * last.size
+            else last._replace(x1=word.x1)
+        )
     return text
 
 
@@ -86,7 +95,13 @@ def words_of(lines_of_words: Iterable[Line]) -> list[Word]:
 def box_around(page: int, things: Sequence[Line | Box]) -> Box:
     """Return the smallest box around objects on one page."""
     x0, top = min(thing.x0 for thing in things), min(thing.top for thing in things)
-    return Box(page, x0, top, max(thing.x1 for thing in things), max(thing.bottom for thing in things))
+    return Box(
+        page,
+        x0,
+        top,
+        max(thing.x1 for thing in things),
+        max(thing.bottom for thing in things),
+    )
 
 
 def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:

@@ -66,7 +66,11 @@ class Builder:
         for item in reversed(self.out):
             if isinstance(item, Draft):
                 break
-            match = self.profile.caption.match(item.text) if item.kind == "caption" else None
+            match = (
+                self.profile.caption.match(item.text)
+                if item.kind == "caption"
+                else None
+            )
             if match and (CONTINUED.search(item.text) or self.repeated(item)):
                 number = match["number"]
                 continue
@@ -81,16 +85,26 @@ class Builder:
             return None
         draft = item
         follows = piece.box.page == draft.last_page + 1
-        below = piece.box.page == draft.last_page and 0 <= piece.box.top - draft.boxes[-1].bottom < 30
+        below = (
+            piece.box.page == draft.last_page
+            and 0 <= piece.box.top - draft.boxes[-1].bottom < 30
+        )
         if between > 3 or not (follows or below):
             return None
         if self.first_is_id(piece):
             return None
         if number is None and not self.fits(draft, piece, follows):
             return None
-        if number is None and between == 1 and last is not None and self.is_group(draft, last):
+        if (
+            number is None
+            and between == 1
+            and last is not None
+            and self.is_group(draft, last)
+        ):
             assert draft.header is not None
-            draft.rows.append(bands.group_row(last.text, len(draft.header.roles), last.box.page))
+            draft.rows.append(
+                bands.group_row(last.text, len(draft.header.roles), last.box.page)
+            )
             self.out.remove(last)
         if torn and (draft.header is not None or not draft.head):
             return None
@@ -103,11 +117,17 @@ class Builder:
         return draft
 
     def is_group(self, draft: Draft, mark: Mark) -> bool:
-        """Return whether a line below a list is the heading of the next page's first group."""
+        """Return whether a line below a list is the heading of the next page's first
+        group.
+        """
         if draft.header is None or draft.header.kind != "list":
             return False
         box = draft.boxes[-1]
-        touches = mark.box.page == box.page and mark.box.top - box.bottom < mark.size and mark.box.x0 - box.x0 < 8
+        touches = (
+            mark.box.page == box.page
+            and mark.box.top - box.bottom < mark.size
+            and mark.box.x0 - box.x0 < 8
+        )
         return mark.strong or (touches and len(mark.cells) == 1)
 
     def repeated(self, mark: Mark) -> bool:
@@ -125,7 +145,10 @@ class Builder:
         first = next((band for band in piece.bands if band.words), None)
         if first is None:
             return False
-        texts = (" ".join(t for t in first.texts(self.document_words) if t), lines(first.words)[0].text)
+        texts = (
+            " ".join(t for t in first.texts(self.document_words) if t),
+            lines(first.words)[0].text,
+        )
         return any(labels.begins(text, self.profile) for text in texts)
 
     def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
@@ -135,7 +158,9 @@ class Builder:
             if piece.columns is None:
                 return True
             return (header is None and bool(draft.head)) or (
-                header is not None and follows and headings.repeats(piece.columns.header.titles, header, self.profile)
+                header is not None
+                and follows
+                and headings.repeats(piece.columns.header.titles, header, self.profile)
             )
         own = self.header_of(piece)
         if own is not None:
@@ -149,13 +174,18 @@ class Builder:
 
     def header_of(self, piece: Piece) -> Header | None:
         for band in piece.bands[:3]:
-            header = headings.match(band.texts(self.document_words), self.profile, loose=True)
+            header = headings.match(
+                band.texts(self.document_words), self.profile, loose=True
+            )
             if header:
                 return header
-        split = self.split(piece.bands[0]) if piece.bands else None  # no rule separates headings and rows
+        split = (
+            self.split(piece.bands[0]) if piece.bands else None
+        )  # no rule separates headings and rows
         return split[1] if split else None
 
-    # --- ruled -----------------------------------------------------------------------------------------------------
+    # --- ruled
+    # -----------------------------------------------------------------------------------------------------
 
     def ruled(self, draft: Draft, piece: Piece) -> None:
         waiting = list(piece.bands)
@@ -173,13 +203,20 @@ class Builder:
             elif not draft.rows and (both_lines := self.lower_half(draft, texts)):
                 upper = draft.header.printed[-1:]
                 for row in upper:
-                    row.texts = [f"{a}\n{b}".strip("\n") for a, b in zip(row.texts, texts, strict=True)]
+                    row.texts = [
+                        f"{a}\n{b}".strip("\n")
+                        for a, b in zip(row.texts, texts, strict=True)
+                    ]
                 both_lines.printed = upper
                 draft.header = both_lines
             elif headings.repeats(texts, draft.header, self.profile):
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
-            elif fresh and len(draft.boxes) > 1 and (remainder := self.below_headings(draft, band)) is not None:
+            elif (
+                fresh
+                and len(draft.boxes) > 1
+                and (remainder := self.below_headings(draft, band)) is not None
+            ):
                 if remainder.words:
                     waiting.insert(0, remainder)
             else:
@@ -187,24 +224,32 @@ class Builder:
                 fresh = False
 
     def below_headings(self, draft: Draft, band: Band) -> Band | None:
-        """Return the remainder of a band that begins with the repeated headings, or None."""
+        """Return the remainder of a band that begins with the repeated headings, or
+        None.
+        """
         header = draft.header
         assert header is not None
         titles = [squeezed(title) for title in header.titles]
         lines_of_band = lines(band.words)
         for count in range(1, min(5, len(lines_of_band) + 1)):
-            if [squeezed(text) for text in band.of(lines_of_band[:count]).texts(self.document_words)] == titles:
+            if [
+                squeezed(text)
+                for text in band.of(lines_of_band[:count]).texts(self.document_words)
+            ] == titles:
                 return band.of(lines_of_band[count:])
         return None
 
     def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
-        """Return the complete headings if a page break separates their two lines, otherwise None."""
+        """Return the complete headings if a page break separates their two lines,
+        otherwise None.
+        """
         header = draft.header
         assert header is not None
         if len(texts) != len(header.titles):
             return None
         both_lines = headings.match(
-            [f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)], self.profile
+            [f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)],
+            self.profile,
         )
         return both_lines if both_lines and both_lines.known > header.known else None
 
@@ -214,10 +259,15 @@ class Builder:
         return has_more and labels.begins(" ".join(t for t in texts if t), self.profile)
 
     def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
-        """Set the heading row if the band contains it or its upper half. Return whether it does."""
+        """Set the heading row if the band contains it or its upper half.
+
+        Return whether it does.
+        """
         match = headings.match(band.texts(self.document_words), self.profile)
         if match is None and not waiting:
-            match = headings.match(band.texts(self.document_words), self.profile, loose=True)
+            match = headings.match(
+                band.texts(self.document_words), self.profile, loose=True
+            )
         printed = [band.printed(self.document_words)]
         if match is None and waiting and len(lines(band.words)) < 4:
             stacked = _stacked(band, waiting[0], self.document_words)
@@ -225,7 +275,9 @@ class Builder:
             if match is not None:
                 printed.append(waiting.pop(0).printed(self.document_words))
             else:
-                match = headings.match(band.texts(self.document_words), self.profile, loose=True)
+                match = headings.match(
+                    band.texts(self.document_words), self.profile, loose=True
+                )
         if match is None:
             split = self.split(band)
             if split is None:
@@ -246,26 +298,46 @@ class Builder:
         """
         single = [PrintedRow([line.text], page=band.page) for line in lines(band.words)]
         as_one_row = [band.printed(self.document_words)]
-        return single if len(single) > 1 and self.labelled(single) > self.labelled(as_one_row) else as_one_row
+        return (
+            single
+            if len(single) > 1 and self.labelled(single) > self.labelled(as_one_row)
+            else as_one_row
+        )
 
     def labelled(self, rows: list[PrintedRow]) -> int:
         """Return the number of values with a known label."""
-        labelled = (labels.parse(" ".join(filter(None, row.lines)), self.profile) for row in rows)
-        return sum(1 for parts in labelled for label in parts if label.what and label.value)
+        labelled = (
+            labels.parse(" ".join(filter(None, row.lines)), self.profile)
+            for row in rows
+        )
+        return sum(
+            1 for parts in labelled for label in parts if label.what and label.value
+        )
 
     def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
-        """Split a band without rules between its rows: lines above the headings, headings, remainder."""
+        """Split a band without rules between its rows: lines above the headings,
+        headings, remainder.
+        """
         lines_of_band = lines(band.words)
         for start in range(min(8, len(lines_of_band))):
             best: tuple[int, Header] | None = None
             for count in range(1, min(4, len(lines_of_band) - start) + 1):
                 header = headings.match(
-                    band.of(lines_of_band[start : start + count]).texts(self.document_words), self.profile
+                    band.of(lines_of_band[start : start + count]).texts(
+                        self.document_words
+                    ),
+                    self.profile,
                 )
-                if header is not None and (best is None or header.known >= best[1].known):
+                if header is not None and (
+                    best is None or header.known >= best[1].known
+                ):
                     best = count, header
             if best is not None:
-                return lines_of_band[:start], best[1], band.of(lines_of_band[start + best[0] :])
+                return (
+                    lines_of_band[:start],
+                    best[1],
+                    band.of(lines_of_band[start + best[0] :]),
+                )
         return None
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
@@ -273,14 +345,21 @@ class Builder:
         header = draft.header
         if len(band.edges) < len(draft.edges):
             plain = Band(band.page, draft.edges, band.words)
-            if bands.has_keys(plain, header):  # vertical rules separate only the headings
+            if bands.has_keys(
+                plain, header
+            ):  # vertical rules separate only the headings
                 band = plain
-        rows = bands.rows(bands.aligned(band, draft.edges), header, self.document_words, torn)
-        if len(rows) == 1:  # keep its own cells, instead of those aligned with the headings
+        rows = bands.rows(
+            bands.aligned(band, draft.edges), header, self.document_words, torn
+        )
+        if (
+            len(rows) == 1
+        ):  # keep its own cells, instead of those aligned with the headings
             rows = [band.printed(self.document_words)]
         draft.rows += rows
 
-    # --- without vertical rules ------------------------------------------------------------------------------------
+    # --- without vertical rules
+    # ------------------------------------------------------------------------------------
 
     def loose(self, draft: Draft, piece: Piece) -> None:
         draft.head += [PrintedRow([text], page=piece.box.page) for text in piece.head]
@@ -290,20 +369,32 @@ class Builder:
             self.loose_pieces.setdefault(id(draft), []).append(piece)
 
     def cut(self, draft: Draft, pieces: list[Piece]) -> None:
-        """Add the rows of pieces without vertical rules, with columns found from all their lines."""
-        spans = next((piece.columns.spans for piece in pieces if piece.columns is not None), None)
+        """Add the rows of pieces without vertical rules, with columns found from all
+        their lines.
+        """
+        spans = next(
+            (piece.columns.spans for piece in pieces if piece.columns is not None), None
+        )
         header = draft.header
         if spans is None or header is None:
             return
         body = [line for piece in pieces for line in piece.lines]
         for piece in pieces:
-            own = piece.columns.spans if piece.columns is not None and len(piece.columns.spans) == len(spans) else spans
+            own = (
+                piece.columns.spans
+                if piece.columns is not None and len(piece.columns.spans) == len(spans)
+                else spans
+            )
             edges = columns.boundaries(own, body, *piece.extent)
             for band in _bands(piece, edges):
-                if not headings.repeats(band.texts(self.document_words), header, self.profile):
+                if not headings.repeats(
+                    band.texts(self.document_words), header, self.profile
+                ):
                     rows = bands.rows(band, header, self.document_words)
                     for row in rows:
-                        row.edges = ()  # columns are found separately on each page: cells match by their index
+                        # Columns are found separately on each page: cells match by
+                        # their index.
+                        row.edges = ()
                     draft.rows += rows
 
 
@@ -312,7 +403,11 @@ def _bands(piece: Piece, edges: list[float]) -> list[Band]:
     if not piece.lines or piece.page is None:
         return []
     top, bottom = piece.top, piece.lines[-1].bottom
-    cuts = [top, *(y for y in row_marks(piece.page, edges[0], edges[-1]) if top < y < bottom), bottom + 1]
+    cuts = [
+        top,
+        *(y for y in row_marks(piece.page, edges[0], edges[-1]) if top < y < bottom),
+        bottom + 1,
+    ]
     parts = []
     for upper, lower in pairwise(cuts):
         words = [word for word in words_of(piece.lines) if upper <= word.middle < lower]
@@ -321,7 +416,9 @@ def _bands(piece: Piece, edges: list[float]) -> list[Band]:
     return parts
 
 
-def _stacked(upper: Band, lower: Band, document_words: frozenset[str]) -> list[str] | None:
+def _stacked(
+    upper: Band, lower: Band, document_words: frozenset[str]
+) -> list[str] | None:
     """Return the texts of two bands that form one heading row."""
     if len(upper.edges) != len(lower.edges):
         lower = bands.aligned(lower, upper.edges)

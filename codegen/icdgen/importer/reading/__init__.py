@@ -11,7 +11,9 @@ from icdgen.importer.document import Document
 from icdgen.importer.profile import Profile
 
 MAX_BYTES = 300_000_000
-Progress = Callable[[int, int, int], None]  # pages done, pages altogether, captions seen
+Progress = Callable[
+    [int, int, int], None
+]  # pages done, pages altogether, captions seen
 
 
 def read(
@@ -29,11 +31,19 @@ def read(
             start = file.read(2048)
             size = file.seek(0, 2)
     except OSError as error:
-        raise _refused(name, f"cannot read the file: {error.strerror}", "check the path") from None
+        raise _refused(
+            name, f"cannot read the file: {error.strerror}", "check the path"
+        ) from None
     if not start:
-        raise _refused(name, "the file is empty", "name a PDF, or a text with tab-separated tables")
+        raise _refused(
+            name, "the file is empty", "name a PDF, or a text with tab-separated tables"
+        )
     if size > MAX_BYTES:
-        raise _refused(name, f"the file has more than the {MAX_BYTES:,} bytes allowed", "cut it into parts")
+        raise _refused(
+            name,
+            f"the file has more than the {MAX_BYTES:,} bytes allowed",
+            "cut it into parts",
+        )
     if b"%PDF-" in start[:1024]:
         from icdgen.importer.reading import pdf
 
@@ -48,15 +58,23 @@ def read(
     if kind in ("csv", "xlsx"):
         from icdgen.importer.reading import spreadsheet
 
-        return spreadsheet.read_csv(path) if kind == "csv" else spreadsheet.read_xlsx(path)
+        return (
+            spreadsheet.read_csv(path) if kind == "csv" else spreadsheet.read_xlsx(path)
+        )
     if kind:
         from icdgen.importer.reading import markup
 
-        readers = {"docx": markup.read_docx, "html": markup.read_html, "markdown": markup.read_markdown}
+        readers = {
+            "docx": markup.read_docx,
+            "html": markup.read_html,
+            "markdown": markup.read_markdown,
+        }
         return readers[kind](path, profile)
     if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise _refused(
-            name, "icdgen does not read this kind of document", "export it as PDF, .docx, .xlsx, CSV or HTML first"
+            name,
+            "icdgen does not read this kind of document",
+            "export it as PDF, .docx, .xlsx, CSV or HTML first",
         )
     from icdgen.importer.reading import text
 
@@ -64,13 +82,23 @@ def read(
 
 
 def _kind(path: Path, start: bytes) -> str:
-    """Return the kind of a document other than PDF or text, by its first bytes and its suffix."""
+    """Return the kind of a document other than PDF or text, by its first bytes and its
+    suffix.
+    """
     suffix = path.suffix.casefold()
     if start[:4] == b"PK\x03\x04":
         return {".xlsx": "xlsx", ".xlsm": "xlsx", ".docx": "docx"}.get(suffix, "")
-    if suffix in (".html", ".htm", ".xhtml") or start.lstrip()[:15].lower().startswith((b"<!doctype html", b"<html")):
+    if suffix in (".html", ".htm", ".xhtml") or start.lstrip()[:15].lower().startswith(
+        (b"<!doctype html", b"<html")
+    ):
         return "html"
-    return {".csv": "csv", ".md": "markdown", ".markdown": "markdown", ".h": "c", ".c": "c"}.get(suffix, "")
+    return {
+        ".csv": "csv",
+        ".md": "markdown",
+        ".markdown": "markdown",
+        ".h": "c",
+        ".c": "c",
+    }.get(suffix, "")
 
 
 def _refused(name: str, message: str, help: str) -> Findings:

@@ -7,15 +7,22 @@ import re
 
 from icdgen.importer.document import Block, Cell, Document, SourceRow, SourceTable, Text
 
-_LINE = re.compile(r"(?P<where>(?:bytes?|octets?)\s*\[?[0-9]+[^:=]{0,12}?)\s*[:=]\s*(?P<what>\S.*)\Z", re.I)
+_LINE = re.compile(
+    r"(?P<where>(?:bytes?|octets?)\s*\[?[0-9]+[^:=]{0,12}?)\s*[:=]\s*(?P<what>\S.*)\Z",
+    re.I,
+)
 
 
 def make_tables(document: Document) -> None:
     """Replace each run of such lines by a table with the headings `Byte` and `Name`."""
     result: list[Block] = []
-    for is_line, run in itertools.groupby(document.blocks, lambda b: isinstance(b, Text) and bool(_LINE.match(b.text))):
+    for is_line, run in itertools.groupby(
+        document.blocks, lambda b: isinstance(b, Text) and bool(_LINE.match(b.text))
+    ):
         blocks = list(run)
-        lines = [block for block in blocks if isinstance(block, Text)] if is_line else []
+        lines = (
+            [block for block in blocks if isinstance(block, Text)] if is_line else []
+        )
         result += [_table(lines)] if lines else blocks
     document.blocks = result
 
@@ -26,5 +33,7 @@ def _table(lines: list[Text]) -> SourceTable:
         match = _LINE.match(block.text)
         assert match is not None
         positions = re.sub(r"[^0-9]+", "-", match["where"]).strip("-")
-        rows.append(SourceRow([Cell(positions), Cell(match["what"])], block.page, block.line))
+        rows.append(
+            SourceRow([Cell(positions), Cell(match["what"])], block.page, block.line)
+        )
     return SourceTable(rows=rows)

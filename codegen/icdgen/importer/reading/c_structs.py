@@ -1,8 +1,11 @@
-"""Structs and enumerations of C -> tables: of header files, and of `typedef struct` in the text of documents.
+"""Structs and enumerations of C -> tables: of header files, and of `typedef struct` in
+the text of documents.
 
-A struct is a table with the columns `COLUMNS`, so that rules read it like any other: its caption is the name of the struct, the
-texts before it are the comment above it and `sizeof N`. Positions follow the System V ABI for little-endian machines, which
-gcc and clang follow: bit fields from the least significant bit, members aligned to their size unless the struct is packed.
+A struct is a table with the columns `COLUMNS`, so that rules read it like any other:
+its caption is the name of the struct, the texts before it are the comment above it and
+`sizeof N`. Positions follow the System V ABI for little-endian machines, which gcc and
+clang follow: bit fields from the least significant bit, members aligned to their size
+unless the struct is packed.
 """
 
 from __future__ import annotations
@@ -16,7 +19,15 @@ from typing import Any
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
 from icdgen.import_results.findings import ImportFinding, SourcePlace
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
+from icdgen.importer.document import (
+    Block,
+    Cell,
+    Document,
+    Heading,
+    SourceRow,
+    SourceTable,
+    Text,
+)
 from icdgen.importer.reading.c_text import CText
 from icdgen.importer.reading.utf8 import utf8_text
 
@@ -46,7 +57,10 @@ class Unreadable(Exception):
 
 @dataclass
 class Member:
-    """A member of a struct and its offset. ``bit`` is set for bit fields, ``count`` for arrays."""
+    """A member of a struct and its offset.
+
+    ``bit`` is set for bit fields, ``count`` for arrays.
+    """
 
     byte: int
     bits: int
@@ -69,7 +83,10 @@ class Layout:
 
 
 def read_header(path: Path) -> Document:
-    """Return the document of a header file. Raises `Findings` if it is no C, `UserError` without pycparser."""
+    """Return the document of a header file.
+
+    Raises `Findings` if it is no C, `UserError` without pycparser.
+    """
     text = utf8_text(path, "save it as UTF-8")
     document = Document(str(path))
     try:
@@ -82,16 +99,25 @@ def read_header(path: Path) -> Document:
 
 
 def in_document(document: Document) -> None:
-    """Add a table behind each `typedef struct` in the text of a document. Text that is not valid C stays text."""
+    """Add a table behind each `typedef struct` in the text of a document.
+
+    Text that is not valid C stays text.
+    """
     blocks: list[Block] = []
     waiting: list[Text] = []
     for block in document.blocks:
         blocks.append(block)
-        begins = isinstance(block, Text) and re.match(r"(?:typedef\s+)?(?:\w+\s+)?struct\b[^;]*$", block.text.strip())
+        begins = isinstance(block, Text) and re.match(
+            r"(?:typedef\s+)?(?:\w+\s+)?struct\b[^;]*$", block.text.strip()
+        )
         if isinstance(block, Text) and (waiting or begins):
             waiting.append(block)
             text = "\n".join(line.text for line in waiting)
-            if "}" in block.text and text.count("{") == text.count("}") and block.text.rstrip().endswith(";"):
+            if (
+                "}" in block.text
+                and text.count("{") == text.count("}")
+                and block.text.rstrip().endswith(";")
+            ):
                 try:
                     tables, import_findings = read_structs(text)
                 except (Unreadable, UserError):
@@ -102,7 +128,8 @@ def in_document(document: Document) -> None:
                             row.page, row.line = waiting[0].page, None
                         blocks.append(table)
                 document.import_findings += [
-                    t._replace(spot=SourcePlace(waiting[0].page, waiting[0].line)) for t in import_findings
+                    t._replace(spot=SourcePlace(waiting[0].page, waiting[0].line))
+                    for t in import_findings
                 ]
                 waiting = []
         elif isinstance(block, (SourceTable, Heading)):
@@ -111,21 +138,30 @@ def in_document(document: Document) -> None:
 
 
 def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
-    """Return the structs and enumerations of a text in C as blocks. Raises `Unreadable`, and `UserError` without pycparser."""
+    """Return the structs and enumerations of a text in C as blocks.
+
+    Raises `Unreadable`, and `UserError` without pycparser.
+    """
     try:
         from pycparser import c_ast, c_parser
     except ImportError:
-        raise UserError("reading structs in C needs pycparser", "pip install 'icdgen[import]'") from None
+        raise UserError(
+            "reading structs in C needs pycparser", "pip install 'icdgen[import]'"
+        ) from None
     source = CText(text)
     try:
         tree = c_parser.CParser().parse(f"{_PRELUDE}\n#line 1\n{source.code}", "text")
     except c_parser.ParseError as error:
         match = re.match(r"[^:]*:([0-9]+):[0-9]+: (.*)", str(error))
         line, reason = (
-            (int(match[1]), match[2]) if match else (_wrong_line(source, c_parser), str(error).partition(": ")[2])
+            (int(match[1]), match[2])
+            if match
+            else (_wrong_line(source, c_parser), str(error).partition(": ")[2])
         )
         message = f"line {line}: this C cannot be parsed: {reason}"
-        raise Unreadable(message, "declare its types in the same file, and take out macros") from None
+        raise Unreadable(
+            message, "declare its types in the same file, and take out macros"
+        ) from None
     reader = _Reader(source, c_ast)
     for declaration in tree.ext:
         if (
@@ -139,7 +175,9 @@ def read_structs(text: str) -> tuple[list[Block], list[ImportFinding]]:
 
 
 def _wrong_line(source: CText, c_parser: Any) -> int:
-    """Return the line of the first invalid declaration, if the parser does not report it."""
+    """Return the line of the first invalid declaration, if the parser does not report
+    it.
+    """
     for line, code in source.beginnings:
         try:
             c_parser.CParser().parse(f"{_PRELUDE}\n{code}", "text")
@@ -149,7 +187,10 @@ def _wrong_line(source: CText, c_parser: Any) -> int:
 
 
 class _Reader:
-    """Makes tables of the declarations of a file; ``ast`` is pycparser's module of nodes."""
+    """Makes tables of the declarations of a file.
+
+    ``ast`` is pycparser's module of nodes.
+    """
 
     def __init__(self, source: CText, ast: Any) -> None:
         self.source, self.ast = source, ast
@@ -180,7 +221,11 @@ class _Reader:
     def enum(self, node: Any, name: str) -> None:
         value, members = -1, []
         for enumerator in node.values.enumerators:
-            value = self.number(enumerator.value) if enumerator.value is not None else value + 1
+            value = (
+                self.number(enumerator.value)
+                if enumerator.value is not None
+                else value + 1
+            )
             members.append((value, enumerator.name))
             self.values[enumerator.name] = value
         for key in filter(None, (name, node.name)):
@@ -199,7 +244,11 @@ class _Reader:
         except Unreadable as error:
             self.import_findings.append(
                 ImportFinding(
-                    "IMP037", f"struct `{name}`: {error.message}", SourcePlace(line=line), error.help, "error"
+                    "IMP037",
+                    f"struct `{name}`: {error.message}",
+                    SourcePlace(line=line),
+                    error.help,
+                    "error",
                 )
             )
             return
@@ -214,28 +263,51 @@ class _Reader:
             )
         rows = [list(COLUMNS)]
         for member in layout.members:
-            count, bit = str(member.count) if member.count else "", "" if member.bit is None else str(member.bit)
+            count, bit = str(member.count) if member.count else "", (
+                "" if member.bit is None else str(member.bit)
+            )
             comment = self.source.beside(member.line)
             rows.append(
-                [str(member.byte), bit, str(member.bits), member.kind, member.name, count, member.members, comment]
+                [
+                    str(member.byte),
+                    bit,
+                    str(member.bits),
+                    member.kind,
+                    member.name,
+                    count,
+                    member.members,
+                    comment,
+                ]
             )
         self.add(name, line, rows, [f"sizeof {layout.size}"])
 
-    def add(self, caption: str, line: int, rows: list[list[str]], texts: list[str]) -> None:
+    def add(
+        self, caption: str, line: int, rows: list[list[str]], texts: list[str]
+    ) -> None:
         above = self.source.above(line)
         self.blocks += [Text(text, line=line) for text in (above, *texts) if text]
         self.blocks.append(
-            SourceTable(caption=caption, rows=[SourceRow(list(map(Cell, row)), line=line) for row in rows])
+            SourceTable(
+                caption=caption,
+                rows=[SourceRow(list(map(Cell, row)), line=line) for row in rows],
+            )
         )
 
-    # --- layout ----------------------------------------------------------------------------------------------------
+    # --- layout
+    # ----------------------------------------------------------------------------------------------------
 
     def layout(self, node: Any) -> Layout:
-        """Return the layout of a struct. Raise `Unreadable` if it is not a sequence of bytes."""
+        """Return the layout of a struct.
+
+        Raise `Unreadable` if it is not a sequence of bytes.
+        """
         if node.decls is None:
             inner = self.structs.get(node.name)
             if inner is None:
-                raise Unreadable(f"struct `{node.name}` is not declared", "add its declaration in front of this one")
+                raise Unreadable(
+                    f"struct `{node.name}` is not declared",
+                    "add its declaration in front of this one",
+                )
             node = inner
         layout = Layout()
         is_packed = node.coord.line in self.source.packed
@@ -244,21 +316,33 @@ class _Reader:
             if declaration.bitsize is not None:
                 kind, size = self.scalar(declaration.type)
                 width = self.number(declaration.bitsize)
-                # A bit field of a struct that is not packed crosses no boundary of its type (System V ABI, "Bit-Fields").
+                # A bit field of a struct that is not packed crosses no boundary of its
+                # type (System V ABI, "Bit-Fields").
                 crosses = at // size != (at + width - 1) // size if width else True
                 if width == 0 or (crosses and not is_packed):
                     at = self.aligned(at, size, layout, declaration.name or "")
                 if declaration.name and width:
                     kind = "int" if kind == "int" else "uint"
                     layout.members.append(
-                        Member(at // 8, width, kind, declaration.name, at % 8, line=declaration.coord.line)
+                        Member(
+                            at // 8,
+                            width,
+                            kind,
+                            declaration.name,
+                            at % 8,
+                            line=declaration.coord.line,
+                        )
                     )
-                    layout.alignment = max(layout.alignment, 1 if is_packed else size // 8)
+                    layout.alignment = max(
+                        layout.alignment, 1 if is_packed else size // 8
+                    )
                 at += width
                 continue
             members, size, alignment = self.member(declaration)
             alignment = 1 if is_packed else alignment
-            at = self.aligned(at, 8 * alignment, layout, declaration.name or "an inner struct")
+            at = self.aligned(
+                at, 8 * alignment, layout, declaration.name or "an inner struct"
+            )
             layout.alignment = max(layout.alignment, alignment)
             for inner_member in members:
                 inner_member.byte += at // 8
@@ -268,11 +352,16 @@ class _Reader:
         return layout
 
     def aligned(self, at: int, boundary: int, layout: Layout, name: str) -> int:
-        """Return the next multiple of a number of bits. Skipped bytes are recorded as padding."""
+        """Return the next multiple of a number of bits.
+
+        Skipped bytes are recorded as padding.
+        """
         padding = -at % boundary
         if padding >= 8:
             where = f"in front of `{name}`" if name else "at the end"
-            layout.padding.append(f"{where} ({padding // 8} byte{'s' if padding >= 16 else ''})")
+            layout.padding.append(
+                f"{where} ({padding // 8} byte{'s' if padding >= 16 else ''})"
+            )
         return at + padding
 
     def member(self, declaration: Any) -> tuple[list[Member], int, int]:
@@ -284,17 +373,22 @@ class _Reader:
         while isinstance(kind, self.ast.ArrayDecl):
             if kind.dim is None:
                 raise Unreadable(
-                    f"`{declaration.name}` has no size", "write its size, or describe it in the ICD by hand"
+                    f"`{declaration.name}` has no size",
+                    "write its size, or describe it in the ICD by hand",
                 )
             counts.append(self.number(kind.dim))
             kind = kind.type
         if isinstance(kind, self.ast.PtrDecl):
-            raise Unreadable(f"`{declaration.name}` is a pointer", "a struct with pointers is no frame")
+            raise Unreadable(
+                f"`{declaration.name}` is a pointer",
+                "a struct with pointers is no frame",
+            )
         inner = self.resolved(kind)
         if isinstance(inner, (self.ast.Struct, self.ast.Union)):
             if isinstance(inner, self.ast.Union):
                 raise Unreadable(
-                    f"`{declaration.name or 'a member'}` is a union", "take one of its members in a copy of the header"
+                    f"`{declaration.name or 'a member'}` is a union",
+                    "take one of its members in a copy of the header",
                 )
             layout = self.layout(inner)
             total = 1
@@ -302,12 +396,15 @@ class _Reader:
                 total *= count
             if total > MOST_ELEMENTS:
                 raise Unreadable(
-                    f"`{declaration.name}` has {total} elements", f"arrays of structs may have {MOST_ELEMENTS}"
+                    f"`{declaration.name}` has {total} elements",
+                    f"arrays of structs may have {MOST_ELEMENTS}",
                 )
             result = []
             for index in range(total):
                 prefix = (
-                    f"{declaration.name}[{index}]." if counts else f"{declaration.name}." if declaration.name else ""
+                    f"{declaration.name}[{index}]."
+                    if counts
+                    else f"{declaration.name}." if declaration.name else ""
                 )
                 result += [
                     Member(
@@ -327,30 +424,59 @@ class _Reader:
         count = 1
         for n in counts:
             count *= n
-        members = "; ".join(f"{value}: {label}" for value, label in self.members_of(kind))
+        members = "; ".join(
+            f"{value}: {label}" for value, label in self.members_of(kind)
+        )
         shown = name if name in ("char", "bool", "enum") else f"{name}{size}"
         shown = f"uint{size}" if name in ("bool", "enum") else shown
-        place = Member(0, size, shown, declaration.name, None, count if counts else 0, members, declaration.coord.line)
+        place = Member(
+            0,
+            size,
+            shown,
+            declaration.name,
+            None,
+            count if counts else 0,
+            members,
+            declaration.coord.line,
+        )
         return [place], size // 8 * count, size // 8
 
     def resolved(self, kind: Any) -> Any:
         """Return the type after resolving typedefs."""
         inner = kind.type if isinstance(kind, self.ast.TypeDecl) else kind
-        while isinstance(inner, self.ast.IdentifierType) and len(inner.names) == 1 and inner.names[0] in self.typedefs:
+        while (
+            isinstance(inner, self.ast.IdentifierType)
+            and len(inner.names) == 1
+            and inner.names[0] in self.typedefs
+        ):
             definition = self.typedefs[inner.names[0]]
-            inner = definition.type if isinstance(definition, self.ast.TypeDecl) else definition
+            inner = (
+                definition.type
+                if isinstance(definition, self.ast.TypeDecl)
+                else definition
+            )
         return inner
 
     def scalar(self, kind: Any) -> tuple[str, int]:
-        """Kind and size in bits of a number. Raises `Unreadable` for types whose size no standard states."""
+        """Kind and size in bits of a number.
+
+        Raises `Unreadable` for types whose size no standard states.
+        """
         inner = self.resolved(kind)
         if isinstance(inner, self.ast.Enum):
             return "enum", 32
         if not isinstance(inner, self.ast.IdentifierType):
-            raise Unreadable("a member is neither a number nor a struct", "describe it in the ICD by hand")
+            raise Unreadable(
+                "a member is neither a number nor a struct",
+                "describe it in the ICD by hand",
+            )
         names = [_STANDARD.get(name, name) for name in inner.names]
         spelled = " ".join(names)
-        words = [word for word in spelled.split() if word not in ("int", "signed", "unsigned")]
+        words = [
+            word
+            for word in spelled.split()
+            if word not in ("int", "signed", "unsigned")
+        ]
         sign = (
             "unsigned "
             if "unsigned" in spelled.split()
@@ -359,7 +485,8 @@ class _Reader:
         key = (sign + " ".join(words or ["int"])).strip()
         if key not in _SIZES:
             raise Unreadable(
-                f"the size of the type `{spelled}` depends on the compiler", "write one of fixed size, such as uint32_t"
+                f"the size of the type `{spelled}` depends on the compiler",
+                "write one of fixed size, such as uint32_t",
             )
         return _SIZES[key]
 
@@ -382,5 +509,13 @@ class _Reader:
             return -self.number(node.expr)
         if isinstance(node, self.ast.BinaryOp) and node.op in ("+", "-", "*", "<<"):
             left, right = self.number(node.left), self.number(node.right)
-            return {"+": left + right, "-": left - right, "*": left * right, "<<": left << min(right, 64)}[node.op]
-        raise Unreadable("a size or value is not a constant that can be computed", "write it as a number")
+            return {
+                "+": left + right,
+                "-": left - right,
+                "*": left * right,
+                "<<": left << min(right, 64),
+            }[node.op]
+        raise Unreadable(
+            "a size or value is not a constant that can be computed",
+            "write it as a number",
+        )

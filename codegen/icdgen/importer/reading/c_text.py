@@ -15,16 +15,24 @@ _BEGINS = re.compile(
     rf"\b(?:typedef\s+)?(?:{_PACKED}\s*)?(?:struct|enum|union)\b[^;{{}}()=]*(?:{_PACKED})?[^;{{}}()=]*\{{"
 )
 _TYPEDEF = re.compile(r"\btypedef\s+[\w\s]+?\s\w+\s*;")
-_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
+_COMMENT = re.compile(
+    r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S
+)
 _DEFINE = re.compile(
-    r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+\(?[ \t]*(0[xX][0-9a-fA-F]+|[0-9]+)[uUlL]*[ \t]*\)?[ \t]*$", re.M
+    r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+\(?[ \t]*(0[xX][0-9a-fA-F]+|[0-9]+)[uUlL]*[ \t]*\)?[ \t]*$",
+    re.M,
 )
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*", re.M)
-_PRAGMA = re.compile(r"#\s*pragma\s+pack\s*\(\s*(?:(push)\s*,?\s*)?([0-9]+)?\s*(pop)?\s*\)")
+_PRAGMA = re.compile(
+    r"#\s*pragma\s+pack\s*\(\s*(?:(push)\s*,?\s*)?([0-9]+)?\s*(pop)?\s*\)"
+)
 
 
 class CText:
-    """A text in C with its comments, constants and packing taken out; the lines keep their numbers."""
+    """A text in C with its comments, constants and packing taken out.
+
+    The lines keep their numbers.
+    """
 
     def __init__(self, text: str) -> None:
         self.comments: dict[int, str] = {}  # line on which a comment ends -> its text
@@ -32,7 +40,9 @@ class CText:
         code = _COMMENT.sub(self._comment(text), text)
         constants = {match[1]: match[2] for match in _DEFINE.finditer(code)}
         self.packed: set[int] = set()  # lines of structs that are packed
-        pragmas = [(code.count("\n", 0, m.start()) + 1, m) for m in _PRAGMA.finditer(code)]
+        pragmas = [
+            (code.count("\n", 0, m.start()) + 1, m) for m in _PRAGMA.finditer(code)
+        ]
         code = _DIRECTIVE.sub(lambda m: "\n" * m[0].count("\n"), code)
         if constants:
             words = "|".join(map(re.escape, constants))
@@ -71,16 +81,23 @@ class CText:
             end = semicolon + 1 if semicolon >= 0 else len(code)
             line = code.count("\n", 0, match.start()) + 1
             pack = next((m for number, m in reversed(pragmas) if number < line), None)
-            if re.search(_PACKED, code[match.start() : end]) or (pack is not None and pack[2] == "1" and not pack[3]):
+            if re.search(_PACKED, code[match.start() : end]) or (
+                pack is not None and pack[2] == "1" and not pack[3]
+            ):
                 self.packed |= set(range(line, code.count("\n", 0, end) + 2))
             ranges.append((match.start(), end))
             at = end
         texts, last = [], 0
-        self.beginnings: list[tuple[int, str]] = []  # line of each declaration, and the code up to its end
+        self.beginnings: list[tuple[int, str]] = (
+            []
+        )  # line of each declaration, and the code up to its end
         for start, end in sorted(ranges):
             if start < last:
                 continue
-            texts += ["\n" * code.count("\n", last, start), " " + re.sub(_PACKED, " ", code[start:end])]
+            texts += [
+                "\n" * code.count("\n", last, start),
+                " " + re.sub(_PACKED, " ", code[start:end]),
+            ]
             last = end
             self.beginnings.append((code.count("\n", 0, start) + 1, "".join(texts)))
         return "".join(texts) + "\n"
@@ -93,4 +110,6 @@ class CText:
         """Return the comment after a member, or the one above it."""
         if line is None:
             return ""
-        return (self.comments.get(line, "") if line not in self.alone else "") or self.above(line)
+        return (
+            self.comments.get(line, "") if line not in self.alone else ""
+        ) or self.above(line)

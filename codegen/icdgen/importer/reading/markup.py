@@ -1,4 +1,7 @@
-"""Web pages, Markdown and Word documents -> documents. They state headings, captions and spans themselves."""
+"""Web pages, Markdown and Word documents -> documents.
+
+They state headings, captions and spans themselves.
+"""
 
 from __future__ import annotations
 
@@ -10,45 +13,77 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
+from icdgen.importer.document import (
+    Block,
+    Cell,
+    Document,
+    Heading,
+    SourceRow,
+    SourceTable,
+    Text,
+)
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
 from icdgen.importer.reading.utf8 import utf8_text
 from icdgen.importer.words import CONTINUED, plain, table_number
 
 CODE = "IMP002"
-_HEADINGS = {f"h{level}": float(20 - level) for level in range(1, 7)}  # as type sizes: larger ones contain smaller ones
+_HEADINGS = {
+    f"h{level}": float(20 - level) for level in range(1, 7)
+}  # as type sizes: larger ones contain smaller ones
 _BREAKS = {"p", "div", "li", "br", "tr"}
 _SKIPPED = {"script", "style", "head", "template", "noscript"}
 
 
 def read_html(path: Path, profile: Profile) -> Document:
-    """Return the document of a web page. Raises `Findings` if it cannot be read, `UserError` without lxml."""
+    """Return the document of a web page.
+
+    Raises `Findings` if it cannot be read, `UserError` without lxml.
+    """
     return _of_html(path.read_bytes(), str(path), profile)
 
 
 def read_markdown(path: Path, profile: Profile) -> Document:
-    """Return the document of a Markdown file: GitHub's tables, and HTML tables within it."""
+    """Return the document of a Markdown file: GitHub's tables, and HTML tables within
+    it.
+    """
     from markdown_it import MarkdownIt
 
     text = utf8_text(path, "save it as UTF-8")
     html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
-    return _of_html(f'<html><meta charset="utf-8"><body>{html}</body></html>'.encode(), str(path), profile)
+    return _of_html(
+        f'<html><meta charset="utf-8"><body>{html}</body></html>'.encode(),
+        str(path),
+        profile,
+    )
 
 
 def _of_html(data: bytes, name: str, profile: Profile) -> Document:
     try:
         from lxml import etree, html
     except ImportError:
-        raise UserError("reading a web page or Markdown needs lxml", "pip install 'icdgen[import]'") from None
+        raise UserError(
+            "reading a web page or Markdown needs lxml", "pip install 'icdgen[import]'"
+        ) from None
     try:
         root = html.document_fromstring(data)
     except etree.ParserError as error:
-        raise Findings([Finding(CODE, f"the page cannot be read: {error}", Place(name), "is it a web page?")]) from None
+        raise Findings(
+            [
+                Finding(
+                    CODE,
+                    f"the page cannot be read: {error}",
+                    Place(name),
+                    "is it a web page?",
+                )
+            ]
+        ) from None
     title = root.findtext(".//title") or ""
     document = Document(name, title=plain(title))
     body = root.find("body")
-    document.blocks = attach_captions(list(_html_blocks(body if body is not None else root, profile)))
+    document.blocks = attach_captions(
+        list(_html_blocks(body if body is not None else root, profile))
+    )
     return document
 
 
@@ -76,7 +111,9 @@ def _html_blocks(element: Any, profile: Profile) -> Iterator[Block | Caption]:
 
 
 def _is_layout(table: Any) -> bool:
-    """Return whether a table contains other tables, and therefore only arranges the page."""
+    """Return whether a table contains other tables, and therefore only arranges the
+    page.
+    """
     return table.find(".//table") is not None
 
 
@@ -85,7 +122,14 @@ def _html_table(table: Any) -> SourceTable:
     rows = []
     for row in table.iter("tr"):
         cells = [c for c in row if c.tag in ("td", "th")]
-        rows.append(SourceRow([Cell(_cell_text(c), _span(c, "colspan"), _span(c, "rowspan")) for c in cells]))
+        rows.append(
+            SourceRow(
+                [
+                    Cell(_cell_text(c), _span(c, "colspan"), _span(c, "rowspan"))
+                    for c in cells
+                ]
+            )
+        )
     text = plain(_text(caption)) if caption is not None else ""
     return SourceTable(caption=text, rows=_within(rows))
 
@@ -115,7 +159,10 @@ def _text(element: Any) -> str:
 
 
 def _cell_text(element: Any) -> str:
-    """Return the text of a cell with the line breaks of the document. Line ends of the markup are blanks."""
+    """Return the text of a cell with the line breaks of the document.
+
+    Line ends of the markup are blanks.
+    """
     for child in element.iter():
         if isinstance(child.tag, str) and child.tag != "pre":
             child.text = " ".join(child.text.split("\n")) if child.text else child.text
@@ -126,7 +173,11 @@ def _cell_text(element: Any) -> str:
 
 def _heading(text: str, size: float) -> Heading:
     match = re.match(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>\S.*)\Z", text)
-    return Heading(match["number"], match["text"], size=size) if match else Heading("", text, size=size)
+    return (
+        Heading(match["number"], match["text"], size=size)
+        if match
+        else Heading("", text, size=size)
+    )
 
 
 def _paragraph(text: str, profile: Profile) -> Iterator[Block | Caption]:
@@ -135,32 +186,52 @@ def _paragraph(text: str, profile: Profile) -> Iterator[Block | Caption]:
         return
     caption = profile.caption.match(text)
     if caption and (caption["mark"] or not caption["title"]):
-        yield Caption(table_number(caption["number"]), CONTINUED.sub("", caption["title"]).strip(), text)
+        yield Caption(
+            table_number(caption["number"]),
+            CONTINUED.sub("", caption["title"]).strip(),
+            text,
+        )
     else:
         yield Text(text)
 
 
 def read_docx(path: Path, profile: Profile) -> Document:
-    """Return the document of a Word file. Raises `Findings` if it cannot be read, `UserError` without python-docx."""
+    """Return the document of a Word file.
+
+    Raises `Findings` if it cannot be read, `UserError` without python-docx.
+    """
     try:
         import docx
         from docx.opc.exceptions import PackageNotFoundError
         from docx.table import Table as WordTable
         from docx.text.paragraph import Paragraph
     except ImportError:
-        raise UserError("reading a Word document needs python-docx", "pip install 'icdgen[import]'") from None
+        raise UserError(
+            "reading a Word document needs python-docx", "pip install 'icdgen[import]'"
+        ) from None
     try:
         word = docx.Document(str(path))
     except (PackageNotFoundError, zipfile.BadZipFile, KeyError, ValueError) as error:
         help = "open it in a word processor and save it as .docx"
-        raise Findings([Finding(CODE, f"the document cannot be read: {error}", Place(str(path)), help)]) from None
+        raise Findings(
+            [
+                Finding(
+                    CODE,
+                    f"the document cannot be read: {error}",
+                    Place(str(path)),
+                    help,
+                )
+            ]
+        ) from None
     document = Document(str(path), title=word.core_properties.title or "")
     blocks: list[Block | Caption] = []
     for part in word.iter_inner_content():
         if isinstance(part, WordTable):
             blocks.append(SourceTable(rows=_word_rows(part)))
         elif isinstance(part, Paragraph):
-            style = part.style.name if part.style is not None and part.style.name else ""
+            style = (
+                part.style.name if part.style is not None and part.style.name else ""
+            )
             level = style.removeprefix("Heading ")
             if style.startswith("Heading ") and level.isdigit():
                 blocks.append(_heading(plain(part.text), 20.0 - int(level)))

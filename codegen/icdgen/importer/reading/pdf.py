@@ -1,4 +1,7 @@
-"""PDF -> document. Pages are read in worker processes; what they show is put together here."""
+"""PDF -> document.
+
+Pages are read in worker processes; what they show is put together here.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,8 @@ from icdgen.importer.profile import Profile
 
 FEW = 12  # pages; below this, starting processes costs more than it saves
 MOST_PAGES = 5000
-MOST_CONTENTS = 6_000_000  # bytes of a page: a table has some ten thousand; drawings with more would take minutes
+# Bytes of a page: a table has some ten thousand; drawings with more would take minutes.
+MOST_CONTENTS = 6_000_000
 
 
 def read(
@@ -40,7 +44,10 @@ def read(
     if only is not None:
         wanted = range(only[0] - 1, min(only[1], count))
         if not wanted:
-            raise UserError(f"the manual has {count} pages: none from {only[0]} to {only[1]}", "choose other --pages")
+            raise UserError(
+                f"the manual has {count} pages: none from {only[0]} to {only[1]}",
+                "choose other --pages",
+            )
     document = Document(name, pages=len(wanted), title=title)
     count = len(wanted)
     pages = []
@@ -52,7 +59,9 @@ def read(
             progress(len(pages), count, seen)
     _look_over(pages, document, name)
     items = flow.items(pages, profile)
-    document.blocks = tables.Builder(profile, _known(pages), is_part=only is not None).run(items)
+    document.blocks = tables.Builder(
+        profile, _known(pages), is_part=only is not None
+    ).run(items)
     return document
 
 
@@ -63,14 +72,22 @@ def _open(path: Path, name: str) -> tuple[int, str]:
         from pdfminer.pdfdocument import PDFEncryptionError, PDFPasswordIncorrect
         from pdfplumber.utils.exceptions import PdfminerException
     except ImportError:
-        raise UserError("reading a PDF needs pdfplumber", "pip install 'icdgen[import]'") from None
+        raise UserError(
+            "reading a PDF needs pdfplumber", "pip install 'icdgen[import]'"
+        ) from None
     logging.getLogger("pdfminer").setLevel(logging.CRITICAL)
     try:
         with pdfplumber.open(path) as file:
             count = len(file.pages)
             title = (file.metadata or {}).get("Title")
-    except Exception as error:  # pdfminer raises whatever a broken file makes it stumble over
-        cause = error.args[0] if isinstance(error, PdfminerException) and error.args else error
+    except (
+        Exception
+    ) as error:  # pdfminer raises whatever a broken file makes it stumble over
+        cause = (
+            error.args[0]
+            if isinstance(error, PdfminerException) and error.args
+            else error
+        )
         if isinstance(cause, (PDFPasswordIncorrect, PDFEncryptionError)):
             help = "remove the password first, for instance with `qpdf --decrypt`"
             raise _refused(name, "the PDF is encrypted", help) from None
@@ -79,9 +96,15 @@ def _open(path: Path, name: str) -> tuple[int, str]:
             "download it again, or repair it, for instance with `qpdf` or `mutool clean`",
         ) from None  # fmt: skip
     if count == 0:
-        raise _refused(name, "the PDF has no pages", "it may be truncated: download it again")
+        raise _refused(
+            name, "the PDF has no pages", "it may be truncated: download it again"
+        )
     if count > MOST_PAGES:
-        raise _refused(name, f"the PDF has {count:,} pages, more than the {MOST_PAGES:,} allowed", "cut it into parts")
+        raise _refused(
+            name,
+            f"the PDF has {count:,} pages, more than the {MOST_PAGES:,} allowed",
+            "cut it into parts",
+        )
     return count, title if isinstance(title, str) else ""
 
 
@@ -91,7 +114,14 @@ def _refused(name: str, message: str, help: str) -> Findings:
 
 def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
     count = len(wanted)
-    jobs = min(jobs or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 8)
+    jobs = min(
+        (
+            jobs or len(os.sched_getaffinity(0))
+            if hasattr(os, "sched_getaffinity")
+            else os.cpu_count() or 1
+        ),
+        8,
+    )
     if jobs <= 1 or count < FEW:
         _start_worker(path, ignore=False)
         try:
@@ -101,7 +131,9 @@ def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
             _end_worker()
         return
     with get_context().Pool(jobs, _start_worker, (path, True)) as pool:
-        yield from pool.imap(_work, wanted, chunksize=max(1, min(8, count // (4 * jobs))))
+        yield from pool.imap(
+            _work, wanted, chunksize=max(1, min(8, count // (4 * jobs)))
+        )
 
 
 _open_file: Any = None
@@ -132,13 +164,17 @@ def _work(number: int) -> Page:
         _weigh(page)
         return extract(page)
     except Exception as error:  # one broken page must not cost the others
-        return Page(number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200])
+        return Page(
+            number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200]
+        )
     finally:
         page.close()
 
 
 def _weigh(page: Any) -> None:
-    """Raises `ValueError` for a page whose contents unpack to more than any page of text and tables needs."""
+    """Raises `ValueError` for a page whose contents unpack to more than any page of
+    text and tables needs.
+    """
     from pdfminer.pdftypes import stream_value
 
     left = MOST_CONTENTS
@@ -146,14 +182,19 @@ def _weigh(page: Any) -> None:
         raw = stream_value(stream).rawdata or b""
         unpacked = len(raw)
         with contextlib.suppress(zlib.error):
-            unpacked = max(unpacked, len(zlib.decompressobj().decompress(raw, left + 1)))
+            unpacked = max(
+                unpacked, len(zlib.decompressobj().decompress(raw, left + 1))
+            )
         left -= unpacked
         if left < 0:
             raise ValueError(f"its contents are more than {MOST_CONTENTS:,} bytes")
 
 
 def _look_over(pages: list[Page], document: Document, name: str) -> None:
-    """Report pages without text and with unreadable characters. Raises `Findings` if the document has no text."""
+    """Report pages without text and with unreadable characters.
+
+    Raises `Findings` if the document has no text.
+    """
     words = sum(len(page.words) for page in pages)
     if not words:
         images = sum(page.images for page in pages)
@@ -166,7 +207,8 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         raise _refused(name, f"the PDF holds only {what}: there is no text layer", help)
     for page in pages:
         document.import_findings += [
-            import_finding._replace(spot=SourcePlace(page.number)) for import_finding in _of_page(page)
+            import_finding._replace(spot=SourcePlace(page.number))
+            for import_finding in _of_page(page)
         ]
 
 
@@ -174,13 +216,20 @@ def _of_page(page: Page) -> Iterator[ImportFinding]:
     """Report the parts of a page that cannot be read."""
     if page.failed:
         help = "its content is missing from the ICD"
-        yield ImportFinding("IMP010", f"the page cannot be read ({page.failed})", help=help, severity="error")
+        yield ImportFinding(
+            "IMP010",
+            f"the page cannot be read ({page.failed})",
+            help=help,
+            severity="error",
+        )
     elif not page.words and page.images:
         help = "look whether it shows a table: it is missing from the ICD"
         yield ImportFinding("IMP011", "the page is a picture without text", help=help)
     if page.unseen:
         what = f"{page.unseen} words stand outside the visible page; they were left out"
-        yield ImportFinding("IMP013", what, help="look whether the page is cut off", severity="note")
+        yield ImportFinding(
+            "IMP013", what, help="look whether the page is cut off", severity="note"
+        )
     if page.turned:
         what = f"{page.turned} words are rotated; they were left out"
         help = "check whether a table or its labels are rotated"
@@ -194,9 +243,14 @@ def _captions(page: Page, profile: Profile) -> int:
     """About how many tables begin on the page: for the eye, while pages are read."""
     heads = {word.rstrip(".") for word in profile.data["captions"]}
     pairs = pairwise(word.text for word in page.words)
-    return sum(a.rstrip(".") in heads and b[:1].isdigit() and b[-1:] in ":.–-" for a, b in pairs)
+    return sum(
+        a.rstrip(".") in heads and b[:1].isdigit() and b[-1:] in ":.–-"
+        for a, b in pairs
+    )
 
 
 def _known(pages: list[Page]) -> frozenset[str]:
     """Return all words of the document that are not broken at the end of a line."""
-    return frozenset(word.text.strip(".,;:()[]") for page in pages for word in page.words)
+    return frozenset(
+        word.text.strip(".,;:()[]") for page in pages for word in page.words
+    )

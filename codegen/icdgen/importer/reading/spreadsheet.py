@@ -1,7 +1,7 @@
 """Spreadsheets -> documents: CSV with the standard library, XLSX with openpyxl.
 
-A sheet is a section; rows without any text separate its tables. A row of one cell above a table is a text before it. Merged
-cells are cells that span rows and columns.
+A sheet is a section; rows without any text separate its tables. A row of one cell above
+a table is a text before it. Merged cells are cells that span rows and columns.
 """
 
 from __future__ import annotations
@@ -16,16 +16,32 @@ from typing import Any
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
 from icdgen.import_results.findings import ImportFinding, SourcePlace
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
+from icdgen.importer.document import (
+    Block,
+    Cell,
+    Document,
+    Heading,
+    SourceRow,
+    SourceTable,
+    Text,
+)
 from icdgen.importer.reading.utf8 import utf8_text
 
 CODE = "IMP002"
-MOST_ROWS, MOST_COLUMNS = 100_000, 1_000  # of a sheet: sheets that are formatted to their end have a million rows
-Cells = list[tuple[int, list[Cell]]]  # number of the row, counted from 1, and the cells that begin in it
+MOST_ROWS, MOST_COLUMNS = (
+    100_000,
+    1_000,
+)  # of a sheet: sheets that are formatted to their end have a million rows
+Cells = list[
+    tuple[int, list[Cell]]
+]  # number of the row, counted from 1, and the cells that begin in it
 
 
 def read_csv(path: Path) -> Document:
-    """Return the document of a CSV file. Raises `Findings` if it is not UTF-8 or no CSV."""
+    """Return the document of a CSV file.
+
+    Raises `Findings` if it is not UTF-8 or no CSV.
+    """
     name = str(path)
     text = utf8_text(path, "save it as CSV in UTF-8")
     delimiter = max(",;\t|", key=text[:10_000].count)
@@ -34,12 +50,21 @@ def read_csv(path: Path) -> Document:
     try:
         start = 1
         for row in reader:
-            rows.append((start, [Cell(cell.strip().replace("\r\n", "\n")) for cell in row]))
+            rows.append(
+                (start, [Cell(cell.strip().replace("\r\n", "\n")) for cell in row])
+            )
             start = reader.line_num + 1
     except csv.Error as error:
         message = f"this CSV cannot be parsed: {error}"
         raise Findings(
-            [Finding(CODE, message, Place(name, reader.line_num), "check the quotes in this line")]
+            [
+                Finding(
+                    CODE,
+                    message,
+                    Place(name, reader.line_num),
+                    "check the quotes in this line",
+                )
+            ]
         ) from None
     document = Document(name)
     document.blocks = _blocks(rows, "")
@@ -47,18 +72,38 @@ def read_csv(path: Path) -> Document:
 
 
 def read_xlsx(path: Path) -> Document:
-    """Return the document of a workbook. Raises `Findings` if it cannot be read, `UserError` without openpyxl."""
+    """Return the document of a workbook.
+
+    Raises `Findings` if it cannot be read, `UserError` without openpyxl.
+    """
     try:
         import openpyxl
         from openpyxl.utils.exceptions import InvalidFileException
     except ImportError:
-        raise UserError("reading a spreadsheet needs openpyxl", "pip install 'icdgen[import]'") from None
+        raise UserError(
+            "reading a spreadsheet needs openpyxl", "pip install 'icdgen[import]'"
+        ) from None
     try:
         book = openpyxl.load_workbook(path, data_only=True)
         formulas = openpyxl.load_workbook(path)
-    except (InvalidFileException, zipfile.BadZipFile, KeyError, ValueError, OSError) as error:
+    except (
+        InvalidFileException,
+        zipfile.BadZipFile,
+        KeyError,
+        ValueError,
+        OSError,
+    ) as error:
         help = "open it in a spreadsheet program and save it as .xlsx"
-        raise Findings([Finding(CODE, f"the workbook cannot be read: {error}", Place(str(path)), help)]) from None
+        raise Findings(
+            [
+                Finding(
+                    CODE,
+                    f"the workbook cannot be read: {error}",
+                    Place(str(path)),
+                    help,
+                )
+            ]
+        ) from None
     document = Document(str(path), title=str(book.properties.title or ""))
     for sheet in book.worksheets:
         if sheet.sheet_state != "visible":
@@ -72,7 +117,10 @@ def read_xlsx(path: Path) -> Document:
             )
             continue
         reader = _Sheet(sheet, formulas[sheet.title], document)
-        document.blocks += [Heading("", sheet.title), *_blocks(reader.rows(), sheet.title)]
+        document.blocks += [
+            Heading("", sheet.title),
+            *_blocks(reader.rows(), sheet.title),
+        ]
     return document
 
 
@@ -83,14 +131,25 @@ class _Sheet:
         self.sheet, self.formulas, self.document = sheet, formulas, document
 
     def rows(self) -> Cells:
-        """Return the rows up to the last one with a value, without cells merged into others."""
-        height, width = min(self.sheet.max_row, MOST_ROWS), min(self.sheet.max_column, MOST_COLUMNS)
+        """Return the rows up to the last one with a value, without cells merged into
+        others.
+        """
+        height, width = min(self.sheet.max_row, MOST_ROWS), min(
+            self.sheet.max_column, MOST_COLUMNS
+        )
         spans = {}
         covered = set()
         for area in self.sheet.merged_cells.ranges:
             bottom, right = min(area.max_row, height), min(area.max_col, width)
-            spans[area.min_row, area.min_col] = right - area.min_col + 1, bottom - area.min_row + 1
-            covered |= {(r, c) for r in range(area.min_row, bottom + 1) for c in range(area.min_col, right + 1)}
+            spans[area.min_row, area.min_col] = (
+                right - area.min_col + 1,
+                bottom - area.min_row + 1,
+            )
+            covered |= {
+                (r, c)
+                for r in range(area.min_row, bottom + 1)
+                for c in range(area.min_col, right + 1)
+            }
         covered -= set(spans)
         result: Cells = []
         for row in range(1, height + 1):
@@ -104,7 +163,10 @@ class _Sheet:
         return result
 
     def text(self, row: int, column: int) -> str:
-        """Return the value of a cell as text. Report values that differ from what was typed."""
+        """Return the value of a cell as text.
+
+        Report values that differ from what was typed.
+        """
         cell = self.sheet.cell(row, column)
         value = cell.value
         where = f"sheet `{self.sheet.title}`, cell {cell.coordinate}"
@@ -125,12 +187,22 @@ class _Sheet:
             return "TRUE" if value else "FALSE"
         if isinstance(value, float):
             return str(int(value)) if value == int(value) else repr(value)
-        if isinstance(value, str) and value.startswith("#") and value.endswith(("!", "?", "/A")):
-            self.report(row, f"{where}: its formula gives the error `{value}`", "correct the formula")
+        if (
+            isinstance(value, str)
+            and value.startswith("#")
+            and value.endswith(("!", "?", "/A"))
+        ):
+            self.report(
+                row,
+                f"{where}: its formula gives the error `{value}`",
+                "correct the formula",
+            )
         return str(value).strip().replace("\r\n", "\n")
 
     def report(self, row: int, message: str, help: str) -> None:
-        self.document.import_findings.append(ImportFinding("IMP023", message, SourcePlace(line=row), help, "error"))
+        self.document.import_findings.append(
+            ImportFinding("IMP023", message, SourcePlace(line=row), help, "error")
+        )
 
 
 def _blocks(rows: Cells, sheet: str) -> list[Block]:
@@ -152,7 +224,12 @@ def _blocks(rows: Cells, sheet: str) -> list[Block]:
         open_rows = max(open_rows - 1, 0)
         if not filled and not open_rows:
             close()
-        elif len(filled) == 1 and not table and not open_rows and (cells[0].text or len(cells) > 1):
+        elif (
+            len(filled) == 1
+            and not table
+            and not open_rows
+            and (cells[0].text or len(cells) > 1)
+        ):
             blocks.append(Text(filled[0], line=number))
         else:
             table.append(SourceRow(cells, line=number))
@@ -165,5 +242,13 @@ def _without_empty_columns(rows: list[SourceRow]) -> list[SourceRow]:
     """Return the rows without empty columns at the right of the table."""
     if any(cell.columns > 1 or cell.rows > 1 for row in rows for cell in row.cells):
         return rows
-    width = max((index + 1 for row in rows for index, cell in enumerate(row.cells) if cell.text), default=0)
+    width = max(
+        (
+            index + 1
+            for row in rows
+            for index, cell in enumerate(row.cells)
+            if cell.text
+        ),
+        default=0,
+    )
     return [SourceRow(row.cells[:width], row.page, row.line) for row in rows]

@@ -1,4 +1,7 @@
-"""Text with tab-separated tables -> document. Page breaks stand within tables as blank lines; rows may be torn there."""
+"""Text with tab-separated tables -> document.
+
+Page breaks stand within tables as blank lines; rows may be torn there.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,15 @@ import re
 from pathlib import Path
 
 from icdgen.importer import labels
-from icdgen.importer.document import Block, Cell, Document, Heading, SourceRow, SourceTable, Text
+from icdgen.importer.document import (
+    Block,
+    Cell,
+    Document,
+    Heading,
+    SourceRow,
+    SourceTable,
+    Text,
+)
 from icdgen.importer.profile import Profile
 from icdgen.importer.reading.captions import Caption, attach_captions
 from icdgen.importer.reading.utf8 import utf8_text
@@ -57,9 +68,19 @@ class _Reader:
         heading = _HEADING.match(plain(text))
         if caption and (caption["mark"] or not caption["title"]):
             title = CONTINUED.sub("", caption["title"]).strip()
-            self.blocks.append(Caption(table_number(caption["number"]), title, plain(text), self.page, number))
+            self.blocks.append(
+                Caption(
+                    table_number(caption["number"]),
+                    title,
+                    plain(text),
+                    self.page,
+                    number,
+                )
+            )
         elif heading and len(text) < 120:
-            self.blocks.append(Heading(heading["number"], heading["text"], self.page, number))
+            self.blocks.append(
+                Heading(heading["number"], heading["text"], self.page, number)
+            )
         else:
             self.blocks.append(Text(plain(text), self.page, number))
 

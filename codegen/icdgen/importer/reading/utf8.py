@@ -1,4 +1,7 @@
-"""Text of source files that must be UTF-8. Read by the readers of text, CSV, Markdown and C headers."""
+"""Text of source files that must be UTF-8.
+
+Read by the readers of text, CSV, Markdown and C headers.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,10 @@ CODE = "IMP002"
 
 
 def utf8_text(path: Path, help: str) -> str:
-    """Return the text of a file, without a byte order mark. Raises `Findings` with the line of the first other byte."""
+    """Return the text of a file, without a byte order mark.
+
+    Raises `Findings` with the line of the first other byte.
+    """
     data = path.read_bytes()
     try:
         return data.decode("utf-8-sig")

@@ -1,4 +1,6 @@
-"""Tables that say more about fields and messages of other tables: enumerations, lookup tables, bits, and the index of messages."""
+"""Tables that say more about fields and messages of other tables: enumerations, lookup
+tables, bits, and the index of messages.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,14 @@ from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part, known_kind
 from icdgen.importer.words import squeezed
 
-_GROUP = ("group", "counter", "count", "rest", "stride", "up_to")  # roles that bits share with the field they divide
+_GROUP = (
+    "group",
+    "counter",
+    "count",
+    "rest",
+    "stride",
+    "up_to",
+)  # roles that bits share with the field they divide
 _SAID = ("kind", "length")
 
 
@@ -42,8 +51,11 @@ def attach(parts: list[Part], messages: list[Part], order: Order, notes: Notes) 
                 _divide(part, host, field, order, notes)
 
 
-def _hosts(name: str, part: Part, parts: list[Part], messages: list[Part]) -> list[tuple[Part, Draft]]:
-    """Return the fields of this name in the message that the part names, or in all messages.
+def _hosts(
+    name: str, part: Part, parts: list[Part], messages: list[Part]
+) -> list[tuple[Part, Draft]]:
+    """Return the fields of this name in the message that the part names, or in all
+    messages.
 
     If several tables describe one name, each belongs to the nearest message above it.
     """
@@ -51,7 +63,9 @@ def _hosts(name: str, part: Part, parts: list[Part], messages: list[Part]) -> li
         (m, d)
         for m in messages
         for d in m.drafts
-        if squeezed(d.name) == squeezed(name) and name and squeezed(part.name) in ("", squeezed(m.name))
+        if squeezed(d.name) == squeezed(name)
+        and name
+        and squeezed(part.name) in ("", squeezed(m.name))
     ]
     rivals = [
         p
@@ -78,7 +92,8 @@ def _lookup(part: Part, field: Draft, notes: Notes) -> None:
         )
         return
     field.facts["points"] = [
-        [raw, float(str(physical))] for raw, physical in sorted(points, key=lambda point: point[0] or 0)
+        [raw, float(str(physical))]
+        for raw, physical in sorted(points, key=lambda point: point[0] or 0)
     ]
 
 
@@ -97,9 +112,17 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
             part.rule.place,
         )
     pieces = []
-    group = {role: text for role in _GROUP if field.roles.get("group") and (text := field.roles.get(role))}
+    group = {
+        role: text
+        for role in _GROUP
+        if field.roles.get("group") and (text := field.roles.get(role))
+    }
     for draft in part.drafts:
-        run = run_of(host_bits[draft.at : draft.end], order) if draft.end <= field.bits else None
+        run = (
+            run_of(host_bits[draft.at : draft.end], order)
+            if draft.end <= field.bits
+            else None
+        )
         if run is None:
             notes.error(
                 "IMP105",
@@ -112,21 +135,37 @@ def _divide(part: Part, host: Part, field: Draft, order: Order, notes: Notes) ->
         own_order = run[1] if run[1] != order else None
         roles = replace(draft.roles, given=draft.roles.given | group)
         pieces.append(
-            replace(draft, at=run[0], order=own_order, facts=dict(draft.facts), roles=roles, table=part.table)
+            replace(
+                draft,
+                at=run[0],
+                order=own_order,
+                facts=dict(draft.facts),
+                roles=roles,
+                table=part.table,
+            )
         )
     index = next(i for i, draft in enumerate(host.drafts) if draft is field)
     host.drafts[index : index + 1] = pieces
 
 
 def check_index(index: list[Part], results: list[Found], notes: Notes) -> None:
-    """Complete messages from the index, and report what it contradicts, lists without a table, or lacks."""
-    messages = [result.thing for result in results if isinstance(result.thing, ReadMessage)]
+    """Complete messages from the index, and report what it contradicts, lists without a
+    table, or lacks.
+    """
+    messages = [
+        result.thing for result in results if isinstance(result.thing, ReadMessage)
+    ]
     for entry in index:
         id, name = entry.number("id"), normalised(entry.name)
         where = f"{entry.table.title}, row of `{name or id}`"
-        entry.given["kind"] = known_kind(entry.given.get("kind", ""), where, entry.table.spot, entry.rule, notes)
+        entry.given["kind"] = known_kind(
+            entry.given.get("kind", ""), where, entry.table.spot, entry.rule, notes
+        )
         same = [
-            m for m in messages if (id is not None and id in m.ids) or (name and squeezed(m.name) == squeezed(name))
+            m
+            for m in messages
+            if (id is not None and id in m.ids)
+            or (name and squeezed(m.name) == squeezed(name))
         ]
         if not same:
             notes.warn(
@@ -141,7 +180,9 @@ def check_index(index: list[Part], results: list[Found], notes: Notes) -> None:
             _complete(message, entry, id, name, notes)
 
 
-def _complete(message: ReadMessage, entry: Part, id: int | None, name: str, notes: Notes) -> None:
+def _complete(
+    message: ReadMessage, entry: Part, id: int | None, name: str, notes: Notes
+) -> None:
     if not message.name:
         message.name = name
     stated = {"kind": entry.given.get("kind"), "length": entry.number("length")}

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from icdgen.importer.model import Extent, Found, ReadEnum, ReadField, ReadMember, ReadMessage, ReadStruct
+from icdgen.importer.model import (
+    Extent,
+    Found,
+    ReadEnum,
+    ReadField,
+    ReadMember,
+    ReadMessage,
+    ReadStruct,
+)
 from icdgen.importer.profile import Profile
 from icdgen.importer.rules import attach, lists
 from icdgen.importer.rules.bit_order import Order
@@ -26,7 +34,9 @@ class Builder:
 
     def build(self, parts: list[Part]) -> list[Found]:
         """Return the messages and enumerations in the order of the tables."""
-        messages = [part for part in parts if part.rule.what in ("message", "registers")]
+        messages = [
+            part for part in parts if part.rule.what in ("message", "registers")
+        ]
         for part in messages:
             self.place(part)
         messages = self.continued(messages)
@@ -46,8 +56,13 @@ class Builder:
     def place(self, part: Part) -> None:
         """Put the pieces of split fields together and bring bits into the node's order."""
         is_register = part.rule.what == "registers"
-        length = part.number("length") or (max((draft.end for draft in part.drafts), default=0) + 7) // 8
-        part.drafts = joined_parts(part.drafts, self.order, is_register, length, self.notes, part.rule)
+        length = (
+            part.number("length")
+            or (max((draft.end for draft in part.drafts), default=0) + 7) // 8
+        )
+        part.drafts = joined_parts(
+            part.drafts, self.order, is_register, length, self.notes, part.rule
+        )
 
     def continued(self, parts: list[Part]) -> list[Part]:
         """Return the messages, with consecutive tables of one message joined.
@@ -70,14 +85,20 @@ class Builder:
                 )
                 merged.append(part)
             else:
-                merged[-1].drafts = sorted([*merged[-1].drafts, *part.drafts], key=lambda draft: draft.at)
+                merged[-1].drafts = sorted(
+                    [*merged[-1].drafts, *part.drafts], key=lambda draft: draft.at
+                )
         return merged
 
     def message(self, part: Part) -> ReadMessage:
         """Return the message of a part."""
         table = part.table
-        kind = known_kind(part.given.get("kind", ""), part.where, table.spot, part.rule, self.notes)
-        message = ReadMessage(normalised(part.name), kind, table, bit_order=self.order.bit_order)
+        kind = known_kind(
+            part.given.get("kind", ""), part.where, table.spot, part.rule, self.notes
+        )
+        message = ReadMessage(
+            normalised(part.name), kind, table, bit_order=self.order.bit_order
+        )
         message.summary = part.given.get("message_text", "")
         message.group = part.given.get("section", "")
         for role in ("id", "set_id", "get_id", "length"):
@@ -101,9 +122,15 @@ class Builder:
         return message
 
     def check_announced_formulas(self, message: ReadMessage, part: Part) -> None:
-        """Report formulas that give another value than the words before them announce: one finding for a table."""
+        """Report formulas that give another value than the words before them announce:
+        one finding for a table.
+        """
         for announced, given in (("raw", "physical"), ("physical", "raw")):
-            names = [field.name for field in message.fields if field.described.formula_for == announced]
+            names = [
+                field.name
+                for field in message.fields
+                if field.described.formula_for == announced
+            ]
             if names:
                 subject = f"the formula of `{names[0]}`" + (
                     f" and of {len(names) - 1} more fields" if names[1:] else ""
@@ -122,7 +149,9 @@ class Builder:
         seen: set[str] = set()
         for draft in part.drafts:
             if self.profile.is_reserved(draft.name):
-                message.reserved.append(Extent(draft.at, draft.end, (draft.order or self.order).bit_order))
+                message.reserved.append(
+                    Extent(draft.at, draft.end, (draft.order or self.order).bit_order)
+                )
             elif draft.roles.get("group"):
                 groups[normalised(draft.roles.get("group"))].append(draft)
             else:
@@ -136,7 +165,9 @@ class Builder:
         """Report names that look like a mistake of a rule."""
         key = squeezed(draft.name)
         if not any(c.isalpha() for c in draft.name) or key in seen:
-            what = "two fields have this name" if key in seen else "this cannot be a name"
+            what = (
+                "two fields have this name" if key in seen else "this cannot be a name"
+            )
             self.notes.error(
                 "IMP107",
                 f"{part.where}, field `{draft.name[:60]}`: {what}",
@@ -148,7 +179,15 @@ class Builder:
 
     def field(self, draft: Draft, part: Part) -> ReadField:
         """Return the field of a draft."""
-        field = ReadField(draft.name, draft.at, draft.bits, draft.kind, draft.described, draft.spot, draft.count)
+        field = ReadField(
+            draft.name,
+            draft.at,
+            draft.bits,
+            draft.kind,
+            draft.described,
+            draft.spot,
+            draft.count,
+        )
         field.facts = dict(draft.facts)
         if draft.order is not None:
             node = self.order
@@ -168,7 +207,9 @@ class Builder:
             field.type = "uint"
         if draft.members:
             field.enum = self.enumeration(draft, part)
-        elif draft.kind == "enum" and (draft.described.enum_table is None and not draft.described.enum_title):
+        elif draft.kind == "enum" and (
+            draft.described.enum_table is None and not draft.described.enum_title
+        ):
             self.notes.error(
                 "IMP050",
                 f"{part.where}, field `{draft.name}`: its values are not given",
@@ -186,17 +227,28 @@ class Builder:
         """
         members = [ReadMember(value, name) for value, name in draft.members]
         stated = [normalised(name)] if (name := draft.roles.get("enumeration")) else []
-        for name in (*stated, draft.name, f"{part.name} {draft.name}".strip(), f"{part.name} {draft.name} {draft.at}"):
+        for name in (
+            *stated,
+            draft.name,
+            f"{part.name} {draft.name}".strip(),
+            f"{part.name} {draft.name} {draft.at}",
+        ):
             own = self.enums.get(name)
             if own is None:
-                own = self.enums[name] = ReadEnum(name, members, draft.table or part.table)
+                own = self.enums[name] = ReadEnum(
+                    name, members, draft.table or part.table
+                )
                 self.enums_found.append(Found(own.table, "enumeration", own))
             if own.members == members:
                 return name
         return draft.name
 
-    def group(self, message: ReadMessage, name: str, drafts: list[Draft], part: Part) -> None:
-        """A struct that is repeated: as often as the frame has room for it, as a field counts, or so many times."""
+    def group(
+        self, message: ReadMessage, name: str, drafts: list[Draft], part: Part
+    ) -> None:
+        """A struct that is repeated: as often as the frame has room for it, as a field
+        counts, or so many times.
+        """
         strides = {draft.roles.get("stride") for draft in drafts} - {""}
         start = min(draft.at for draft in drafts)
         size = (max(draft.end for draft in drafts) - start + 7) // 8
@@ -211,7 +263,9 @@ class Builder:
             )
             return
         first = drafts[0].roles
-        counted = first.get("counter") or ("rest" if first.get("rest") else first.get("count"))
+        counted = first.get("counter") or (
+            "rest" if first.get("rest") else first.get("count")
+        )
         bound = first.get("up_to")
         if not counted or (not bound and not counted.isdigit()):
             self.notes.error(
@@ -224,15 +278,31 @@ class Builder:
             return
         fields = []
         for draft in sorted(drafts, key=lambda draft: draft.at):
-            draft.facts = {key: value for key, value in draft.facts.items() if key not in ("count", "size", "up_to")}
+            draft.facts = {
+                key: value
+                for key, value in draft.facts.items()
+                if key not in ("count", "size", "up_to")
+            }
             field = self.field(draft, part)
             field.at -= start
             fields.append(field)
         title = f"{part.name} {name}".strip()
         message.structs.append(ReadStruct(title, size, fields))
-        facts = {"struct": title, "count": int(counted) if counted.isdigit() else counted}
-        array = ReadField(name, start, 8 * size, "struct", drafts[0].described.__class__(), drafts[0].spot)
-        array.facts = facts | ({"up_to": int(bound)} if bound and not counted.isdigit() else {})
+        facts = {
+            "struct": title,
+            "count": int(counted) if counted.isdigit() else counted,
+        }
+        array = ReadField(
+            name,
+            start,
+            8 * size,
+            "struct",
+            drafts[0].described.__class__(),
+            drafts[0].spot,
+        )
+        array.facts = facts | (
+            {"up_to": int(bound)} if bound and not counted.isdigit() else {}
+        )
         message.fields.append(array)
 
 
@@ -240,7 +310,12 @@ def _is_same_message(first: Part, second: Part) -> bool:
     keys = ("kind", "id", "set_id", "get_id")
     same = all(first.given.get(key) == second.given.get(key) for key in keys)
     has_id = any(first.given.get(key) for key in keys[1:])
-    return first.rule is second.rule and first.table is not second.table and same and has_id
+    return (
+        first.rule is second.rule
+        and first.table is not second.table
+        and same
+        and has_id
+    )
 
 
 def _overlap(first: list[Draft], second: list[Draft]) -> bool:

@@ -7,7 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from icdgen.importer.document import SourceTable
-from icdgen.importer.rules.language import TEXT_ROLES, VALUE_ROLES, Pattern, normalised, take, whole_number
+from icdgen.importer.rules.language import (
+    TEXT_ROLES,
+    VALUE_ROLES,
+    Pattern,
+    normalised,
+    take,
+    whole_number,
+)
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rows import DataRow, one_line
 from icdgen.importer.rules.rule import Column, Rule
@@ -15,7 +22,10 @@ from icdgen.importer.rules.rule import Column, Rule
 
 @dataclass
 class Roles:
-    """Roles of a field or of a row, with their row. ``members``: values and names as printed."""
+    """Roles of a field or of a row, with their row.
+
+    ``members``: values and names as printed.
+    """
 
     given: dict[str, str]
     row: DataRow
@@ -62,17 +72,31 @@ class RoleReader:
         for roles in fields:
             roles.given = {**rule.each, **roles.given}
             for correction in rule.corrections:
-                if all(pattern.search(roles.get(role)) for role, pattern in correction.where.items()):
+                if all(
+                    pattern.search(roles.get(role))
+                    for role, pattern in correction.where.items()
+                ):
                     roles.given.update(correction.roles)
                     self.notes.used_corrections.add(correction.place)
         return fields
 
     def translated(self, given: dict[str, str]) -> dict[str, str]:
         """Return the roles, with words in `map` replaced by their meanings."""
-        return {role: self.rule.map.get(role, {}).get(text.casefold(), text) for role, text in given.items()}
+        return {
+            role: self.rule.map.get(role, {}).get(text.casefold(), text)
+            for role, text in given.items()
+        }
 
-    def read_columns(self, row: DataRow, given: dict[str, str], columns: list[tuple[Column, list[str]]]) -> None:
-        """Add the roles of the columns to ``given``; report columns that give one role different texts."""
+    def read_columns(
+        self,
+        row: DataRow,
+        given: dict[str, str],
+        columns: list[tuple[Column, list[str]]],
+    ) -> None:
+        """Add the roles of the columns to ``given``.
+
+        Report columns that give one role different texts.
+        """
         sources: dict[str, str] = {}
         for column, names in columns:
             text = "".join(one_line(row, name, self.words) for name in names)
@@ -92,7 +116,10 @@ class RoleReader:
             _add(given, taken)
 
     def columns(self, rows: list[DataRow]) -> list[tuple[Column, list[str]]]:
-        """Return the entries of `columns` with their headings; report missing columns and columns without a role."""
+        """Return the entries of `columns` with their headings.
+
+        Report missing columns and columns without a role.
+        """
         rule, table, titles = self.rule, self.table, self.titles
         entries: list[tuple[Column, list[str]]] = []
         used: set[str] = set()
@@ -124,10 +151,22 @@ class RoleReader:
         used |= {*rule.keep, *rule.ignore}
         ignored = [key[1:] for key in rule.ignore if key.startswith("~")]
         for title in dict.fromkeys(title for row in rows for title in row.values):
-            is_melted = rule.melt is not None and title in titles and take([rule.melt], title) is not None
-            if title in used or is_melted or any(re.search(pattern, title, re.I) for pattern in ignored):
+            is_melted = (
+                rule.melt is not None
+                and title in titles
+                and take([rule.melt], title) is not None
+            )
+            if (
+                title in used
+                or is_melted
+                or any(re.search(pattern, title, re.I) for pattern in ignored)
+            ):
                 continue
-            filled = [normalised(row.values.get(title, "")) for row in rows if row.values.get(title, "").strip()]
+            filled = [
+                normalised(row.values.get(title, ""))
+                for row in rows
+                if row.values.get(title, "").strip()
+            ]
             if filled:
                 more = f" and {len(filled) - 1} more" if len(filled) > 1 else ""
                 self.notes.error(
@@ -139,13 +178,17 @@ class RoleReader:
                 )
         return entries
 
-    def taken(self, row: DataRow, name: str, patterns: tuple[Pattern, ...], text: str) -> dict[str, str]:
+    def taken(
+        self, row: DataRow, name: str, patterns: tuple[Pattern, ...], text: str
+    ) -> dict[str, str]:
         """Return the translated roles of one text.
 
         Report a text that matches no pattern, and text that a pattern does not cover.
         """
         is_name = any("name" in pattern.roles for pattern in patterns)
-        if not text or (text.casefold() in self.empty and not is_name):  # a dash may be the name of reserved bits
+        if not text or (
+            text.casefold() in self.empty and not is_name
+        ):  # a dash may be the name of reserved bits
             return {}
         where = f"{self.table.title}, column `{name}`"
         spot, place = self.table.spot_of(row.source), patterns[0].place
@@ -183,8 +226,13 @@ class RoleReader:
             return {}
         return self.translated(taken.roles)
 
-    def melted(self, row: DataRow, given: dict[str, str], melt: Pattern) -> Iterator[Roles]:
-        """A field for each cell below headings that number bits or bytes; a cell over several of them has their range."""
+    def melted(
+        self, row: DataRow, given: dict[str, str], melt: Pattern
+    ) -> Iterator[Roles]:
+        """A field for each cell below headings that number bits or bytes.
+
+        A cell over several of them has their range.
+        """
         titles = self.titles
         if row.is_short:
             self.notes.error(
@@ -205,7 +253,11 @@ class RoleReader:
                 continue
             first, last = row.ranges[title]
             covered = titles[first : last + 1]
-            ends = [numbers.roles for t in covered if (numbers := take([melt], t)) is not None]
+            ends = [
+                numbers.roles
+                for t in covered
+                if (numbers := take([melt], t)) is not None
+            ]
             if len(ends) < len(covered):
                 other = next(t for t in covered if take([melt], t) is None)
                 self.notes.error(
@@ -219,10 +271,16 @@ class RoleReader:
                 continue
             position = {}
             for role in ("byte", "bit"):
-                texts = [end.get(key, "") for end in ends for key in (role, f"last_{role}")]
-                positions = [n for printed in texts if (n := whole_number(printed)) is not None]
+                texts = [
+                    end.get(key, "") for end in ends for key in (role, f"last_{role}")
+                ]
+                positions = [
+                    n for printed in texts if (n := whole_number(printed)) is not None
+                ]
                 if positions:
-                    position[role], position[f"last_{role}"] = str(min(positions)), str(max(positions))
+                    position[role], position[f"last_{role}"] = str(min(positions)), str(
+                        max(positions)
+                    )
             roles = {**shared, **self.translated(position)}
             _add(roles, self.taken(row, title, star.patterns, text))
             yield Roles(roles, row, byte_shift=shift)
@@ -230,8 +288,8 @@ class RoleReader:
     def from_lines(self, row: DataRow, given: dict[str, str]) -> list[Roles]:
         """A field for each line of a cell that names one.
 
-        A line with a position only is the position of the lines below it; one with a value and a member belongs to the
-        field above; one with a text only is prose.
+        A line with a position only is the position of the lines below it; one with a
+        value and a member belongs to the field above; one with a text only is prose.
         """
         row_roles = Roles(dict(given), row)
         fields: list[Roles] = []
@@ -250,17 +308,34 @@ class RoleReader:
                     else:
                         position = {} if "byte" in roles else position
                         self.check_line(row, column, name, line, roles, given)
-                        outer = {role: text for role, text in given.items() if role not in ("bytes", "bits")}
+                        outer = {
+                            role: text
+                            for role, text in given.items()
+                            if role not in ("bytes", "bits")
+                        }
                         field_roles = {**outer, **position}
                         _add(field_roles, roles)
                         fields.append(Roles(field_roles, row))
         return fields or [row_roles]
 
     def check_line(
-        self, row: DataRow, column: Column, name: str, line: str, roles: dict[str, str], given: dict[str, str]
+        self,
+        row: DataRow,
+        column: Column,
+        name: str,
+        line: str,
+        roles: dict[str, str],
+        given: dict[str, str],
     ) -> None:
-        """Report roles that a line and another column of its row give; positions of lines lie within that of the row."""
-        for role in (role for role in roles if role in VALUE_ROLES | TEXT_ROLES and role != "text"):
+        """Report roles that a line and another column of its row give.
+
+        Positions of lines lie within that of the row.
+        """
+        for role in (
+            role
+            for role in roles
+            if role in VALUE_ROLES | TEXT_ROLES and role != "text"
+        ):
             if given.get(role, roles[role]) != roles[role]:
                 self.notes.error(
                     "IMP102",
@@ -274,7 +349,10 @@ class RoleReader:
 
 
 def _add(given: dict[str, str], further: dict[str, str]) -> None:
-    """Add the roles of a further cell of the row; descriptions from several cells are joined."""
+    """Add the roles of a further cell of the row.
+
+    Descriptions from several cells are joined.
+    """
     texts = [text for roles in (given, further) if (text := roles.get("text"))]
     given.update(further)
     if texts:
@@ -282,11 +360,20 @@ def _add(given: dict[str, str], further: dict[str, str]) -> None:
 
 
 def find_columns(column: Column, titles: list[str]) -> list[str]:
-    """Return the headings of the columns of an entry of `columns`, or none if one is missing."""
+    """Return the headings of the columns of an entry of `columns`, or none if one is
+    missing.
+    """
     names = []
     for key in column.titles:
         if key.startswith("~"):
-            name = next((title for title in titles if title and re.search(key[1:], title, re.I)), None)
+            name = next(
+                (
+                    title
+                    for title in titles
+                    if title and re.search(key[1:], title, re.I)
+                ),
+                None,
+            )
         else:
             wanted = normalised(key).casefold()
             name = next((title for title in titles if title.casefold() == wanted), None)

@@ -1,4 +1,6 @@
-"""Why a table became what it became: `icdgen import FILE --profile PROFILE --explain TABLE`."""
+"""Why a table became what it became: `icdgen import FILE --profile PROFILE --explain
+TABLE`.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +17,12 @@ SHOWN = 60  # characters of a cell
 
 
 def explain(interpretation: Interpretation, number: int) -> str:
-    """Return the explanation of a table: every rule that was tried, texts and columns with their roles, fields, findings."""
-    choice = next(choice for choice in interpretation.choices if choice.table.number == number)
+    """Return the explanation of a table: every rule that was tried, texts and columns
+    with their roles, fields, findings.
+    """
+    choice = next(
+        choice for choice in interpretation.choices if choice.table.number == number
+    )
     table = choice.table
     place = f", {table.spot.place}" if table.spot.place else ""
     lines = [f"{table.title}{place}: {len(table.rows)} rows, {table.width} columns"]
@@ -24,15 +30,26 @@ def explain(interpretation: Interpretation, number: int) -> str:
     lines += [f"  heading: {heading}" for heading in table.headings]
     lines += [f"  before:  {text[: 2 * SHOWN]}" for text in table.before[-5:]]
     lines.append(f"  headings of columns: {' | '.join(table.titles)}")
-    lines += [f"  rule `{rule.name}` ({rule.place.line}) does not apply: {reason}" for rule, reason in choice.reasons]
+    lines += [
+        f"  rule `{rule.name}` ({rule.place.line}) does not apply: {reason}"
+        for rule, reason in choice.reasons
+    ]
     for rule in choice.rules:
         lines.append(f"  rule `{rule.name}` ({rule.place.line}) applies: {rule.what}")
         if rule.what != "ignore":
-            parts = [part for part in interpretation.parts if part.table is table and part.rule is rule]
-            lines += _columns(rule, table) + [line for part in parts for line in _part(part)]
+            parts = [
+                part
+                for part in interpretation.parts
+                if part.table is table and part.rule is rule
+            ]
+            lines += _columns(rule, table) + [
+                line for part in parts for line in _part(part)
+            ]
     if not choice.rules:
         lines.append("  no rule applies: the table is not imported")
-    about = [t for t in interpretation.survey.import_findings if t.is_about_table(number - 1)]
+    about = [
+        t for t in interpretation.survey.import_findings if t.is_about_table(number - 1)
+    ]
     lines += [_finding(import_finding) for import_finding in about]
     return "\n".join(line.rstrip() for line in lines)
 
@@ -42,10 +59,14 @@ def _columns(rule: Rule, table: SourceTable) -> list[str]:
     roles: dict[str, str] = {}
     for column in (*rule.columns, *rule.lines):
         for title in find_columns(column, titles):
-            roles[title] = " or ".join(f"`{pattern.text}`" for pattern in column.patterns)
+            roles[title] = " or ".join(
+                f"`{pattern.text}`" for pattern in column.patterns
+            )
     lines = [f"    {len(rows)} rows below the headings"]
     for title in filter(None, titles):
-        given = roles.get(title) or ("ignored" if title in rule.ignore else "melted" if rule.melt else "no role")
+        given = roles.get(title) or (
+            "ignored" if title in rule.ignore else "melted" if rule.melt else "no role"
+        )
         lines.append(f"    column `{title}`: {given}")
     return lines
 
@@ -58,8 +79,12 @@ def _part(part: Part) -> list[str]:
         count = f" x {draft.count}" if draft.count else ""
         formula = f", {draft.described.formula}" if draft.described.formula else ""
         unit = f" {draft.described.unit}" if draft.described.unit else ""
-        lines.append(f"      bit {draft.at:>4} +{draft.bits}{count}  {draft.kind}  {draft.name[:SHOWN]}{unit}{formula}")
-        lines += [f"        value {value}: {name[:SHOWN]}" for value, name in draft.members]
+        lines.append(
+            f"      bit {draft.at:>4} +{draft.bits}{count}  {draft.kind}  {draft.name[:SHOWN]}{unit}{formula}"
+        )
+        lines += [
+            f"        value {value}: {name[:SHOWN]}" for value, name in draft.members
+        ]
     return lines
 
 

@@ -1,4 +1,5 @@
-"""Kinds of tables in a document, with the skeleton of a rule: `icdgen import FILE --explore`.
+"""Kinds of tables in a document, with the skeleton of a rule: `icdgen import FILE
+--explore`.
 
 A kind is a set of tables with equal headings. The skeleton contains every column
 without a role: the user states the meaning of the columns.
@@ -21,7 +22,9 @@ MOST_NUMBERS = 12
 
 
 def report(tables: list[SourceTable], document: str) -> str:
-    """Return a profile to be completed: a block for each kind with its tables, sample cells, and a rule."""
+    """Return a profile to be completed: a block for each kind with its tables, sample
+    cells, and a rule.
+    """
     groups = kinds(tables)
     counted = f"{count(len(tables), 'table')} of {count(len(groups), 'kind')}"
     lines = [
@@ -42,14 +45,37 @@ def _block(group: list[SourceTable]) -> list[str]:
         " ..." if len(group) > MOST_NUMBERS else ""
     )
     pages = sorted({table.page for table in group if table.page is not None})
-    where = f", pages {pages[0]} to {pages[-1]}" if len(pages) > 1 else f", page {pages[0]}" if pages else ""
-    lines = [f"  # {len(group)} table{'s' if len(group) != 1 else ''}: {numbers}{where}"]
-    for key, texts in (("caption", [first.caption]), ("heading", first.headings[-1:]), ("before", first.before[-1:])):
+    where = (
+        f", pages {pages[0]} to {pages[-1]}"
+        if len(pages) > 1
+        else f", page {pages[0]}" if pages else ""
+    )
+    lines = [
+        f"  # {len(group)} table{'s' if len(group) != 1 else ''}: {numbers}{where}"
+    ]
+    for key, texts in (
+        ("caption", [first.caption]),
+        ("heading", first.headings[-1:]),
+        ("before", first.before[-1:]),
+    ):
         lines += [f"  #   {key}: {plain(text)[:100]}" for text in texts if text]
     titles = first.titles
-    head = next((index for index, row in enumerate(first.rows) if [plain(c.text) for c in row.cells] == titles), 0)
-    lines.append(f"  - tables: {{head: {quoted_if_needed(' | '.join(map(_title, titles)), in_flow=True)}}}")
-    lines += ["    what: message", "    message: {heading: '^{message} {id}$', kind: telemetry}", "    columns:"]
+    head = next(
+        (
+            index
+            for index, row in enumerate(first.rows)
+            if [plain(c.text) for c in row.cells] == titles
+        ),
+        0,
+    )
+    lines.append(
+        f"  - tables: {{head: {quoted_if_needed(' | '.join(map(_title, titles)), in_flow=True)}}}"
+    )
+    lines += [
+        "    what: message",
+        "    message: {heading: '^{message} {id}$', kind: telemetry}",
+        "    columns:",
+    ]
     rows = first.grid()[head + 1 :]
     for column, title in enumerate(titles):
         cells = (plain(row[column].text) for row in rows if column < len(row))
@@ -60,8 +86,18 @@ def _block(group: list[SourceTable]) -> list[str]:
 
 
 def _title(title: str) -> str:
-    """A heading within `head`: an empty cell is any cell, and one that begins like a pattern is quoted."""
-    return "*" if not title else f"~^{re.escape(title)}$" if title.startswith("~") or " | " in title else title
+    """A heading within `head`: an empty cell is any cell, and one that begins like a
+    pattern is quoted.
+    """
+    return (
+        "*"
+        if not title
+        else (
+            f"~^{re.escape(title)}$"
+            if title.startswith("~") or " | " in title
+            else title
+        )
+    )
 
 
 def as_json(tables: list[SourceTable], document: str) -> str:
@@ -76,4 +112,6 @@ def as_json(tables: list[SourceTable], document: str) -> str:
         }
         for group in kinds(tables)
     ]
-    return json.dumps({"document": document, "kinds": entries}, indent=2, ensure_ascii=False)
+    return json.dumps(
+        {"document": document, "kinds": entries}, indent=2, ensure_ascii=False
+    )

@@ -1,4 +1,7 @@
-"""Roles of a row -> a field with its place, type, scale and limits. Nothing has a default: what no rule states is a finding."""
+"""Roles of a row -> a field with its place, type, scale and limits.
+
+Nothing has a default: what no rule states is a finding.
+"""
 
 from __future__ import annotations
 
@@ -15,17 +18,27 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.rules import places, positions
 from icdgen.importer.rules.bit_order import Bit, Order
 from icdgen.importer.rules.cells import Roles
-from icdgen.importer.rules.language import NUMBERS, TypeName, decimal, type_of, whole_number
+from icdgen.importer.rules.language import (
+    NUMBERS,
+    TypeName,
+    decimal,
+    type_of,
+    whole_number,
+)
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.rule import Rule
 from icdgen.importer.words import tidy_unit
 
 MOST_BITS = 64  # of a number
 _EMPTY = ("", "n/a", "none")
-_IN_PARENTHESES = re.compile(r"\A\(([^()]*(?:\([^()]*\)[^()]*)*)\)\Z")  # `(V)`, but not `(N)·(m)`
+_IN_PARENTHESES = re.compile(
+    r"\A\(([^()]*(?:\([^()]*\)[^()]*)*)\)\Z"
+)  # `(V)`, but not `(N)·(m)`
 _VALUE = r"(?:0x[0-9a-f]+|0b[01]+|-?[0-9]+)"
-_MEMBER = re.compile(  # a comma separates members only in front of a value: names may contain one
-    rf"(?P<value>{_VALUE})\s*[:=–-]?\s*(?P<name>[^;\n]*?[^\s;,])\s*(?:[;\n]|,(?=\s*{_VALUE})|\Z)", re.I
+# A comma separates members only in front of a value: names may contain one.
+_MEMBER = re.compile(
+    rf"(?P<value>{_VALUE})\s*[:=–-]?\s*(?P<name>[^;\n]*?[^\s;,])\s*(?:[;\n]|,(?=\s*{_VALUE})|\Z)",
+    re.I,
 )
 
 
@@ -42,16 +55,32 @@ class Draft:
     roles: Roles
     count: int = 0
     members: list[tuple[int, str]] = field(default_factory=list)
-    facts: dict[str, Any] = field(default_factory=dict)  # further keys of the field in the ICD
-    part: tuple[int, int] | None = None  # bit numbers of the whole field that this piece has
+    facts: dict[str, Any] = field(
+        default_factory=dict
+    )  # further keys of the field in the ICD
+    part: tuple[int, int] | None = (
+        None  # bit numbers of the whole field that this piece has
+    )
     order: Order | None = None  # where it is not the node's
-    table: SourceTable | None = None  # the table of bits that gives the field; None for the table of its message
-    frame_bits: list[Bit] = field(default_factory=list)  # from the least significant one, if `at` does not state them
+    table: SourceTable | None = (
+        # The table of bits that gives the field; None for the table of its message.
+        None
+    )
+    frame_bits: list[Bit] = field(
+        default_factory=list
+    )  # from the least significant one, if `at` does not state them
 
     @property
     def size(self) -> int:
-        """Number of bits of the field in the frame; 0 if the end of the frame determines it."""
-        return 0 if self.facts.get("count") == "rest" or "size" in self.facts else self.bits * (self.count or 1)
+        """Number of bits of the field in the frame.
+
+        0 if the end of the frame determines it.
+        """
+        return (
+            0
+            if self.facts.get("count") == "rest" or "size" in self.facts
+            else self.bits * (self.count or 1)
+        )
 
     @property
     def end(self) -> int:
@@ -62,14 +91,31 @@ class Draft:
 class FieldReader:
     """Makes the fields of a table's rows; ``order`` is the node's."""
 
-    def __init__(self, rule: Rule, table: SourceTable, profile: Profile, order: Order, notes: Notes) -> None:
-        self.rule, self.table, self.profile, self.order, self.notes = rule, table, profile, order, notes
+    def __init__(
+        self,
+        rule: Rule,
+        table: SourceTable,
+        profile: Profile,
+        order: Order,
+        notes: Notes,
+    ) -> None:
+        self.rule, self.table, self.profile, self.order, self.notes = (
+            rule,
+            table,
+            profile,
+            order,
+            notes,
+        )
         self.places = places.PlaceReader(rule, order, self.error)
         self.next = 0  # where a field without a position stands
         self.subject = ""  # name of the field, or text of the row, that is being read
 
     def read(self, roles: Roles) -> list[Draft]:
-        """Return the field of a row; several for padding in several places; none, with a finding, if it cannot be read."""
+        """Return the field of a row.
+
+        Several for padding in several places; none, with a finding, if it cannot be
+        read.
+        """
         for role, last in (("bit", "last_bit"), ("byte", "last_byte")):
             printed = roles.get(role)
             if not positions.is_list(printed):
@@ -84,13 +130,23 @@ class FieldReader:
                     "write a row for each part in the table file (--tables), and number the parts by the role `part`",
                 )
                 return []
-            each = [roles.given | {role: str(first), last: str(final)} for first, final in runs]
-            return [draft for given in each for draft in self.read(replace(roles, given=given))]
+            each = [
+                roles.given | {role: str(first), last: str(final)}
+                for first, final in runs
+            ]
+            return [
+                draft
+                for given in each
+                for draft in self.read(replace(roles, given=given))
+            ]
         draft = self.read_field(roles)
         return [draft] if draft is not None else []
 
     def read_field(self, roles: Roles) -> Draft | None:
-        """Return the field; None, with a finding, if something that it needs is missing."""
+        """Return the field.
+
+        Returns None, with a finding, if something that it needs is missing.
+        """
         name, spot = roles.get("name"), self.table.spot_of(roles.row.source)
         where = f"{self.table.title}, field `{name}`"
         self.subject = name or roles.row.text
@@ -106,14 +162,19 @@ class FieldReader:
         printed = self.type_of(roles, where, spot)
         if numbers is None or printed is None:
             return None
-        # In a group, `count` is the number of elements of the group. The field itself is no array.
+        # In a group, `count` is the number of elements of the group. The field itself
+        # is no array.
         if roles.get("group") and not roles.get("counter") and not roles.get("rest"):
-            numbers.pop("count", None)  # says how often the group is repeated, not the field
+            numbers.pop(
+                "count", None
+            )  # says how often the group is repeated, not the field
         sized = self.size(numbers, printed, roles, where, spot)
         if sized is None:
             return None
         bits, count = sized
-        if "end_bit" in numbers and not self.places.is_range_clear(numbers, bits * (count or 1), where, spot):
+        if "end_bit" in numbers and not self.places.is_range_clear(
+            numbers, bits * (count or 1), where, spot
+        ):
             return None
         place = self.places.place(numbers, roles.byte_shift, bits * (count or 1))
         at, range_size = place if place is not None else (self.next, 0)
@@ -133,7 +194,11 @@ class FieldReader:
             return None
         if bits == 0 and self.rule.is_unit_wide and place is not None:
             bits = 1 if "bit" in numbers else 8
-        if bits == 0 and (roles.get("rest") or roles.get("counter")) and not roles.get("group"):
+        if (
+            bits == 0
+            and (roles.get("rest") or roles.get("counter"))
+            and not roles.get("group")
+        ):
             bits = 8
         if bits == 0:
             self.error(
@@ -144,12 +209,21 @@ class FieldReader:
                 "or a type with a width; `width: unit` makes a single position one bit or byte",
             )
             return None
-        frame_bits = self.places.frame_bits(numbers, at, bits * (count or 1), where, spot)
+        frame_bits = self.places.frame_bits(
+            numbers, at, bits * (count or 1), where, spot
+        )
         if frame_bits is None:
             return None
         kind = printed.kind
-        # Manuals print an array of bytes as one range, too; integers of these sizes are rare.
-        if kind in ("uint", "int") and bits in (40, 48, 56) and range_size and not printed.bits and not count:
+        # Manuals print an array of bytes as one range, too; integers of these sizes are
+        # rare.
+        if (
+            kind in ("uint", "int")
+            and bits in (40, 48, 56)
+            and range_size
+            and not printed.bits
+            and not count
+        ):
             self.warn(
                 "IMP105",
                 f"{where}: a number of {bits // 8} bytes is unusual, and only its range of bytes gives this size",
@@ -164,7 +238,16 @@ class FieldReader:
                 "is it an array? `set: [{where: {name: ...}, bits: 16, count: 3}]`, or `type: bytes`",
             )
             return None
-        draft = Draft(name, at, bits, kind, self.described(roles, kind, where, spot), spot, roles, count)
+        draft = Draft(
+            name,
+            at,
+            bits,
+            kind,
+            self.described(roles, kind, where, spot),
+            spot,
+            roles,
+            count,
+        )
         draft.frame_bits = frame_bits
         self.facts(draft, numbers, where, spot)
         self.next = draft.end
@@ -176,16 +259,37 @@ class FieldReader:
     def warn(self, code: str, message: str, spot: SourcePlace, help: str) -> None:
         self.notes.warn(code, message, spot, help, self.rule.place, self.subject)
 
-    def numbers(self, roles: Roles, where: str, spot: SourcePlace) -> dict[str, int] | None:
-        """Return the roles that are whole numbers; None, with a finding, if a text is not a number."""
+    def numbers(
+        self, roles: Roles, where: str, spot: SourcePlace
+    ) -> dict[str, int] | None:
+        """Return the roles that are whole numbers.
+
+        Returns None, with a finding, if a text is not a number.
+        """
         numbers = {}
-        for role in ("byte", "last_byte", "bit", "last_bit", "end_bit", "bytes", "bits", "count", "stride", "up_to"):
+        for role in (
+            "byte",
+            "last_byte",
+            "bit",
+            "last_bit",
+            "end_bit",
+            "bytes",
+            "bits",
+            "count",
+            "stride",
+            "up_to",
+        ):
             text = roles.get(role)
             if not text:
                 continue
-            value = whole_number(text, self.rule.base if role in ("byte", "last_byte") else 10)
+            value = whole_number(
+                text, self.rule.base if role in ("byte", "last_byte") else 10
+            )
             if value is None or value < 0:
-                is_range = re.fullmatch(r"\d+\s*[-–:~]\s*\d+", text) and role in ("byte", "bit")
+                is_range = re.fullmatch(r"\d+\s*[-–:~]\s*\d+", text) and role in (
+                    "byte",
+                    "bit",
+                )
                 self.error(
                     "IMP023",
                     f"{where}: `{role}` is `{text[:40]}`, which is not a number",
@@ -227,9 +331,15 @@ class FieldReader:
         return type_name
 
     def size(
-        self, numbers: dict[str, int], printed: TypeName, roles: Roles, where: str, spot: SourcePlace
+        self,
+        numbers: dict[str, int],
+        printed: TypeName,
+        roles: Roles,
+        where: str,
+        spot: SourcePlace,
     ) -> tuple[int, int] | None:
-        """Bits of an element, 0 if only a range can tell, and number of elements, 0 for no array.
+        """Bits of an element, 0 if only a range can tell, and number of elements, 0 for
+        no array.
 
         The role `bits` is the size of one element, `bytes` that of the whole field.
         """
@@ -239,9 +349,13 @@ class FieldReader:
             return 8 * count, 0  # so many characters
         # A column of counts has 1 for fields that are no arrays.
         count = 0 if count == 1 else count
-        element = numbers.get("bits") or (total // count if count and total % count == 0 else total)
+        element = numbers.get("bits") or (
+            total // count if count and total % count == 0 else total
+        )
         if printed.bits and printed.kind != "bool":
-            if element in (0, printed.bits) or total == printed.bits:  # some tables print the size of one element
+            if (
+                element in (0, printed.bits) or total == printed.bits
+            ):  # some tables print the size of one element
                 return printed.bits, count
             self.error(
                 "IMP105",
@@ -261,14 +375,18 @@ class FieldReader:
             return None
         return element or printed.bits, count
 
-    def described(self, roles: Roles, kind: str, where: str, spot: SourcePlace) -> Described:
+    def described(
+        self, roles: Roles, kind: str, where: str, spot: SourcePlace
+    ) -> Described:
         """Unit, formula and description."""
         text = roles.get("text")
         described = Described(rest=text)
         if self.profile.reads_descriptions:
             described = descriptions.read(text, self.profile, is_enum=kind == "enum")
         for problem in described.problems:
-            self.warn("IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page")
+            self.warn(
+                "IMP040", f"{where}: {problem}: `{text[-160:]}`", spot, "read the page"
+            )
         unit = _IN_PARENTHESES.sub(r"\1", tidy_unit(roles.get("unit")))
         if unit.casefold() not in _EMPTY:
             described.unit = unit
@@ -282,7 +400,9 @@ class FieldReader:
                     "correct the pattern or the table file",
                 )
             else:
-                described.const = const if re.fullmatch(r"0[xX][0-9A-Fa-f]+", const) else str(raw)
+                described.const = (
+                    const if re.fullmatch(r"0[xX][0-9A-Fa-f]+", const) else str(raw)
+                )
         formula = roles.get("formula")
         if formula.casefold() not in _EMPTY:
             scaled = formulas.per_step(formula, descriptions.names(self.profile))
@@ -294,7 +414,10 @@ class FieldReader:
                     "take its numbers with `{scale}`, `{offset}` and `{bias}`",
                 )
             else:
-                described.formula, described.unit = scaled.formula, scaled.unit or described.unit
+                described.formula, described.unit = (
+                    scaled.formula,
+                    scaled.unit or described.unit,
+                )
         values = {}
         for role in NUMBERS:
             given = roles.get(role)
@@ -310,13 +433,18 @@ class FieldReader:
                 )
             else:
                 values[role] = value
-        roles.given = {role: text for role, text in roles.given.items() if role not in NUMBERS} | values
+        roles.given = {
+            role: text for role, text in roles.given.items() if role not in NUMBERS
+        } | values
         described.formula = (
-            scale_formula(values.get("scale"), values.get("offset"), values.get("bias")) or described.formula
+            scale_formula(values.get("scale"), values.get("offset"), values.get("bias"))
+            or described.formula
         )
         return described
 
-    def facts(self, draft: Draft, numbers: dict[str, int], where: str, spot: SourcePlace) -> None:
+    def facts(
+        self, draft: Draft, numbers: dict[str, int], where: str, spot: SourcePlace
+    ) -> None:
         """Limits, members, arrays of open length, parts."""
         roles = draft.roles
         for role in ("min", "max"):
@@ -339,7 +467,11 @@ class FieldReader:
                 )
         draft.members = self.members(roles, where, spot)
         enumeration = roles.get("enumeration")
-        if (draft.members or enumeration) and draft.kind in ("uint", "int") and not draft.described.formula:
+        if (
+            (draft.members or enumeration)
+            and draft.kind in ("uint", "int")
+            and not draft.described.formula
+        ):
             draft.kind = "enum"
         if enumeration and not draft.members:
             draft.described.enum_title = enumeration
@@ -356,8 +488,12 @@ class FieldReader:
             first = 0 if text in "Ll" else 1 if text in "Hh" else int(text)
             draft.part = first, int(roles.get("last_part") or first)
 
-    def members(self, roles: Roles, where: str, spot: SourcePlace) -> list[tuple[int, str]]:
-        printed = roles.members + [(m["value"], m["name"]) for m in _MEMBER.finditer(roles.get("members"))]
+    def members(
+        self, roles: Roles, where: str, spot: SourcePlace
+    ) -> list[tuple[int, str]]:
+        printed = roles.members + [
+            (m["value"], m["name"]) for m in _MEMBER.finditer(roles.get("members"))
+        ]
         left = _MEMBER.sub("", roles.get("members")).strip(" ;,\n")
         if left:
             self.error(
@@ -381,14 +517,25 @@ class FieldReader:
         return members
 
     def check_range(self, draft: Draft, where: str, spot: SourcePlace) -> None:
-        """Report a range that the raw values of an unsigned number do not reach: an offset taken for a bias shows there."""
-        # Limits are printed as decimals, and a double holds integers of at most 53 bits exactly.
-        if draft.kind != "uint" or draft.bits > 53 or not {"min", "max"} & set(draft.facts):
+        """Report a range that the raw values of an unsigned number do not reach: an
+        offset taken for a bias shows there.
+        """
+        # Limits are printed as decimals, and a double holds integers of at most 53 bits
+        # exactly.
+        if (
+            draft.kind != "uint"
+            or draft.bits > 53
+            or not {"min", "max"} & set(draft.facts)
+        ):
             return
         scale, offset, bias = (
-            Decimal(draft.roles.get(r) or d) for r, d in (("scale", "1"), ("offset", "0"), ("bias", "0"))
+            Decimal(draft.roles.get(r) or d)
+            for r, d in (("scale", "1"), ("offset", "0"), ("bias", "0"))
         )
-        low, high = sorted(scale * (raw - bias) + offset for raw in (Decimal(0), Decimal(2**draft.bits - 1)))
+        low, high = sorted(
+            scale * (raw - bias) + offset
+            for raw in (Decimal(0), Decimal(2**draft.bits - 1))
+        )
         for role, reaches in (
             ("min", low <= Decimal(str(draft.facts.get("min", low)))),
             ("max", high >= Decimal(str(draft.facts.get("max", high)))),
@@ -403,7 +550,10 @@ class FieldReader:
 
 
 def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> str:
-    """Return the formula as an ICD writes it; empty if physical and raw value are the same."""
+    """Return the formula as an ICD writes it.
+
+    Returns empty if physical and raw value are the same.
+    """
     factor = scale if scale is not None and Decimal(scale) != 1 else ""
     raw = "raw"
     if bias is not None and Decimal(bias) != 0:
@@ -411,5 +561,7 @@ def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> st
         raw = f"({raw})" if factor else raw
     formula = f"{raw}*{factor}" if factor else raw
     if offset is not None and Decimal(offset) != 0:
-        formula = f"{formula} {'-' if offset.startswith('-') else '+'} {offset.lstrip('-')}"
+        formula = (
+            f"{formula} {'-' if offset.startswith('-') else '+'} {offset.lstrip('-')}"
+        )
     return "" if formula == "raw" else formula

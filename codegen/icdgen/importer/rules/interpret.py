@@ -1,4 +1,7 @@
-"""Tables and rules -> messages, enumerations and findings. Nothing here guesses: a table without a rule gives nothing."""
+"""Tables and rules -> messages, enumerations and findings.
+
+Nothing here guesses: a table without a rule gives nothing.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +16,25 @@ from icdgen.importer.rules import attach, build, lists
 from icdgen.importer.rules.bit_order import Order
 from icdgen.importer.rules.cells import RoleReader, Roles
 from icdgen.importer.rules.fields import FieldReader
-from icdgen.importer.rules.language import MESSAGE_ROLES, Pattern, cell_text, normalised, take, whole_number
+from icdgen.importer.rules.language import (
+    MESSAGE_ROLES,
+    Pattern,
+    cell_text,
+    normalised,
+    take,
+    whole_number,
+)
 from icdgen.importer.rules.notes import Notes
 from icdgen.importer.rules.parts import Part
 from icdgen.importer.rules.rows import read_rows
 from icdgen.importer.rules.rule import Rule
-from icdgen.importer.rules.selection import Choice, choose, heading_rows, texts_of, why_not
+from icdgen.importer.rules.selection import (
+    Choice,
+    choose,
+    heading_rows,
+    texts_of,
+    why_not,
+)
 from icdgen.importer.source_tables import count_runs, kinds, texts
 
 _IDS = ("id", "set_id", "get_id")
@@ -32,12 +48,21 @@ class Interpretation:
     choices: list[Choice]
     parts: list[Part]
     survey: Survey
-    attributes: dict[int, dict[str, str]]  # number of the table -> roles that texts around it give
+    attributes: dict[
+        int, dict[str, str]
+    ]  # number of the table -> roles that texts around it give
     rules: list[Rule]
 
 
-def interpret(tables: list[SourceTable], profile: Profile, extra: list[ImportFinding] | None = None) -> Interpretation:
-    """Apply the rules of ``profile`` to the tables; ``extra`` are findings of the reader of the source."""
+def interpret(
+    tables: list[SourceTable],
+    profile: Profile,
+    extra: list[ImportFinding] | None = None,
+) -> Interpretation:
+    """Apply the rules of ``profile`` to the tables.
+
+    ``extra`` are findings of the reader of the source.
+    """
     return _Interpreter(tables, profile).run(extra or [])
 
 
@@ -48,7 +73,12 @@ class _Interpreter:
         self.parts: list[Part] = []
         self.attributes: dict[int, dict[str, str]] = {}
         self.found: list[Found] = []
-        words = (word.strip(".,;:()[]") for table in tables for text in texts(table) for word in text.split())
+        words = (
+            word.strip(".,;:()[]")
+            for table in tables
+            for text in texts(table)
+            for word in text.split()
+        )
         self.document_words = frozenset(words)
         self.order = Order(*profile.orders)
 
@@ -61,7 +91,11 @@ class _Interpreter:
                     self.read(rule, choice.table)
         self.check_use(choices)
         results = build.Builder(self.profile, self.order, self.notes).build(self.parts)
-        attach.check_index([part for part in self.parts if part.rule.what == "index"], results, self.notes)
+        attach.check_index(
+            [part for part in self.parts if part.rule.what == "index"],
+            results,
+            self.notes,
+        )
         self.check_orders(results)
         self.notes.finish(self.profile.rules)
         survey = Survey(import_findings=[*extra, *self.notes.import_findings])
@@ -75,9 +109,12 @@ class _Interpreter:
             survey.found += own or [Found(table, _what(choice, ignored), None)]
         self.report_unread(choices, survey)
         self.report_without_table(choices, survey)
-        return Interpretation(choices, self.parts, survey, self.attributes, self.profile.rules)
+        return Interpretation(
+            choices, self.parts, survey, self.attributes, self.profile.rules
+        )
 
-    # --- one table -------------------------------------------------------------------------------------------------
+    # --- one table
+    # -------------------------------------------------------------------------------------------------
 
     def read(self, rule: Rule, table: SourceTable) -> None:
         """Add the parts that a rule reads from a table."""
@@ -86,7 +123,9 @@ class _Interpreter:
             rows = []  # the table describes a message without parameters
         given = self.around(rule, table)
         self.attributes[table.number] = given
-        role_reader = RoleReader(rule, table, titles, self.document_words, self.profile.empty, self.notes)
+        role_reader = RoleReader(
+            rule, table, titles, self.document_words, self.profile.empty, self.notes
+        )
         if rule.what in ("list", "loggable"):
             listed = role_reader.read(rows)
             is_list = rule.what == "list"
@@ -97,7 +136,9 @@ class _Interpreter:
             )
             return
         message = {role: text for role, text in given.items() if role in MESSAGE_ROLES}
-        shared = {role: text for role, text in given.items() if role not in MESSAGE_ROLES}
+        shared = {
+            role: text for role, text in given.items() if role not in MESSAGE_ROLES
+        }
         reader = FieldReader(rule, table, self.profile, self.order, self.notes)
         parts: dict[tuple[str, ...], Part] = {}
         of_message = set(MESSAGE_ROLES)
@@ -107,28 +148,53 @@ class _Interpreter:
             # Tables of messages have rows that name a message only: it has no fields.
             is_field = not set(roles.given) <= of_message | set(rule.each)
             roles.given = {**shared, **roles.given}
-            own = {role: roles.given.pop(role) for role in list(roles.given) if role in of_message}
-            key = tuple(own.get(role, "") for role in ("message", "id", "set_id", "get_id", "of", "enumeration"))
+            own = {
+                role: roles.given.pop(role)
+                for role in list(roles.given)
+                if role in of_message
+            }
+            key = tuple(
+                own.get(role, "")
+                for role in ("message", "id", "set_id", "get_id", "of", "enumeration")
+            )
             part = parts.setdefault(key, Part(rule, table, dict(message)))
             self.check_rows_agree(part, own)
             part.given.update(own)
             part.stated_in_rows.update(own)
             if is_field or not own or rule.what not in ("message", "registers"):
-                self.row(part, roles, reader)  # else the row is a message without fields
-        if not parts and {"message", "id", "set_id"} & set(message) and rule.what in ("message", "registers"):
+                self.row(
+                    part, roles, reader
+                )  # else the row is a message without fields
+        if (
+            not parts
+            and {"message", "id", "set_id"} & set(message)
+            and rule.what in ("message", "registers")
+        ):
             parts[()] = Part(rule, table, message)  # without parameters
         self.parts += parts.values()
 
     def check_rows_agree(self, part: Part, own: dict[str, str]) -> None:
-        """Report a row that gives a message another kind or length than an earlier row of the table."""
+        """Report a row that gives a message another kind or length than an earlier row
+        of the table.
+        """
         for role in ("kind", "length"):
             earlier = part.stated_in_rows.get(role, "")
-            if earlier and own.get(role) and not _is_equal(part.rule, role, earlier, own[role]):
+            if (
+                earlier
+                and own.get(role)
+                and not _is_equal(part.rule, role, earlier, own[role])
+            ):
                 self.disagree(
-                    part.rule, part.where, part.table.spot, role, f"`{earlier}` and `{own[role]}` in its rows"
+                    part.rule,
+                    part.where,
+                    part.table.spot,
+                    role,
+                    f"`{earlier}` and `{own[role]}` in its rows",
                 )
 
-    def disagree(self, rule: Rule, where: str, spot: SourcePlace, role: str, values: str) -> None:
+    def disagree(
+        self, rule: Rule, where: str, spot: SourcePlace, role: str, values: str
+    ) -> None:
         """Report two values of a role of one message."""
         self.notes.error(
             "IMP110",
@@ -154,7 +220,8 @@ class _Interpreter:
                     f"{part.table.title}: the row `{roles.row.text[:80]}` gives no value and "
                     f"{'name' if what == 'enumeration' else 'point'}",
                     spot,
-                    "give columns the roles `value` and " + ("`member`" if what == "enumeration" else "`points`"),
+                    "give columns the roles `value` and "
+                    + ("`member`" if what == "enumeration" else "`points`"),
                     part.rule.place,
                 )
             else:
@@ -166,7 +233,8 @@ class _Interpreter:
         part.drafts += reader.read(roles)
 
     def around(self, rule: Rule, table: SourceTable) -> dict[str, str]:
-        """Return the roles that the rule states, or that texts around the table and its rows contain.
+        """Return the roles that the rule states, or that texts around the table and its
+        rows contain.
 
         The nearest text has precedence.
         """
@@ -175,12 +243,25 @@ class _Interpreter:
         missing: list[tuple[str, Pattern]] = []
         for source, patterns in rule.sources.items():
             for pattern in patterns:
-                taken = next((t for text in self.texts(rule, table, source) if (t := take([pattern], text))), None)
+                taken = next(
+                    (
+                        t
+                        for text in self.texts(rule, table, source)
+                        if (t := take([pattern], text))
+                    ),
+                    None,
+                )
                 if taken is None:
                     missing.append((source, pattern))
                     continue
-                self.check_sources_agree(rule, table, source, taken.roles, given, sources)
-                new = {role: value for role, value in taken.roles.items() if role not in given}
+                self.check_sources_agree(
+                    rule, table, source, taken.roles, given, sources
+                )
+                new = {
+                    role: value
+                    for role, value in taken.roles.items()
+                    if role not in given
+                }
                 if new:
                     self.doubt(rule, table, taken.roles, taken.left)
                 given.update(new)
@@ -208,13 +289,19 @@ class _Interpreter:
         given: dict[str, str],
         sources: dict[str, str],
     ) -> None:
-        """Report a source that gives a message another id, kind or length than the source that is used.
+        """Report a source that gives a message another id, kind or length than the
+        source that is used.
 
-        Patterns of one source are alternatives. Names are not compared: a caption and a heading often have two names.
+        Patterns of one source are alternatives. Names are not compared: a caption and a
+        heading often have two names.
         """
         for role, value in roles.items():
             used = sources.get(role, source)
-            if role in (*_IDS, "kind", "length") and used != source and not _is_equal(rule, role, given[role], value):
+            if (
+                role in (*_IDS, "kind", "length")
+                and used != source
+                and not _is_equal(rule, role, given[role], value)
+            ):
                 values = f"`{given[role]}` in its {used}, `{value}` in its {source}"
                 self.disagree(rule, table.title, table.spot, role, values)
 
@@ -225,10 +312,17 @@ class _Interpreter:
         """
         if source == "row":
             texts = [
-                " | ".join(filter(None, (cell_text(c.text, self.document_words) for c in r.cells))) for r in table.rows
+                " | ".join(
+                    filter(
+                        None, (cell_text(c.text, self.document_words) for c in r.cells)
+                    )
+                )
+                for r in table.rows
             ]
             head = heading_rows(rule, texts_of(table, rule.transpose))
-            texts.append(" | ".join(filter(None, texts[: head.start] if head else texts)))
+            texts.append(
+                " | ".join(filter(None, texts[: head.start] if head else texts))
+            )
         else:
             texts = {
                 "caption": [table.caption],
@@ -238,9 +332,14 @@ class _Interpreter:
             }[source]
         return [normalised(text) for text in texts]
 
-    def doubt(self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str) -> None:
-        """Report an id that is a plain number where the same text has a hexadecimal one."""
-        # `6.1 Motor state (0x21)`: a pattern that is not anchored takes the number of the chapter for the id.
+    def doubt(
+        self, rule: Rule, table: SourceTable, roles: dict[str, str], left: str
+    ) -> None:
+        """Report an id that is a plain number where the same text has a hexadecimal
+        one.
+        """
+        # `6.1 Motor state (0x21)`: a pattern that is not anchored takes the number of
+        # the chapter for the id.
         other = _HEX.search(left)
         if "id" in roles and other and not _HEX.fullmatch(roles["id"]):
             self.notes.warn(
@@ -252,7 +351,8 @@ class _Interpreter:
                 rule.place,
             )
 
-    # --- all tables ------------------------------------------------------------------------------------------------
+    # --- all tables
+    # ------------------------------------------------------------------------------------------------
 
     def check_use(self, choices: list[Choice]) -> None:
         """Report rules and corrections that have no effect."""
@@ -271,8 +371,14 @@ class _Interpreter:
             )
         for rule in self.profile.rules:
             for correction in rule.corrections:
-                if rule.name in used and correction.place not in self.notes.used_corrections:
-                    where = ", ".join(f"{role}: {pattern.pattern}" for role, pattern in correction.where.items())
+                if (
+                    rule.name in used
+                    and correction.place not in self.notes.used_corrections
+                ):
+                    where = ", ".join(
+                        f"{role}: {pattern.pattern}"
+                        for role, pattern in correction.where.items()
+                    )
                     self.notes.error(
                         "IMP101",
                         f"`set` of rule `{rule.name}` matches no row: {where}",
@@ -282,11 +388,24 @@ class _Interpreter:
                     )
 
     def check_orders(self, results: list[Found]) -> None:
-        """Report fields whose bits depend on a byte or bit order that the profile does not state."""
-        fields = [f for result in results if isinstance(result.thing, ReadMessage) for f in result.thing.all_fields]
-        numbers = [f for f in fields if f.type in ("uint", "int", "enum", "float", "bool")]
+        """Report fields whose bits depend on a byte or bit order that the profile does
+        not state.
+        """
+        fields = [
+            f
+            for result in results
+            if isinstance(result.thing, ReadMessage)
+            for f in result.thing.all_fields
+        ]
+        numbers = [
+            f for f in fields if f.type in ("uint", "int", "enum", "float", "bool")
+        ]
         dependent = {
-            "byte_order": ("several bytes", [f for f in numbers if f.at % 8 + f.bits > 8], "`big` or `little`"),
+            "byte_order": (
+                "several bytes",
+                [f for f in numbers if f.at % 8 + f.bits > 8],
+                "`big` or `little`",
+            ),
             "bit_order": (
                 "a part of a byte",
                 [f for f in numbers if f.at % 8 or f.bits % 8],
@@ -295,7 +414,9 @@ class _Interpreter:
         }
         for key, (size, affected, values) in dependent.items():
             if affected and not self.profile.states_order(key):
-                further = f" and {len(affected) - 1} more fields" if affected[1:] else ""
+                further = (
+                    f" and {len(affected) - 1} more fields" if affected[1:] else ""
+                )
                 self.notes.error(
                     "IMP109",
                     f"the profile does not state `{key}`, on which `{affected[0].name}`{further} of {size} depend"
@@ -311,7 +432,9 @@ class _Interpreter:
             tables = [table for table in group if table.number in unread]
             if not tables:
                 continue
-            numbers = ", ".join(str(table.number) for table in tables[:8]) + (" ..." if len(tables) > 8 else "")
+            numbers = ", ".join(str(table.number) for table in tables[:8]) + (
+                " ..." if len(tables) > 8 else ""
+            )
             titles = " | ".join(tables[0].titles)[:80]
             survey.import_findings.append(
                 ImportFinding(
@@ -325,7 +448,11 @@ class _Interpreter:
         for rule in self.profile.rules:
             tables = [c.table for c in choices if rule in c.rules]
             if rule.what == "ignore" and tables:
-                shown = ", ".join(dict.fromkeys(f"`{' | '.join(table.titles)[:40]}`" for table in tables[:30]))
+                shown = ", ".join(
+                    dict.fromkeys(
+                        f"`{' | '.join(table.titles)[:40]}`" for table in tables[:30]
+                    )
+                )
                 count = f"{len(tables)} table{'s' if len(tables) != 1 else ''}"
                 survey.import_findings.append(
                     ImportFinding(
@@ -339,7 +466,9 @@ class _Interpreter:
                 )
 
     def report_without_table(self, choices: list[Choice], survey: Survey) -> None:
-        """Report texts that give the id of a message by the pattern of a rule, if no table gives a message with this id."""
+        """Report texts that give the id of a message by the pattern of a rule, if no
+        table gives a message with this id.
+        """
         ids_with_table = {part.number(role) for part in self.parts for role in _IDS}
         used = {rule.name for choice in choices for rule in choice.rules}
         patterns = [
@@ -347,14 +476,20 @@ class _Interpreter:
             for rule in self.profile.rules
             for source in ("heading", "before")
             for pattern in rule.sources.get(source, ())
-            if rule.name in used and rule.what in ("message", "registers") and pattern.roles & set(_IDS)
+            if rule.name in used
+            and rule.what in ("message", "registers")
+            and pattern.roles & set(_IDS)
         ]
         for table in self.tables:
             for text in map(normalised, (*table.before, *table.after)):
                 for rule, pattern in patterns:
                     taken = take([pattern], text)
                     ids = (
-                        {whole_number(taken.roles[role], rule.base) for role in _IDS if role in taken.roles}
+                        {
+                            whole_number(taken.roles[role], rule.base)
+                            for role in _IDS
+                            if role in taken.roles
+                        }
                         if taken
                         else set()
                     )
@@ -373,10 +508,14 @@ class _Interpreter:
 
 
 def _is_equal(rule: Rule, role: str, first: str, second: str) -> bool:
-    """Return whether two texts give a role the same value: the same number, or words with one meaning."""
+    """Return whether two texts give a role the same value: the same number, or words
+    with one meaning.
+    """
     if role == "kind":
         words = rule.map.get(role, {})
-        return words.get(first.casefold(), first) == words.get(second.casefold(), second)
+        return words.get(first.casefold(), first) == words.get(
+            second.casefold(), second
+        )
     numbers = whole_number(first, rule.base), whole_number(second, rule.base)
     return numbers[0] == numbers[1] if None not in numbers else first == second
 

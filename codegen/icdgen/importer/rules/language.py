@@ -73,7 +73,13 @@ MESSAGE_ROLES = {
 ROLES = PLACE_ROLES | VALUE_ROLES | TEXT_ROLES | MESSAGE_ROLES
 _FIELD_ROLES = {*PLACE_ROLES, *VALUE_ROLES, *TEXT_ROLES}
 _IDS = {"id", "set_id", "get_id"}
-_PROSE = {"text", "message_text", "section", "default", "access"}  # without effect where nothing represents it
+_PROSE = {
+    "text",
+    "message_text",
+    "section",
+    "default",
+    "access",
+}  # without effect where nothing represents it
 _MESSAGE = {*_FIELD_ROLES, *_IDS, *_PROSE, "message", "kind", "length", "enumeration"}
 ROLES_OF = {
     "message": _MESSAGE,
@@ -86,7 +92,10 @@ ROLES_OF = {
     "bits": {*_FIELD_ROLES, *_PROSE, "of", "message", "enumeration"},
 }
 """The roles that each kind of rule (`what`) uses."""
-INTEGERS = frozenset({*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to", "const"} - {"part"})
+INTEGERS = frozenset(
+    {*PLACE_ROLES, "value", "id", "set_id", "get_id", "length", "up_to", "const"}
+    - {"part"}
+)
 NUMBERS = frozenset({"scale", "offset", "bias", "min", "max"})
 _PATTERN_OF = {
     **dict.fromkeys(ROLES, TEXT),
@@ -112,7 +121,9 @@ class PatternError(Exception):
 
 @dataclass(frozen=True)
 class Pattern:
-    """Pattern of a profile: a bare role without ``regex``, or a regular expression with groups that are roles."""
+    """Pattern of a profile: a bare role without ``regex``, or a regular expression with
+    groups that are roles.
+    """
 
     text: str
     place: Place
@@ -121,38 +132,60 @@ class Pattern:
     @property
     def roles(self) -> frozenset[str]:
         """Roles that the pattern may give."""
-        return frozenset({self.text}) if self.regex is None else frozenset(self.regex.groupindex)
+        return (
+            frozenset({self.text})
+            if self.regex is None
+            else frozenset(self.regex.groupindex)
+        )
 
     def order_of(self, *roles: str) -> list[str]:
         """Return the roles that the pattern takes, in their order within the pattern."""
-        return [] if self.regex is None else [role for role in self.regex.groupindex if role in roles]
+        return (
+            []
+            if self.regex is None
+            else [role for role in self.regex.groupindex if role in roles]
+        )
 
 
 class Taken(NamedTuple):
-    """Roles that a pattern took out of a text, and the text that no group or literal of it covers."""
+    """Roles that a pattern took out of a text, and the text that no group or literal of
+    it covers.
+    """
 
     roles: dict[str, str]
     left: str
-    listed: str = ""  # a list of numbers, such as `0, 2`, that the pattern takes for a range
+    listed: str = (
+        ""  # a list of numbers, such as `0, 2`, that the pattern takes for a range
+    )
 
 
 def compile_pattern(text: str, place: Place) -> Pattern:
-    """Return the pattern of a text such as ``{byte}(?:-{last_byte})?`` or ``name``. Raises `PatternError`."""
+    """Return the pattern of a text such as ``{byte}(?:-{last_byte})?`` or ``name``.
+
+    Raises `PatternError`.
+    """
     if text in ROLES:
         return Pattern(text, place)
-    unknown = next((match[1] for match in _ROLE.finditer(text) if match[1] not in ROLES), None)
+    unknown = next(
+        (match[1] for match in _ROLE.finditer(text) if match[1] not in ROLES), None
+    )
     if unknown is not None:
         from icdgen.suggest import close_to
 
         close = close_to(unknown, ROLES)
-        help = f"did you mean `{{{close}}}`?" if close else f"roles are {', '.join(sorted(ROLES))}"
+        help = (
+            f"did you mean `{{{close}}}`?"
+            if close
+            else f"roles are {', '.join(sorted(ROLES))}"
+        )
         raise PatternError(f"unknown role `{unknown}` in the pattern `{text}`", help)
     # Cells have the hyphen for each kind of minus sign.
     text = text.translate(HYPHENS)
     expanded = _ROLE.sub(lambda m: f"(?P<{m[1]}>{m[2] or _PATTERN_OF[m[1]]})", text)
     if _BRACE.search(expanded):
         raise PatternError(
-            f"a brace of the pattern `{text}` belongs to no role", "write `{role}`, `{role:regex}` or `\\{`"
+            f"a brace of the pattern `{text}` belongs to no role",
+            "write `{role}`, `{role:regex}` or `\\{`",
         )
     try:
         regex = re.compile(expanded, re.I)
@@ -162,13 +195,21 @@ def compile_pattern(text: str, place: Place) -> Pattern:
             if "redefinition" in str(error)
             else "check brackets and backslashes"
         )
-        raise PatternError(f"the pattern `{text}` is not a regular expression: {error}", help) from None
+        raise PatternError(
+            f"the pattern `{text}` is not a regular expression: {error}", help
+        ) from None
     if not regex.groupindex:
         from icdgen.suggest import close_to
 
         close = close_to(text, ROLES)
-        help = f"did you mean the role `{close}`?" if close else "put what it finds into braces: `^{name} register$`"
-        raise PatternError(f"`{text}` is neither a role nor a pattern with a role", help)
+        help = (
+            f"did you mean the role `{close}`?"
+            if close
+            else "put what it finds into braces: `^{name} register$`"
+        )
+        raise PatternError(
+            f"`{text}` is neither a role nor a pattern with a role", help
+        )
     return Pattern(text, place, regex)
 
 
@@ -179,19 +220,27 @@ def take(patterns: Sequence[Pattern], text: str) -> Taken | None:
             return Taken({pattern.text: text} if text else {}, "")
         match = pattern.regex.search(text)
         if match is not None:
-            roles = {role: value.strip() for role, value in match.groupdict().items() if value and value.strip()}
+            roles = {
+                role: value.strip()
+                for role, value in match.groupdict().items()
+                if value and value.strip()
+            }
             left = normalised(f"{text[: match.start()]} {text[match.end() :]}")
             return Taken(roles, left, _listed(match, text))
     return None
 
 
 def _listed(match: re.Match[str], text: str) -> str:
-    """Return the text in which a pattern takes two listed numbers for the ends of a range."""
+    """Return the text in which a pattern takes two listed numbers for the ends of a
+    range.
+    """
     for first, last in (("byte", "last_byte"), ("bit", "last_bit")):
         if match.groupdict().get(first) and match.groupdict().get(last):
             (start, end), (begin, stop) = match.span(first), match.span(last)
             numbers = whole_number(match[first]), whole_number(match[last])
-            is_apart = None not in numbers and abs((numbers[0] or 0) - (numbers[1] or 0)) > 1
+            is_apart = (
+                None not in numbers and abs((numbers[0] or 0) - (numbers[1] or 0)) > 1
+            )
             if is_apart and positions.is_separator(text[end:begin]):
                 return text[start:stop]
     return ""
@@ -199,10 +248,15 @@ def _listed(match: re.Match[str], text: str) -> str:
 
 @lru_cache(maxsize=1 << 16)
 def normalised(text: str) -> str:
-    """Return the text in one line, with ordinary characters for full-width ones and for blanks."""
-    # Documents from East Asia print brackets, colons and digits as full-width characters. NFKC of the whole text
-    # would change superscripts of units, too.
-    wide = "".join(unicodedata.normalize("NFKC", c) if "！" <= c <= "～" or c == "　" else c for c in text)
+    """Return the text in one line, with ordinary characters for full-width ones and for
+    blanks.
+    """
+    # Documents from East Asia print brackets, colons and digits as full-width
+    # characters. NFKC of the whole text would change superscripts of units, too.
+    wide = "".join(
+        unicodedata.normalize("NFKC", c) if "！" <= c <= "～" or c == "　" else c
+        for c in text
+    )
     return plain(wide)
 
 
@@ -231,7 +285,10 @@ def whole_number(text: str, base: int = 10) -> int | None:
 
 
 def decimal(text: str) -> str | None:
-    """Return a number as an ICD writes it, with the digits of the source; None for another text."""
+    """Return a number as an ICD writes it, with the digits of the source.
+
+    Returns None for another text.
+    """
     text = text.replace("−", "-").replace("–", "-").replace(" ", "").lstrip("+")
     if not re.fullmatch(NUMBER, text):
         return None
@@ -265,10 +322,14 @@ _TYPE_NAMES = [
 
 
 def type_of(name: str) -> TypeName | None:
-    """Return the type of a commonly used name, or None if only a profile can explain it."""
+    """Return the type of a commonly used name, or None if only a profile can explain
+    it.
+    """
     text = normalised(name).casefold()
     for pattern, kind, bits in _TYPE_NAMES:
         match = re.fullmatch(pattern, text)
         if match:
-            return TypeName(kind, int(match[1]) if match.groups() and match[1] else bits)
+            return TypeName(
+                kind, int(match[1]) if match.groups() and match[1] else bits
+            )
     return None

@@ -1,11 +1,21 @@
-"""Tables that list messages or the frames of logs, and enumerations that descriptions refer to by name."""
+"""Tables that list messages or the frames of logs, and enumerations that descriptions
+refer to by name.
+"""
 
 from __future__ import annotations
 
 import re
 
 from icdgen.importer.document import SourceTable
-from icdgen.importer.model import Found, Listed, LogBit, ReadEnum, ReadList, ReadLog, ReadMember
+from icdgen.importer.model import (
+    Found,
+    Listed,
+    LogBit,
+    ReadEnum,
+    ReadList,
+    ReadLog,
+    ReadMember,
+)
 from icdgen.importer.rules.cells import Roles
 from icdgen.importer.rules.language import normalised, whole_number
 from icdgen.importer.rules.notes import Notes
@@ -16,13 +26,21 @@ _MASK = re.compile(r"(?:0x)?(?:[0-9A-Fa-f]{2}\s*)+\Z")
 _IDS = ("id", "set_id", "get_id")
 
 
-def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Roles], notes: Notes) -> Found:
+def list_of(
+    rule: Rule,
+    table: SourceTable,
+    given: dict[str, str],
+    rows: list[Roles],
+    notes: Notes,
+) -> Found:
     """Return the list of messages that a table is."""
     kind = known_kind(given.get("kind", ""), table.title, table.spot, rule, notes)
     result = ReadList(kind, normalised(given.get("node", "")), [])
     for roles in rows:
         spot = table.spot_of(roles.row.source)
-        numbers = {role: _number(rule, table, roles, role, notes) for role in (*_IDS, "length")}
+        numbers = {
+            role: _number(rule, table, roles, role, notes) for role in (*_IDS, "length")
+        }
         name = roles.get("message")
         if not name or all(numbers[role] is None for role in _IDS):
             lacks = "name" if not name else "id"
@@ -36,7 +54,14 @@ def list_of(rule: Rule, table: SourceTable, given: dict[str, str], rows: list[Ro
             continue
         result.rows.append(
             Listed(
-                known_kind(roles.get("kind"), f"{table.title}, row of `{name}`", spot, rule, notes) or kind,
+                known_kind(
+                    roles.get("kind"),
+                    f"{table.title}, row of `{name}`",
+                    spot,
+                    rule,
+                    notes,
+                )
+                or kind,
                 name,
                 numbers["length"],
                 numbers["id"],
@@ -53,7 +78,11 @@ def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> F
     """Return the frames that can be logged, by the bit of the mask."""
     log = ReadLog([])
     for roles in rows:
-        bit = bit_of_mask(roles.get("mask")) if roles.get("mask") else whole_number(roles.get("bit") or "?")
+        bit = (
+            bit_of_mask(roles.get("mask"))
+            if roles.get("mask")
+            else whole_number(roles.get("bit") or "?")
+        )
         frame = _number(rule, table, roles, "id", notes)
         if bit is None or frame is None:
             notes.error(
@@ -70,12 +99,21 @@ def log_of(rule: Rule, table: SourceTable, rows: list[Roles], notes: Notes) -> F
 
 def enumeration_of(part: Part) -> Found:
     """Return the enumeration that a table prints under a name of its own."""
-    members = [ReadMember(value, name, text) for (value, name), text in zip(part.pairs, part.texts, strict=True)]
+    members = [
+        ReadMember(value, name, text)
+        for (value, name), text in zip(part.pairs, part.texts, strict=True)
+    ]
     table = part.table
-    return Found(table, "enumeration", ReadEnum(normalised(part.given["enumeration"]), members, table))
+    return Found(
+        table,
+        "enumeration",
+        ReadEnum(normalised(part.given["enumeration"]), members, table),
+    )
 
 
-def _number(rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Notes) -> int | None:
+def _number(
+    rule: Rule, table: SourceTable, roles: Roles, role: str, notes: Notes
+) -> int | None:
     text = roles.get(role)
     value = whole_number(text, rule.base) if text else None
     if text and value is None:

@@ -1,4 +1,6 @@
-"""Results of one rule for one table: fields or values of a message, enumeration, lookup table or set of bits."""
+"""Results of one rule for one table: fields or values of a message, enumeration, lookup
+table or set of bits.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,20 @@ from icdgen.importer.rules.rule import Rule
 
 @dataclass
 class Part:
-    """Fields or values of one message, enumeration, lookup table, index entry or set of bits in one table."""
+    """Fields or values of one message, enumeration, lookup table, index entry or set of
+    bits in one table.
+    """
 
     rule: Rule
     table: SourceTable
     given: dict[str, str]  # roles of the message
-    stated_in_rows: dict[str, str] = field(default_factory=dict)  # those that cells of the table give
+    stated_in_rows: dict[str, str] = field(
+        default_factory=dict
+    )  # those that cells of the table give
     drafts: list[Draft] = field(default_factory=list)
-    pairs: list[tuple[int, str]] = field(default_factory=list)  # values with members, or with points
+    pairs: list[tuple[int, str]] = field(
+        default_factory=list
+    )  # values with members, or with points
     texts: list[str] = field(default_factory=list)  # descriptions of the members
 
     @property
@@ -32,7 +40,11 @@ class Part:
     @property
     def where(self) -> str:
         """Title of the part for a finding."""
-        return f"{self.table.title}, message `{self.name}`" if self.name else self.table.title
+        return (
+            f"{self.table.title}, message `{self.name}`"
+            if self.name
+            else self.table.title
+        )
 
     def number(self, role: str) -> int | None:
         """Return the number of an id or a length, or None."""
@@ -40,8 +52,13 @@ class Part:
         return whole_number(text, self.rule.base) if text else None
 
 
-def known_kind(text: str, where: str, spot: SourcePlace, rule: Rule, notes: Notes) -> str:
-    """Return the kind of a message; empty, with a finding, if the word of the document is not translated."""
+def known_kind(
+    text: str, where: str, spot: SourcePlace, rule: Rule, notes: Notes
+) -> str:
+    """Return the kind of a message.
+
+    Returns empty, with a finding, if the word of the document is not translated.
+    """
     if text in KINDS:
         return text
     if text:

@@ -11,9 +11,17 @@ from icdgen.importer.rules.rule import Rule
 
 
 class PlaceReader:
-    """Places of the fields of one table; ``order`` is the node's, ``error`` reports a place that is not clear."""
+    """Places of the fields of one table.
 
-    def __init__(self, rule: Rule, order: Order, error: Callable[[str, str, SourcePlace, str], None]) -> None:
+    ``order`` is the node's, ``error`` reports a place that is not clear.
+    """
+
+    def __init__(
+        self,
+        rule: Rule,
+        order: Order,
+        error: Callable[[str, str, SourcePlace, str], None],
+    ) -> None:
         self.rule, self.order, self.error = rule, order, error
 
     @property
@@ -21,8 +29,12 @@ class PlaceReader:
         """Orders of the node, as a profile states them."""
         return f"byte_order: {self.order.byte_order}, bit_order: {self.order.bit_order}"
 
-    def place(self, numbers: dict[str, int], byte_shift: int, size: int) -> tuple[int, int] | None:
-        """Number of the first bit and size of the range, 0 if only its beginning is given; None without a position."""
+    def place(
+        self, numbers: dict[str, int], byte_shift: int, size: int
+    ) -> tuple[int, int] | None:
+        """Number of the first bit and size of the range, 0 if only its beginning is
+        given; None without a position.
+        """
         if "byte" not in numbers and "bit" not in numbers:
             return None
         origin = 8 * (self.rule.origin - byte_shift)
@@ -30,7 +42,11 @@ class PlaceReader:
             first, last = self.ends(numbers)
             is_plain = self.counts_through(numbers)
             start, end = 8 * first[0] + first[1], 8 * last[0] + last[1]
-            return (start - origin, end - start + 1) if is_plain else (8 * first[0] - origin, size)
+            return (
+                (start - origin, end - start + 1)
+                if is_plain
+                else (8 * first[0] - origin, size)
+            )
         first_bit = numbers.get("bit", 0)
         range_size = 0
         if "last_bit" in numbers:
@@ -39,21 +55,39 @@ class PlaceReader:
         first_byte = numbers.get("byte", 0)
         if "last_byte" in numbers:
             first_byte, last_byte = sorted((first_byte, numbers["last_byte"]))
-            range_size = range_size if "bit" in numbers else 8 * (last_byte - first_byte + 1)
+            range_size = (
+                range_size if "bit" in numbers else 8 * (last_byte - first_byte + 1)
+            )
         return 8 * first_byte - origin + first_bit, range_size
 
     def ends(self, numbers: dict[str, int]) -> list[Bit]:
-        """Byte and bit number of both ends of a range such as ``0.4-1.3``, the first byte first."""
+        """Byte and bit number of both ends of a range such as ``0.4-1.3``, the first
+        byte first.
+        """
         byte = numbers["byte"]
-        return sorted([(byte, numbers["bit"]), (numbers.get("last_byte", byte), numbers["end_bit"])])
+        return sorted(
+            [
+                (byte, numbers["bit"]),
+                (numbers.get("last_byte", byte), numbers["end_bit"]),
+            ]
+        )
 
     def counts_through(self, numbers: dict[str, int]) -> bool:
         """Return whether bit numbers ascend from the first to the last byte of a range."""
         is_in_one_byte = numbers.get("last_byte", numbers["byte"]) == numbers["byte"]
-        return is_in_one_byte or self.order in positions.MONOTONIC or self.rule.what != "message"
+        return (
+            is_in_one_byte
+            or self.order in positions.MONOTONIC
+            or self.rule.what != "message"
+        )
 
-    def is_range_clear(self, numbers: dict[str, int], size: int, where: str, spot: SourcePlace) -> bool:
-        """Check a range from a bit of one byte to a bit of another; report one that can be read in two ways."""
+    def is_range_clear(
+        self, numbers: dict[str, int], size: int, where: str, spot: SourcePlace
+    ) -> bool:
+        """Check a range from a bit of one byte to a bit of another.
+
+        Report one that can be read in two ways.
+        """
         lacking = [role for role in ("byte", "bit") if role not in numbers]
         outside = [role for role in ("bit", "end_bit") if numbers.get(role, 0) > 7]
         problem = ""
@@ -66,7 +100,10 @@ class PlaceReader:
             problem = f"a byte has no bit {numbers[outside[0]]}"
             help = "`end_bit` and `bit` count from 0 to 7 within their bytes"
         elif "last_bit" in numbers:
-            problem, help = "`end_bit` and `last_bit` exclude each other", "remove one of the roles"
+            problem, help = (
+                "`end_bit` and `last_bit` exclude each other",
+                "remove one of the roles",
+            )
         if problem:
             self.error("IMP105", f"{where}: {problem}", spot, help)
             return False
@@ -105,23 +142,37 @@ class PlaceReader:
             return []
         printed = numbers["byte"], numbers.get("last_byte", numbers["byte"])
         count = max(printed) - min(printed) + 1
-        start = at - min(numbers["bit"], numbers.get("last_bit", numbers["bit"]))  # bit 0 of the bytes
+        start = at - min(
+            numbers["bit"], numbers.get("last_bit", numbers["bit"])
+        )  # bit 0 of the bytes
         highest = max(numbers["bit"], numbers.get("last_bit", 0))
         is_ambiguous = self.order not in positions.MONOTONIC
         help = ""
         if "last_byte" in numbers and max(highest + 1, at + size - start) > 8 * count:
-            help = (
-                f"bits are numbered from 0 to {8 * count - 1} in these bytes; give the position by bytes or bits only"
-            )
-        elif count > 1 and "last_bit" in numbers and highest < 8 and not self.rule.has_byte_range:
+            help = f"bits are numbered from 0 to {8 * count - 1} in these bytes; give the position by bytes or bits only"
+        elif (
+            count > 1
+            and "last_bit" in numbers
+            and highest < 8
+            and not self.rule.has_byte_range
+        ):
             help = "a bit in the last byte has the role `end_bit`; bits that are numbered in all bytes need `{byte}-{last_byte}`"
         elif "last_byte" not in numbers and highest > 7 and is_ambiguous:
             help = f"with `{self._orders}`, state all bytes in which the bits are numbered: the roles `byte` and `last_byte`"
         elif count > 1 and self.order == Order("little", "msb0"):
             help = f"with `{self._orders}`, bit numbers in several bytes have no order: state that of the source under `node:`"
         if help:
-            bytes_ = f"byte {printed[0]}" if count == 1 else f"bytes {printed[0]} to {printed[1]}"
-            self.error("IMP105", f"{where}: the place of bit {highest} in {bytes_} is not clear", spot, help)
+            bytes_ = (
+                f"byte {printed[0]}"
+                if count == 1
+                else f"bytes {printed[0]} to {printed[1]}"
+            )
+            self.error(
+                "IMP105",
+                f"{where}: the place of bit {highest} in {bytes_} is not clear",
+                spot,
+                help,
+            )
             return None
         if count == 1 or not is_ambiguous:
             return []

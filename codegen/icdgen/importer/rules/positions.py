@@ -1,4 +1,6 @@
-"""Positions as tables print them -> bits of the frame: lists of numbers, and ranges from a bit of one byte to a bit of another."""
+"""Positions as tables print them -> bits of the frame: lists of numbers, and ranges
+from a bit of one byte to a bit of another.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ SEPARATOR = r"\s*(?:,|;|&|\+|/|\band\b)\s*"
 _ITEM = r"[0-9]+(?:\s*(?:-|–|to|\.\.)\s*[0-9]+)?"
 _LIST = re.compile(rf"{_ITEM}(?:{SEPARATOR}{_ITEM})+", re.I)
 _PARTING = re.compile(SEPARATOR, re.I)
-MONOTONIC = ORDERS[:2]  # bit numbers ascend from byte to byte: the least (or most) significant bit is always first
+MONOTONIC = ORDERS[
+    :2
+]  # bit numbers ascend from byte to byte: the least (or most) significant bit is always first
 
 
 def is_list(text: str) -> bool:
@@ -19,12 +23,17 @@ def is_list(text: str) -> bool:
 
 
 def is_separator(text: str) -> bool:
-    """Return whether the text between two numbers separates list items. A dash makes a range."""
+    """Return whether the text between two numbers separates list items.
+
+    A dash makes a range.
+    """
     return _PARTING.fullmatch(text) is not None
 
 
 def runs_of(text: str) -> list[tuple[int, int]]:
-    """Return the first and last number of each run of consecutive numbers in a list, ascending."""
+    """Return the first and last number of each run of consecutive numbers in a list,
+    ascending.
+    """
     numbers: set[int] = set()
     for item in _PARTING.split(text.strip()):
         ends = [int(number) for number in re.findall(r"[0-9]+", item)]
@@ -39,19 +48,39 @@ def runs_of(text: str) -> list[tuple[int, int]]:
 
 
 def bits_between(first: Bit, last: Bit, size: int, order: Order) -> list[Bit] | None:
-    """Return the bits of a value of ``size`` bits from a numbered bit of one byte to a numbered bit of a later byte.
+    """Return the bits of a value of ``size`` bits from a numbered bit of one byte to a
+    numbered bit of a later byte.
 
-    For orders in which bit numbers do not ascend from byte to byte (`big` with `lsb0`, `little` with `msb0`), manuals print
-    the range in two ways: by ascending numbers (``0.0-1.7`` is two whole bytes), or in the order of significance (``0.7-1.0``
-    is the same two bytes). The size decides between them. None if no reading, or both, have this size.
+    For orders in which bit numbers do not ascend from byte to byte (`big` with `lsb0`,
+    `little` with `msb0`), manuals print the range in two ways: by ascending numbers
+    (``0.0-1.7`` is two whole bytes), or in the order of significance (``0.7-1.0`` is
+    the same two bytes). The size decides between them. None if no reading, or both,
+    have this size.
     """
     (low, first_number), (high, last_number) = first, last
     between = [(byte, number) for byte in range(low + 1, high) for number in range(8)]
-    ascending = [(low, n) for n in range(first_number, 8)] + between + [(high, n) for n in range(last_number + 1)]
-    by_weight = [(low, n) for n in range(first_number + 1)] + between + [(high, n) for n in range(last_number, 8)]
-    # If both readings have the size, as for `0.3-1.3`, the text does not tell which bits are meant.
-    readings = [numbered for numbered in (ascending, by_weight) if len(numbered) == size]
+    ascending = (
+        [(low, n) for n in range(first_number, 8)]
+        + between
+        + [(high, n) for n in range(last_number + 1)]
+    )
+    by_weight = (
+        [(low, n) for n in range(first_number + 1)]
+        + between
+        + [(high, n) for n in range(last_number, 8)]
+    )
+    # If both readings have the size, as for `0.3-1.3`, the text does not tell which
+    # bits are meant.
+    readings = [
+        numbered for numbered in (ascending, by_weight) if len(numbered) == size
+    ]
     if len(readings) != 1:
         return None
-    bits = [(byte, number if order.bit_order == "lsb0" else 7 - number) for byte, number in readings[0]]
-    return sorted(bits, key=lambda bit: (bit[0] if order.byte_order == "little" else -bit[0], bit[1]))
+    bits = [
+        (byte, number if order.bit_order == "lsb0" else 7 - number)
+        for byte, number in readings[0]
+    ]
+    return sorted(
+        bits,
+        key=lambda bit: (bit[0] if order.byte_order == "little" else -bit[0], bit[1]),
+    )

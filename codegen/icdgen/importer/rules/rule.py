@@ -9,12 +9,32 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd.located import Map, Seq
-from icdgen.importer.rules.language import KINDS, MESSAGE_ROLES, ROLES, ROLES_OF, Pattern, PatternError, compile_pattern
+from icdgen.importer.rules.language import (
+    KINDS,
+    MESSAGE_ROLES,
+    ROLES,
+    ROLES_OF,
+    Pattern,
+    PatternError,
+    compile_pattern,
+)
 from icdgen.suggest import close_to
 
 CODE = "IMP001"
-SOURCES = ("caption", "heading", "before", "row", "sheet")  # texts in which `message` looks for roles
-_MERGED = ("tables", "message", "columns", "each", "map")  # keys of which `like` takes over single entries
+SOURCES = (
+    "caption",
+    "heading",
+    "before",
+    "row",
+    "sheet",
+)  # texts in which `message` looks for roles
+_MERGED = (
+    "tables",
+    "message",
+    "columns",
+    "each",
+    "map",
+)  # keys of which `like` takes over single entries
 
 
 @dataclass(frozen=True)
@@ -39,7 +59,9 @@ class Column:
 
 @dataclass(frozen=True)
 class Correction:
-    """An entry of `set`: the patterns that the roles of a row must match, and the resulting roles."""
+    """An entry of `set`: the patterns that the roles of a row must match, and the
+    resulting roles.
+    """
 
     where: dict[str, re.Pattern[str]]
     roles: dict[str, str]
@@ -48,7 +70,10 @@ class Correction:
 
 @dataclass
 class Rule:
-    """Rule for tables of one kind. Every key is described in ``docs/reference/import-rules.md``."""
+    """Rule for tables of one kind.
+
+    Every key is described in ``docs/reference/import-rules.md``.
+    """
 
     name: str
     place: Place
@@ -56,9 +81,13 @@ class Rule:
     head: str = ""
     pages: tuple[int, int] | None = None
     nth: int | None = None
-    conditions: dict[str, re.Pattern[str]] = field(default_factory=dict)  # source -> pattern
+    conditions: dict[str, re.Pattern[str]] = field(
+        default_factory=dict
+    )  # source -> pattern
     literals: dict[str, str] = field(default_factory=dict)  # role -> value
-    sources: dict[str, list[Pattern]] = field(default_factory=dict)  # source -> patterns, all of them used
+    sources: dict[str, list[Pattern]] = field(
+        default_factory=dict
+    )  # source -> patterns, all of them used
     optional: set[str] = field(default_factory=set)  # sources that may match nothing
     columns: list[Column] = field(default_factory=list)
     lines: list[Column] = field(default_factory=list)
@@ -73,7 +102,9 @@ class Rule:
     fill: list[str] = field(default_factory=list)
     glue: list[str] = field(default_factory=list)
     ignore: list[str] = field(default_factory=list)
-    absent: list[str] = field(default_factory=list)  # columns whose empty cells the source leaves out
+    absent: list[str] = field(
+        default_factory=list
+    )  # columns whose empty cells the source leaves out
     head_rows: int = 1
     transpose: bool = False
     also: bool = False
@@ -84,8 +115,15 @@ class Rule:
 
     @property
     def has_fields(self) -> bool:
-        """Whether the rule gives roles of fields. Otherwise, each row is a message without parameters."""
-        patterns = [pattern for column in (*self.columns, *self.lines) for pattern in column.patterns]
+        """Whether the rule gives roles of fields.
+
+        Otherwise, each row is a message without parameters.
+        """
+        patterns = [
+            pattern
+            for column in (*self.columns, *self.lines)
+            for pattern in column.patterns
+        ]
         given = {*self.each, *(role for pattern in patterns for role in pattern.roles)}
         return not given <= set(MESSAGE_ROLES)
 
@@ -96,24 +134,46 @@ class Rule:
         Bit numbers in other texts then refer to all of these bytes.
         """
         columns = (*self.columns, *self.lines)
-        return any({"byte", "last_byte"} <= p.roles for column in columns for p in column.patterns)
+        return any(
+            {"byte", "last_byte"} <= p.roles
+            for column in columns
+            for p in column.patterns
+        )
 
     @property
     def heading_titles(self) -> list[str]:
-        """Headings in `head`; empty if it has patterns, or a single heading, which is ambiguous."""
-        titles = [title.strip() for title in re.split(r"\s\|\s", self.head)] if self.head not in ("", "none") else []
-        is_plain = len(titles) > 1 and not any(title == "*" or title.startswith("~") for title in titles)
+        """Headings in `head`.
+
+        Empty if it has patterns, or a single heading, which is ambiguous.
+        """
+        titles = (
+            [title.strip() for title in re.split(r"\s\|\s", self.head)]
+            if self.head not in ("", "none")
+            else []
+        )
+        is_plain = len(titles) > 1 and not any(
+            title == "*" or title.startswith("~") for title in titles
+        )
         return titles if is_plain and not self.transpose else []
 
     @property
     def column_titles(self) -> list[str]:
         """Headings in `columns`, `lines` and `ignore`."""
-        named = [title for column in (*self.columns, *self.lines) for title in column.titles]
-        return [title for title in (*named, *self.ignore) if title != "*" and not title.startswith("~")]
+        named = [
+            title for column in (*self.columns, *self.lines) for title in column.titles
+        ]
+        return [
+            title
+            for title in (*named, *self.ignore)
+            if title != "*" and not title.startswith("~")
+        ]
 
 
 def read_rules(tree: Seq) -> list[Rule]:
-    """Return the rules of a profile whose structure was checked. Raises `Findings` with everything that is wrong in them."""
+    """Return the rules of a profile whose structure was checked.
+
+    Raises `Findings` with everything that is wrong in them.
+    """
     findings: list[Finding] = []
     by_name: dict[str, Map] = {}
     rules: list[Rule] = []
@@ -124,14 +184,30 @@ def read_rules(tree: Seq) -> list[Rule]:
             base = by_name.get(own["like"])
             if base is None:
                 close = close_to(own["like"], by_name)
-                help = f"did you mean `{close}`?" if close else "name an earlier rule with `rule:`"
+                help = (
+                    f"did you mean `{close}`?"
+                    if close
+                    else "name an earlier rule with `rule:`"
+                )
                 findings.append(
-                    Finding(CODE, f"there is no rule `{own['like']}` before this one", own.at("like"), help)
+                    Finding(
+                        CODE,
+                        f"there is no rule `{own['like']}` before this one",
+                        own.at("like"),
+                        help,
+                    )
                 )
             else:
                 merged = _laid_over(base, own)
         if name in by_name:
-            findings.append(Finding(CODE, f"two rules are called `{name}`", own.at("rule"), "give each its own name"))
+            findings.append(
+                Finding(
+                    CODE,
+                    f"two rules are called `{name}`",
+                    own.at("rule"),
+                    "give each its own name",
+                )
+            )
         by_name[name] = merged
         rules.append(_Reader(findings).read(merged, name, own.place))
     if findings:
@@ -166,8 +242,14 @@ class _Reader:
     def read(self, tree: Map, name: str, place: Place) -> Rule:
         """Return the rule; what cannot be read of it is left out, with a finding."""
         rule = Rule(name, place, tree.get("what", "message"))
-        rule.head_rows, rule.transpose = tree.get("head_rows", 1), tree.get("transpose", False)
-        rule.also, rule.origin, rule.base = tree.get("also", False), tree.get("origin", 0), tree.get("base", 10)
+        rule.head_rows, rule.transpose = tree.get("head_rows", 1), tree.get(
+            "transpose", False
+        )
+        rule.also, rule.origin, rule.base = (
+            tree.get("also", False),
+            tree.get("origin", 0),
+            tree.get("base", 10),
+        )
         rule.is_unit_wide = tree.get("width") == "unit"
         rule.group_rows = tree.get("group_rows", False)
         self.conditions(rule, tree["tables"])
@@ -175,24 +257,35 @@ class _Reader:
         for key in ("columns", "lines"):
             entries = tree.get(key) or Map(place)
             getattr(rule, key).extend(
-                Column(c, self.patterns(v, entries.at(c)), entries.key_at(c)) for c, v in entries.items()
+                Column(c, self.patterns(v, entries.at(c)), entries.key_at(c))
+                for c, v in entries.items()
             )
         if "melt" in tree:
             rule.melt = next(iter(self.patterns(tree["melt"], tree.at("melt"))), None)
         rule.each = self.roles(tree.get("each"))
         for role, words in (tree.get("map") or {}).items():
             self.role(role, tree["map"].key_at(role))
-            rule.map[role] = {str(word).casefold(): str(meaning) for word, meaning in words.items()}
+            rule.map[role] = {
+                str(word).casefold(): str(meaning) for word, meaning in words.items()
+            }
         for index, entry in enumerate(tree.get("set", ())):
-            where = {role: self.regex(text, entry["where"].at(role)) for role, text in entry["where"].items()}
+            where = {
+                role: self.regex(text, entry["where"].at(role))
+                for role, text in entry["where"].items()
+            }
             for role in entry["where"]:
                 self.role(role, entry["where"].key_at(role))
             given = self.roles(entry, leave_out="where")
-            rule.corrections.append(Correction(where, given, tree["set"].item_at(index)))
+            rule.corrections.append(
+                Correction(where, given, tree["set"].item_at(index))
+            )
         for key in ("skip", "stop"):
             if key in tree:
                 setattr(rule, key, self.regex(tree[key], tree.at(key)))
-        rule.keep = {c: self.regex(text, tree["keep"].at(c)) for c, text in (tree.get("keep") or {}).items()}
+        rule.keep = {
+            c: self.regex(text, tree["keep"].at(c))
+            for c, text in (tree.get("keep") or {}).items()
+        }
         for key in ("join", "fill", "glue", "ignore", "absent"):
             getattr(rule, key).extend(str(text) for text in tree.get(key, ()))
         self.together(rule, tree)
@@ -210,7 +303,9 @@ class _Reader:
             rule.pages = int(first), int(last or first)
         rule.nth = tree.get("nth")
         rule.conditions = {
-            key: self.regex(tree[key], tree.at(key)) for key in ("caption", "heading", "before", "sheet") if key in tree
+            key: self.regex(tree[key], tree.at(key))
+            for key in ("caption", "heading", "before", "sheet")
+            if key in tree
         }
 
     def message(self, rule: Rule, tree: Map) -> None:
@@ -224,11 +319,19 @@ class _Reader:
             rule.literals["message" if key == "name" else key] = str(value)
         kind = rule.literals.get("kind")
         if kind is not None and kind not in KINDS:
-            self.add(f"`{kind}` is not a kind of message", tree.at("kind"), f"write {', '.join(KINDS)}")
+            self.add(
+                f"`{kind}` is not a kind of message",
+                tree.at("kind"),
+                f"write {', '.join(KINDS)}",
+            )
 
     def belongs(self, rule: Rule) -> None:
         """Check that a table of values or bits says to which field it belongs."""
-        owners = {"enumeration": {"of", "enumeration"}, "lookup": {"of"}, "bits": {"of"}}.get(rule.what)
+        owners = {
+            "enumeration": {"of", "enumeration"},
+            "lookup": {"of"},
+            "bits": {"of"},
+        }.get(rule.what)
         if owners and not owners & set(roles_of_message(rule)):
             self.add(
                 f"the rule does not say to which field the {rule.what} belongs",
@@ -241,14 +344,30 @@ class _Reader:
         if rule.what not in ROLES_OF:
             return
         message = tree.get("message") or Map(rule.place)
-        given = [("message" if key == "name" else key, message.at(key)) for key in message]
+        given = [
+            ("message" if key == "name" else key, message.at(key)) for key in message
+        ]
         given = [(role, place) for role, place in given if role in rule.literals]
         given += [(role, tree["each"].key_at(role)) for role in rule.each]
-        given += [(role, correction.place) for correction in rule.corrections for role in correction.roles]
-        columns = (pattern for column in (*rule.columns, *rule.lines) for pattern in column.patterns)
-        sources = (pattern for patterns in rule.sources.values() for pattern in patterns)
+        given += [
+            (role, correction.place)
+            for correction in rule.corrections
+            for role in correction.roles
+        ]
+        columns = (
+            pattern
+            for column in (*rule.columns, *rule.lines)
+            for pattern in column.patterns
+        )
+        sources = (
+            pattern for patterns in rule.sources.values() for pattern in patterns
+        )
         melt = (rule.melt,) if rule.melt is not None else ()
-        given += [(role, p.place) for p in (*sources, *columns, *melt) for role in sorted(p.roles)]
+        given += [
+            (role, p.place)
+            for p in (*sources, *columns, *melt)
+            for role in sorted(p.roles)
+        ]
         for role, place in given:
             kinds = [what for what, roles in ROLES_OF.items() if role in roles]
             if role in ROLES and rule.what not in kinds:
@@ -269,7 +388,10 @@ class _Reader:
                 self.add(error.message, where, error.help)
                 continue
             order = pattern.order_of("byte", "bit", "last_byte", "last_bit")
-            if order[:3] == ["byte", "bit", "last_byte"] and "end_bit" not in pattern.roles:
+            if (
+                order[:3] == ["byte", "bit", "last_byte"]
+                and "end_bit" not in pattern.roles
+            ):
                 self.add(
                     f"the pattern `{text}` takes a bit of the first byte and a bit of the last byte; `bit` and `last_bit` are "
                     "numbered in all bytes of a range",
@@ -283,12 +405,20 @@ class _Reader:
         try:
             return re.compile(str(text), re.I)
         except re.error as error:
-            self.add(f"`{text}` is not a regular expression: {error}", place, "check brackets and backslashes")
+            self.add(
+                f"`{text}` is not a regular expression: {error}",
+                place,
+                "check brackets and backslashes",
+            )
             return re.compile("")
 
     def roles(self, tree: Map | None, leave_out: str = "") -> dict[str, str]:
         """Return a mapping of roles to values as texts."""
-        given = {role: str(value) for role, value in (tree or {}).items() if role != leave_out}
+        given = {
+            role: str(value)
+            for role, value in (tree or {}).items()
+            if role != leave_out
+        }
         for role in given:
             assert tree is not None
             self.role(role, tree.key_at(role))
@@ -297,19 +427,33 @@ class _Reader:
     def role(self, role: str, place: Place) -> None:
         if role not in ROLES:
             close = close_to(role, ROLES)
-            help = f"did you mean `{close}`?" if close else f"roles are {', '.join(sorted(ROLES))}"
+            help = (
+                f"did you mean `{close}`?"
+                if close
+                else f"roles are {', '.join(sorted(ROLES))}"
+            )
             self.add(f"unknown role `{role}`", place, help)
 
     def together(self, rule: Rule, tree: Map) -> None:
         """Check combinations of keys."""
         if rule.what == "ignore":
-            used = [key for key in ("columns", "message", "lines", "melt", "each", "set") if key in tree]
+            used = [
+                key
+                for key in ("columns", "message", "lines", "melt", "each", "set")
+                if key in tree
+            ]
             if used:
                 self.add(
-                    f"`{used[0]}` has no effect in a rule that ignores its tables", tree.key_at(used[0]), "remove it"
+                    f"`{used[0]}` has no effect in a rule that ignores its tables",
+                    tree.key_at(used[0]),
+                    "remove it",
                 )
             return
-        named = [c for c in (*rule.columns, *rule.lines) if c.key != "*" and not all(t.isdigit() for t in c.titles)]
+        named = [
+            c
+            for c in (*rule.columns, *rule.lines)
+            if c.key != "*" and not all(t.isdigit() for t in c.titles)
+        ]
         if rule.head in ("", "none") and named:
             self.add(
                 f"`{named[0].key}` is a heading, and `tables` does not say in which row headings stand",
@@ -317,15 +461,33 @@ class _Reader:
                 "add `head: A | B`, or name columns by their numbers",
             )
         if not (rule.columns or rule.lines or rule.ignore):
-            self.add(f"the rule `{rule.name}` gives no column a role", rule.place, "add `columns:`")
-        if rule.melt is not None and not any(column.key == "*" for column in rule.columns):
-            self.add("`melt` needs the pattern of the cells", tree.key_at("melt"), 'add `"*": name` to `columns`')
-        if rule.melt is None and (star := next((c for c in rule.columns if c.key == "*"), None)):
             self.add(
-                "`*` stands for the cells of melted columns, but the rule has no `melt`", star.place, "add `melt:`"
+                f"the rule `{rule.name}` gives no column a role",
+                rule.place,
+                "add `columns:`",
+            )
+        if rule.melt is not None and not any(
+            column.key == "*" for column in rule.columns
+        ):
+            self.add(
+                "`melt` needs the pattern of the cells",
+                tree.key_at("melt"),
+                'add `"*": name` to `columns`',
+            )
+        if rule.melt is None and (
+            star := next((c for c in rule.columns if c.key == "*"), None)
+        ):
+            self.add(
+                "`*` stands for the cells of melted columns, but the rule has no `melt`",
+                star.place,
+                "add `melt:`",
             )
         if rule.melt is not None and rule.lines:
-            self.add("`melt` and `lines` exclude each other", tree.key_at("lines"), "remove one of them")
+            self.add(
+                "`melt` and `lines` exclude each other",
+                tree.key_at("lines"),
+                "remove one of them",
+            )
 
     def add(self, message: str, place: Place, help: str) -> None:
         self.findings.append(Finding(CODE, message, place, help))
@@ -334,5 +496,13 @@ class _Reader:
 def roles_of_message(rule: Rule) -> Iterator[str]:
     """Return the roles of a message that any key of the rule may give."""
     yield from (role for role in rule.literals if role in MESSAGE_ROLES)
-    for patterns in (*rule.sources.values(), *(c.patterns for c in (*rule.columns, *rule.lines))):
-        yield from (role for pattern in patterns for role in pattern.roles if role in MESSAGE_ROLES)
+    for patterns in (
+        *rule.sources.values(),
+        *(c.patterns for c in (*rule.columns, *rule.lines)),
+    ):
+        yield from (
+            role
+            for pattern in patterns
+            for role in pattern.roles
+            if role in MESSAGE_ROLES
+        )

@@ -11,7 +11,9 @@ from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.language import normalised
 from icdgen.importer.rules.rule import Rule
 
-SEARCHED = 6  # rows in which the headings are looked for: titles and notes stand above them
+SEARCHED = (
+    6  # rows in which the headings are looked for: titles and notes stand above them
+)
 NO_HEAD = "none"
 
 
@@ -30,7 +32,10 @@ def texts_of(table: SourceTable, transpose: bool) -> list[list[str]]:
     If the headings are on the left, return the texts of each column.
     """
     if not transpose:
-        return [[normalised(slot.text) for slot in row if slot.is_origin] for row in table.grid()]
+        return [
+            [normalised(slot.text) for slot in row if slot.is_origin]
+            for row in table.grid()
+        ]
     rows = [[normalised(slot.text) for slot in row] for row in table.grid()]
     width = max(map(len, rows), default=0)
     padded = [row + [""] * (width - len(row)) for row in rows]
@@ -52,7 +57,9 @@ def heading_rows(rule: Rule, texts: list[list[str]]) -> range | None:
     if rule.head_rows > 1 or rule.transpose:
         return None
     for index, pair in enumerate(pairwise(texts[:SEARCHED])):
-        joined = [" ".join(filter(None, cells)) for cells in zip_longest(*pair, fillvalue="")]
+        joined = [
+            " ".join(filter(None, cells)) for cells in zip_longest(*pair, fillvalue="")
+        ]
         if _first_difference(wanted, joined) is None:
             return range(index, index + 2)
     return None
@@ -78,31 +85,51 @@ def _first_difference(wanted: list[str], row: list[str]) -> int | None:
 
 def why_not(rule: Rule, table: SourceTable) -> str:
     """Why a rule does not apply to a table, its `nth` aside; empty if it does."""
-    if rule.pages is not None and not (table.page is not None and rule.pages[0] <= table.page <= rule.pages[1]):
-        return f"the table stands on page {table.page}" if table.page is not None else "the source has no pages"
+    if rule.pages is not None and not (
+        table.page is not None and rule.pages[0] <= table.page <= rule.pages[1]
+    ):
+        return (
+            f"the table stands on page {table.page}"
+            if table.page is not None
+            else "the source has no pages"
+        )
     for source, pattern in rule.conditions.items():
-        texts = {"caption": [table.caption], "heading": table.headings, "before": table.before, "sheet": [table.sheet]}[
-            source
-        ]
+        texts = {
+            "caption": [table.caption],
+            "heading": table.headings,
+            "before": table.before,
+            "sheet": [table.sheet],
+        }[source]
         if not any(pattern.search(normalised(text)) for text in texts):
-            shown = f": `{normalised(texts[-1])[:50]}`" if texts and texts[-1] else "; there is none"
+            shown = (
+                f": `{normalised(texts[-1])[:50]}`"
+                if texts and texts[-1]
+                else "; there is none"
+            )
             return f"`{source}` does not match{shown}"
     texts_by_row = texts_of(table, rule.transpose)
     if heading_rows(rule, texts_by_row) is not None:
         return ""
     wanted = titles_wanted(rule)
-    nearest = max(texts_by_row[:SEARCHED], key=lambda row: _agreement(wanted, row), default=[])
+    nearest = max(
+        texts_by_row[:SEARCHED], key=lambda row: _agreement(wanted, row), default=[]
+    )
     index = _first_difference(wanted, nearest) or 0
     cell = nearest[index] if index < len(nearest) else ""
     return f"the headings differ: `{wanted[index]}` is wanted as cell {index + 1}, the table has `{cell[:40]}`"
 
 
 def _agreement(wanted: list[str], row: list[str]) -> int:
-    return sum(_first_difference([title], [cell]) is None for title, cell in zip(wanted, row, strict=False))
+    return sum(
+        _first_difference([title], [cell]) is None
+        for title, cell in zip(wanted, row, strict=False)
+    )
 
 
 def choose(rules: list[Rule], tables: list[SourceTable]) -> list[Choice]:
-    """Decide for each table: the first rule that fits, and rules before it that leave the table to others (`also`)."""
+    """Decide for each table: the first rule that fits, and rules before it that leave
+    the table to others (`also`).
+    """
     choices = []
     seen: Counter[str] = Counter()
     for table in tables:

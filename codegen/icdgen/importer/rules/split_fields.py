@@ -1,4 +1,6 @@
-"""Fields as printed -> their bits in the frame: split fields are put together, bit numbers are brought into the node's order."""
+"""Fields as printed -> their bits in the frame: split fields are put together, bit
+numbers are brought into the node's order.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +14,18 @@ from icdgen.importer.rules.rule import Rule
 
 
 def joined_parts(
-    drafts: list[Draft], order: Order, is_register: bool, length: int, notes: Notes, rule: Rule
+    drafts: list[Draft],
+    order: Order,
+    is_register: bool,
+    length: int,
+    notes: Notes,
+    rule: Rule,
 ) -> list[Draft]:
-    """Join parts of one name with consecutive bit numbers to fields (``CB5`` to ``CB1``, ``D15`` to ``D0``).
+    """Join parts of one name with consecutive bit numbers to fields (``CB5`` to
+    ``CB1``, ``D15`` to ``D0``).
 
-    Each field gets the number of its first bit in the node's order, or an order of its own if it is no run of bits there.
+    Each field gets the number of its first bit in the node's order, or an order of its
+    own if it is no run of bits there.
     """
     fields: list[Draft] = []
     pieces: dict[str, list[Draft]] = {}
@@ -31,7 +40,10 @@ def joined_parts(
         split.sort(key=lambda piece: piece.part or (0, 0))
         ends = [piece.part for piece in split if piece.part is not None]
         if any(before[1] + 1 != after[0] for before, after in pairwise(ends)):
-            numbers = ", ".join(str(first) if first == last else f"{last}:{first}" for first, last in ends)
+            numbers = ", ".join(
+                str(first) if first == last else f"{last}:{first}"
+                for first, last in ends
+            )
             notes.error(
                 "IMP105",
                 f"the parts {numbers} of `{name}` are not consecutive",
@@ -39,11 +51,15 @@ def joined_parts(
                 "a part is missing, or two have the same number: compare with the table",
                 rule.place,
             )
-            fields = [draft for draft in fields if draft.name != name or draft.part is None]
+            fields = [
+                draft for draft in fields if draft.name != name or draft.part is None
+            ]
     placed = []
     for draft in fields:
         parts = pieces[draft.name] if draft.part is not None else [draft]
-        bits = [bit for piece in parts for bit in _bits(piece, order, is_register, length)]
+        bits = [
+            bit for piece in parts for bit in _bits(piece, order, is_register, length)
+        ]
         if draft.count and draft.frame_bits:
             notes.error(
                 "IMP105",
@@ -53,9 +69,12 @@ def joined_parts(
                 rule.place,
             )
             continue
-        # The order of an array's elements is that of the frame, whatever the order of their bits.
+        # The order of an array's elements is that of the frame, whatever the order of
+        # their bits.
         if draft.count or draft.size == 0:
-            placed.append(draft)  # elements stand one after the other: their first bit is as printed
+            placed.append(
+                draft
+            )  # elements stand one after the other: their first bit is as printed
             continue
         run = bit_order.run_of(bits, order)
         if run is None:
@@ -75,5 +94,7 @@ def joined_parts(
 
 def _bits(piece: Draft, order: Order, is_register: bool, length: int) -> list[Bit]:
     if is_register:
-        return bit_order.bits_of_register(piece.at, piece.size, length, order.byte_order)
+        return bit_order.bits_of_register(
+            piece.at, piece.size, length, order.byte_order
+        )
     return piece.frame_bits or bit_order.bits_of(piece.at, piece.size, order)

@@ -1,4 +1,6 @@
-"""Rules within the text of a profile: one rule is replaced or added, everything else keeps its place and its comments."""
+"""Rules within the text of a profile: one rule is replaced or added, everything else
+keeps its place and its comments.
+"""
 
 from __future__ import annotations
 
@@ -20,22 +22,40 @@ _INDENT = "  "
 
 
 def text_of_rule(rule: dict[str, Any]) -> str:
-    """Return the lines of a rule as an entry of `rules:`, in the order of the reference."""
-    keys = [key for key in ORDER if key in rule] + [key for key in rule if key not in ORDER]
+    """Return the lines of a rule as an entry of `rules:`, in the order of the
+    reference.
+    """
+    keys = [key for key in ORDER if key in rule] + [
+        key for key in rule if key not in ORDER
+    ]
     lines: list[str] = []
     for key in keys:
         value = rule[key]
-        if isinstance(value, dict) and (len(_flow(value)) > 90 or (key in ("columns", "lines") and len(value) > 3)):
+        if isinstance(value, dict) and (
+            len(_flow(value)) > 90 or (key in ("columns", "lines") and len(value) > 3)
+        ):
             lines.append(f"{key}:")
-            lines += [f"  {_scalar(str(name))}: {_flow(entry)}" for name, entry in value.items()]
+            lines += [
+                f"  {_scalar(str(name))}: {_flow(entry)}"
+                for name, entry in value.items()
+            ]
         else:
             lines.append(f"{key}: {_flow(value)}")
-    return "".join(f"{_INDENT}{'- ' if index == 0 else '  '}{line}\n" for index, line in enumerate(lines))
+    return "".join(
+        f"{_INDENT}{'- ' if index == 0 else '  '}{line}\n"
+        for index, line in enumerate(lines)
+    )
 
 
 def _flow(value: Any) -> str:
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_scalar(str(key))}: {_flow(entry)}" for key, entry in value.items()) + "}"
+        return (
+            "{"
+            + ", ".join(
+                f"{_scalar(str(key))}: {_flow(entry)}" for key, entry in value.items()
+            )
+            + "}"
+        )
     if isinstance(value, list):
         return "[" + ", ".join(map(_flow, value)) + "]"
     return _scalar(value)
@@ -52,10 +72,14 @@ def _scalar(value: Any) -> str:
     return "'" + text.replace("'", "''").replace("\n", " ") + "'"
 
 
-def with_rule(text: str, index: int | None, rule: dict[str, Any] | None, behind: int | None = None) -> str:
-    """Return the text with a rule replaced (``index``), added (no index), or removed (no rule).
+def with_rule(
+    text: str, index: int | None, rule: dict[str, Any] | None, behind: int | None = None
+) -> str:
+    """Return the text with a rule replaced (``index``), added (no index), or removed
+    (no rule).
 
-    It is added behind the rule ``behind``, or behind the last one. Raises `Findings` if the text is no YAML.
+    It is added behind the rule ``behind``, or behind the last one. Raises `Findings` if
+    the text is no YAML.
     """
     block = text_of_rule(rule) if rule is not None else ""
     tree = source.parse(text.encode("utf-8"), "profile")
@@ -65,16 +89,25 @@ def with_rule(text: str, index: int | None, rule: dict[str, Any] | None, behind:
         lines[-1] += "\n"
     if not isinstance(rules, Seq):
         return "".join(lines) + f"rules:\n{block}"
-    if not rules or tree.key_at("rules").line == rules.item_at(0).line:  # in one line, as `[]` or `[{...}]`
+    if (
+        not rules or tree.key_at("rules").line == rules.item_at(0).line
+    ):  # in one line, as `[]` or `[{...}]`
         first = tree.key_at("rules").line - 1
         texts = [text_of_rule(plain(entry)) for entry in rules]
         added = len(texts) if behind is None else behind + 1
-        texts[added if index is None else index : added if index is None else index + 1] = [block]
+        texts[
+            added if index is None else index : added if index is None else index + 1
+        ] = [block]
         lines[first : first + 1] = ["rules:\n" if any(texts) else "rules: []\n", *texts]
         return "".join(lines)
-    # Lines are replaced within the text, because a YAML writer would drop comments and the order of keys.
+    # Lines are replaced within the text, because a YAML writer would drop comments and
+    # the order of keys.
     starts = [rules.item_at(i).line - 1 for i in range(len(rules))]
-    next_keys = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > starts[-1]]
+    next_keys = [
+        place.line - 1
+        for key in tree
+        if (place := tree.key_at(key)).line - 1 > starts[-1]
+    ]
     ends = [*starts[1:], min(next_keys, default=len(lines))]
     if index is None:
         before = len(rules) - 1 if behind is None else behind
@@ -92,13 +125,18 @@ def _last_line(lines: list[str], start: int, end: int) -> int:
 
     Blank lines and comments before the next rule belong to that rule.
     """
-    while end > start + 1 and (not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#")):
+    while end > start + 1 and (
+        not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#")
+    ):
         end -= 1
     return end
 
 
 def with_node(text: str, node: dict[str, Any]) -> str:
-    """Return the text with another `node:` section. Raises `Findings` if the text is no YAML."""
+    """Return the text with another `node:` section.
+
+    Raises `Findings` if the text is no YAML.
+    """
     tree = source.parse(text.encode("utf-8"), "profile")
     lines = text.splitlines(keepends=True)
     line = f"node: {_flow(node)}\n"
@@ -106,26 +144,43 @@ def with_node(text: str, node: dict[str, Any]) -> str:
         first = tree.key_at("profile").line if "profile" in tree else 0
         return "".join([*lines[:first], line, *lines[first:]])
     start = tree.key_at("node").line - 1
-    behind = [place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > start]
+    behind = [
+        place.line - 1 for key in tree if (place := tree.key_at(key)).line - 1 > start
+    ]
     end = _last_line(lines, start, min(behind, default=len(lines)))
     return "".join([*lines[:start], line, *lines[end:]])
 
 
 def rules_of(text: str) -> list[dict[str, Any]]:
-    """Return the rules of a profile as plain mappings. Raises `Findings` if the text is no YAML."""
+    """Return the rules of a profile as plain mappings.
+
+    Raises `Findings` if the text is no YAML.
+    """
     tree = source.parse(text.encode("utf-8"), "profile")
     rules = tree.get("rules")
     return [plain(rule) for rule in rules] if isinstance(rules, Seq) else []
 
 
 def parse_rule(text: str) -> dict[str, Any]:
-    """Parse a rule in YAML, with or without the dash of a list. Raises `Findings`, also for several rules."""
+    """Parse a rule in YAML, with or without the dash of a list.
+
+    Raises `Findings`, also for several rules.
+    """
     dash = re.match(r"(?:\s*\n|\s*#.*\n)*( *)-(?= )", text)
     items = list(re.finditer(rf"^{dash[1]}- ", text, re.M)) if dash else []
     if len(items) > 1:
         place = Place("rule", text.count("\n", 0, items[1].start()) + 1)
         help = "leave one list item, and add each other rule with `Add another rule for this table`"
-        raise Findings([Finding("IMP001", f"one rule only: the text has {len(items)} list items", place, help)])
+        raise Findings(
+            [
+                Finding(
+                    "IMP001",
+                    f"one rule only: the text has {len(items)} list items",
+                    place,
+                    help,
+                )
+            ]
+        )
     if dash:
         text = f"{text[: dash.end() - 1]} {text[dash.end() :]}"
     tree = source.parse(text.encode("utf-8"), "rule")

@@ -34,27 +34,50 @@ class Session:
     """One document and one profile; every method may be called from any thread."""
 
     def __init__(
-        self, document: Document, tables: list[SourceTable], path: Path, out: Path, reader: Reader | None = None
+        self,
+        document: Document,
+        tables: list[SourceTable],
+        path: Path,
+        out: Path,
+        reader: Reader | None = None,
     ) -> None:
-        self.document, self.tables, self.path, self.out, self.reader = document, tables, path, out, reader
+        self.document, self.tables, self.path, self.out, self.reader = (
+            document,
+            tables,
+            path,
+            out,
+            reader,
+        )
         self.lock = RLock()
-        self.disk = self.read_disk()  # contents of the profile's file when it was read or written last
+        self.disk = (
+            self.read_disk()
+        )  # contents of the profile's file when it was read or written last
         self.text = self.saved = _decoded(self.disk, path)
         if self.disk is None:
             self.text = rule_text.NEW
-        self.past: list[Version] = []  # earlier versions of the profile, the latest last
+        self.past: list[Version] = (
+            []
+        )  # earlier versions of the profile, the latest last
         self.future: list[Version] = []  # versions that were undone
         self.pictures: dict[int, bytes] = {}
         self.apply(self.text, [None] * len(rule_text.rules_of(self.text)))
 
     def apply(self, text: str, last_valid: list[dict[str, Any] | None]) -> None:
-        """Apply the rules of a text to all tables. Raises `Findings`, and changes nothing, for errors outside the rules."""
+        """Apply the rules of a text to all tables.
+
+        Raises `Findings`, and changes nothing, for errors outside the rules.
+        """
         self.valid = read_profile(text, self.path.name, last_valid)
         self.text = text
-        self.result, self.trees = run.apply_rules(self.document, self.tables, self.valid.words)
+        self.result, self.trees = run.apply_rules(
+            self.document, self.tables, self.valid.words
+        )
 
     def read_disk(self) -> bytes | None:
-        """Return the contents of the profile's file; None if there is no file. Raises `UserError`."""
+        """Return the contents of the profile's file; None if there is no file.
+
+        Raises `UserError`.
+        """
         try:
             return self.path.read_bytes()
         except FileNotFoundError:
@@ -62,7 +85,8 @@ class Session:
         except OSError as error:
             raise unreadable(self.path, error) from None
 
-    # --- answers ---------------------------------------------------------------------------------------------------
+    # --- answers
+    # ---------------------------------------------------------------------------------------------------
 
     def state(self) -> dict[str, Any]:
         """Everything but the contents of single tables."""
@@ -78,14 +102,32 @@ class Session:
                 "node": self.node(),
                 "roles": ROLES,
                 "roles_of": {what: sorted(roles) for what, roles in ROLES_OF.items()},
-                "rules": [{"keys": rule, "text": rule_text.text_of_rule(rule)} for rule in rules],
-                "kinds": [{"titles": group[0].titles, "tables": [table.number for table in group]} for group in groups],
-                "tables": [self.summary(table, applied, import_findings) for table in self.tables],
-                "findings": [_finding(import_finding) for import_finding in import_findings],
-                "errors": [{"rule": index, "message": f.message, "help": f.help} for index, f in self.valid.errors],
+                "rules": [
+                    {"keys": rule, "text": rule_text.text_of_rule(rule)}
+                    for rule in rules
+                ],
+                "kinds": [
+                    {
+                        "titles": group[0].titles,
+                        "tables": [table.number for table in group],
+                    }
+                    for group in groups
+                ],
+                "tables": [
+                    self.summary(table, applied, import_findings)
+                    for table in self.tables
+                ],
+                "findings": [
+                    _finding(import_finding) for import_finding in import_findings
+                ],
+                "errors": [
+                    {"rule": index, "message": f.message, "help": f.help}
+                    for index, f in self.valid.errors
+                ],
                 "can_undo": bool(self.past),
                 "can_redo": bool(self.future),
-                "has_pictures": self.document.file.casefold().endswith(".pdf") and Path(self.document.file).exists(),
+                "has_pictures": self.document.file.casefold().endswith(".pdf")
+                and Path(self.document.file).exists(),
             }
 
     def node(self) -> dict[str, Any]:
@@ -96,14 +138,22 @@ class Session:
     def rules_by_table(self) -> dict[int, list[int]]:
         """Number of a table -> the indices of the rules that apply to it."""
         # Several rules can stand in one line, so that places do not distinguish them.
-        index_of = {id(rule): index for rule, index in zip(self.valid.words.rules, self.valid.indices, strict=True)}
+        index_of = {
+            id(rule): index
+            for rule, index in zip(
+                self.valid.words.rules, self.valid.indices, strict=True
+            )
+        }
         return {
             choice.table.number: [index_of[id(rule)] for rule in choice.rules]
             for choice in self.result.interpretation.choices
         }
 
     def summary(
-        self, table: SourceTable, applied: dict[int, list[int]], import_findings: list[ImportFinding]
+        self,
+        table: SourceTable,
+        applied: dict[int, list[int]],
+        import_findings: list[ImportFinding],
     ) -> dict[str, Any]:
         """Return a line of the list of tables."""
         own = [
@@ -122,7 +172,11 @@ class Session:
 
     def parts(self, table: SourceTable) -> list[Part]:
         """Parts that rules read from a table."""
-        return [part for part in self.result.interpretation.parts if part.table.number == table.number]
+        return [
+            part
+            for part in self.result.interpretation.parts
+            if part.table.number == table.number
+        ]
 
     def enumerations(self, part: Part) -> dict[str, str]:
         """Name of a field of a message -> name of its enumeration in the ICD."""
@@ -131,17 +185,30 @@ class Session:
             for _, message in self.result.survey.of(ReadMessage)
             if message.name == part.name and message.table.number == part.table.number
         ]
-        return {field.name: field.enum for message in messages for field in message.all_fields if field.enum}
+        return {
+            field.name: field.enum
+            for message in messages
+            for field in message.all_fields
+            if field.enum
+        }
 
     def table(self, number: int) -> dict[str, Any]:
-        """A table with its cells, the texts around it and what rules read from it. Raises `KeyError`."""
+        """A table with its cells, the texts around it and what rules read from it.
+
+        Raises `KeyError`.
+        """
         with self.lock:
             if not 1 <= number <= len(self.tables):
                 raise KeyError(number)
             table = self.tables[number - 1]
             import_findings = self.result.import_findings
             choices = self.result.interpretation.choices
-            reasons = [(rule.name, reason) for c in choices if c.table.number == number for rule, reason in c.reasons]
+            reasons = [
+                (rule.name, reason)
+                for c in choices
+                if c.table.number == number
+                for rule, reason in c.reasons
+            ]
             return {
                 "number": number, "title": table.title, "page": table.page, "caption": table.caption, "headings": table.headings,
                 "before": table.before, "titles": table.titles, "head": self.head(table),
@@ -159,25 +226,40 @@ class Session:
         """
         for choice in self.result.interpretation.choices:
             if choice.table.number == table.number and choice.rules:
-                head = heading_rows(choice.rules[-1], texts_of(table, choice.rules[-1].transpose))
+                head = heading_rows(
+                    choice.rules[-1], texts_of(table, choice.rules[-1].transpose)
+                )
                 if head is not None and not choice.rules[-1].transpose:
                     return head.start if head else -1
-        return next((i for i, row in enumerate(table.rows) if sum(bool(c.text.strip()) for c in row.cells) > 1), 0)
+        return next(
+            (
+                i
+                for i, row in enumerate(table.rows)
+                if sum(bool(c.text.strip()) for c in row.cells) > 1
+            ),
+            0,
+        )
 
     def picture(self, number: int) -> bytes:
-        """Return the picture of a page as PNG. Raises `KeyError` if the document has no such page."""
+        """Return the picture of a page as PNG.
+
+        Raises `KeyError` if the document has no such page.
+        """
         with self.lock:
             if number not in self.pictures:
                 self.pictures[number] = _render(Path(self.document.file), number)
             return self.pictures[number]
 
-    # --- changes ---------------------------------------------------------------------------------------------------
+    # --- changes
+    # ---------------------------------------------------------------------------------------------------
 
-    def set_rule(self, index: int | None, rule: dict[str, Any] | None, behind: int | None = None) -> int | None:
+    def set_rule(
+        self, index: int | None, rule: dict[str, Any] | None, behind: int | None = None
+    ) -> int | None:
         """Replace, add or remove a rule, and return its index.
 
-        A rule that is added behind the rule ``behind`` reads the tables of that rule, too. Raises `Findings` if the
-        profile is no YAML.
+        A rule that is added behind the rule ``behind`` reads the tables of that rule,
+        too. Raises `Findings` if the profile is no YAML.
         """
         with self.lock:
             text, last_valid = self.text, list(self.valid.last_valid)
@@ -187,7 +269,9 @@ class Session:
                     del last_valid[index]
             else:
                 if behind is not None:
-                    text = rule_text.with_rule(text, behind, rule_text.rules_of(text)[behind] | {"also": True})
+                    text = rule_text.with_rule(
+                        text, behind, rule_text.rules_of(text)[behind] | {"also": True}
+                    )
                     if (before := last_valid[behind]) is not None:
                         last_valid[behind] = before | {"also": True}
                 index = len(last_valid) if behind is None else behind + 1
@@ -197,12 +281,20 @@ class Session:
             return index if rule is not None else None
 
     def set_node(self, node: dict[str, Any]) -> None:
-        """Replace the `node:` section. Raises `Findings`, and changes nothing, if it has errors."""
+        """Replace the `node:` section.
+
+        Raises `Findings`, and changes nothing, if it has errors.
+        """
         with self.lock:
-            self.change_text(rule_text.with_node(self.text, node), self.valid.last_valid)
+            self.change_text(
+                rule_text.with_node(self.text, node), self.valid.last_valid
+            )
 
     def change_text(self, text: str, last_valid: list[dict[str, Any] | None]) -> None:
-        """Replace the text of the profile; `undo` restores the text before it. Raises `Findings`."""
+        """Replace the text of the profile; `undo` restores the text before it.
+
+        Raises `Findings`.
+        """
         before = self.text, self.valid.last_valid
         self.apply(text, last_valid)
         if text != before[0]:
@@ -225,9 +317,11 @@ class Session:
                 self.apply(*source.pop())
 
     def read_document(self) -> None:
-        """Read the document again with the words of the profile, by which further tables may be found.
+        """Read the document again with the words of the profile, by which further
+        tables may be found.
 
-        Tables without vertical rules are found by the headings that rules name. Raises `Findings`.
+        Tables without vertical rules are found by the headings that rules name. Raises
+        `Findings`.
         """
         with self.lock:
             if self.reader is not None:
@@ -237,37 +331,56 @@ class Session:
     def reload(self) -> None:
         """Replace the profile by its file; `undo` restores the profile before it.
 
-        Raises `Findings` or `UserError`, and changes nothing, if the file is not a valid profile.
+        Raises `Findings` or `UserError`, and changes nothing, if the file is not a
+        valid profile.
         """
         with self.lock:
             contents = self.read_disk()
             if contents is None:
-                raise UserError(f"there is no file {self.path}", "save the profile, which writes the file")
+                raise UserError(
+                    f"there is no file {self.path}",
+                    "save the profile, which writes the file",
+                )
             text = _decoded(contents, self.path)
             profile.of_tree(source.parse(contents, str(self.path)))
             self.change_text(text, [None] * len(rule_text.rules_of(text)))
             self.disk, self.saved = contents, text
 
     def save(self, overwrite: bool = False) -> dict[str, Any]:
-        """Write the profile and the ICDs; return the files and the findings of `icdgen check`. Raises `UserError`.
+        """Write the profile and the ICDs.
 
-        If another program changed the profile's file, write nothing and return the ``conflict``, unless ``overwrite``.
+        Return the files and the findings of `icdgen check`. Raises `UserError`.
+
+        If another program changed the profile's file, write nothing and return the
+        ``conflict``, unless ``overwrite``.
         """
         from icdgen.generation.write import replace
 
         with self.lock:
             written = self.text.encode("utf-8")
-            if not overwrite and (contents := self.read_disk()) not in (self.disk, written):
+            if not overwrite and (contents := self.read_disk()) not in (
+                self.disk,
+                written,
+            ):
                 change = "removed" if contents is None else "changed"
-                return {"conflict": f"{self.path} was {change} by another program; nothing is written"}
+                return {
+                    "conflict": f"{self.path} was {change} by another program; nothing is written"
+                }
             try:
                 replace(Path(os.path.realpath(self.path)), written)
             except OSError as error:
                 text = f"cannot write {self.path}: {error.strerror}"
-                raise UserError(text, "start the workbench with another --profile") from None
+                raise UserError(
+                    text, "start the workbench with another --profile"
+                ) from None
             self.disk, self.saved = written, self.text
-            # A profile with errors is saved, so that no work is lost. Its last valid result must not become an ICD.
-            aimed = targets.prepare(self.trees, self.out, over=True) if self.trees and not self.valid.errors else []
+            # A profile with errors is saved, so that no work is lost. Its last valid
+            # result must not become an ICD.
+            aimed = (
+                targets.prepare(self.trees, self.out, over=True)
+                if self.trees and not self.valid.errors
+                else []
+            )
             targets.write(aimed)
             checked = targets.check(aimed)
             return {
@@ -286,7 +399,9 @@ def _decoded(contents: bytes | None, path: Path) -> str:
 
 
 def _finding(import_finding: ImportFinding) -> dict[str, Any]:
-    table = import_finding.spot.order + 1 if import_finding.spot.order is not None else None
+    table = (
+        import_finding.spot.order + 1 if import_finding.spot.order is not None else None
+    )
     line = import_finding.place.line if import_finding.place else None
     return {
         **report.finding_as_json(import_finding),
@@ -303,19 +418,33 @@ def _message(part: Part, enumerations: dict[str, str]) -> dict[str, Any]:
          "enumeration": enumerations.get(draft.name, ""), "repeated": _repetition(draft, part.drafts)}
         for draft in part.drafts
     ]  # fmt: skip
-    return {"what": part.rule.what, "given": part.given, "fields": fields, "pairs": [list(pair) for pair in part.pairs]}
+    return {
+        "what": part.rule.what,
+        "given": part.given,
+        "fields": fields,
+        "pairs": [list(pair) for pair in part.pairs],
+    }
 
 
 def _repetition(draft: Draft, drafts: list[Draft]) -> dict[str, Any] | None:
-    """Return the group, the count and the stride in bits of a repeated field; None for a single field."""
+    """Return the group, the count and the stride in bits of a repeated field.
+
+    Returns None for a single field.
+    """
     roles = draft.roles
     group = roles.get("group")
     if not group:
         count = draft.facts.get("count") or draft.count
         return {"group": "", "count": count, "stride": draft.bits} if count else None
-    members = [other for other in drafts if normalised(other.roles.get("group")) == normalised(group)]
+    members = [
+        other
+        for other in drafts
+        if normalised(other.roles.get("group")) == normalised(group)
+    ]
     start, end = min(other.at for other in members), max(other.end for other in members)
-    counted = roles.get("counter") or ("rest" if roles.get("rest") else roles.get("count"))
+    counted = roles.get("counter") or (
+        "rest" if roles.get("rest") else roles.get("count")
+    )
     count = int(counted) if counted.isdigit() else counted
     # An element of a group is a struct, which has whole bytes.
     return {"group": group, "count": count, "stride": (end - start + 7) // 8 * 8}
@@ -330,6 +459,8 @@ def _render(path: Path, number: int) -> bytes:
             raise KeyError(number)
         data = io.BytesIO()
         document[number - 1].render(scale=RESOLUTION / 72).to_pil().save(data, "PNG")
-    except pypdfium2.PdfiumError:  # it is stricter with broken files than the reader of text
+    except (
+        pypdfium2.PdfiumError
+    ):  # it is stricter with broken files than the reader of text
         raise KeyError(number) from None
     return data.getvalue()

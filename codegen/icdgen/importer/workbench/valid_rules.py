@@ -1,4 +1,6 @@
-"""Profile of the workbench while some of its rules have errors: their last valid forms are applied instead."""
+"""Profile of the workbench while some of its rules have errors: their last valid forms
+are applied instead.
+"""
 
 from __future__ import annotations
 
@@ -21,18 +23,27 @@ class ValidProfile:
 
     words: profile.Profile
     indices: list[int]  # for each rule of ``words``, its index in the text
-    errors: list[tuple[int, Finding]]  # index of a rule in the text, and what is wrong in it
+    errors: list[
+        tuple[int, Finding]
+    ]  # index of a rule in the text, and what is wrong in it
     last_valid: list[RuleKeys | None]  # for each rule of the text
 
 
-def read_profile(text: str, name: str, last_valid: list[RuleKeys | None]) -> ValidProfile:
-    """Return the profile of a text; ``last_valid`` replaces those of its rules that have errors.
+def read_profile(
+    text: str, name: str, last_valid: list[RuleKeys | None]
+) -> ValidProfile:
+    """Return the profile of a text.
 
-    A rule with errors that was never valid ignores its tables. Raises `Findings` for errors outside the rules.
+    ``last_valid`` replaces those of its rules that have errors.
+
+    A rule with errors that was never valid ignores its tables. Raises `Findings` for
+    errors outside the rules.
     """
     rules = rule_text.rules_of(text)
     indices = list(range(len(rules)))
-    substitutes = [[last, _ignoring(rule)] for last, rule in zip(last_valid, rules, strict=True)]
+    substitutes = [
+        [last, _ignoring(rule)] for last, rule in zip(last_valid, rules, strict=True)
+    ]
     errors: list[tuple[int, Finding]] = []
     while True:
         tree = source.parse(text.encode("utf-8"), name)
@@ -42,7 +53,9 @@ def read_profile(text: str, name: str, last_valid: list[RuleKeys | None]) -> Val
             wrong = _by_rule(tree, error.findings)
         else:
             invalid = {index for index, _ in errors}
-            last_valid = [last_valid[i] if i in invalid else rule for i, rule in enumerate(rules)]
+            last_valid = [
+                last_valid[i] if i in invalid else rule for i, rule in enumerate(rules)
+            ]
             return ValidProfile(words, indices, errors, last_valid)
         reported = {index for index, _ in errors}
         # From the last to the first, as the removal of a rule moves those behind it.
@@ -50,7 +63,9 @@ def read_profile(text: str, name: str, last_valid: list[RuleKeys | None]) -> Val
             index = indices[position]
             if index not in reported:
                 errors += [(index, finding) for finding in wrong[position]]
-            substitute = next((keys for keys in substitutes[index] if keys is not None), None)
+            substitute = next(
+                (keys for keys in substitutes[index] if keys is not None), None
+            )
             if substitute is None:
                 del indices[position]
             else:
@@ -66,7 +81,10 @@ def _ignoring(rule: Any) -> RuleKeys | None:
 
 
 def _by_rule(tree: Map, findings: list[Finding]) -> dict[int, list[Finding]]:
-    """Return the findings by the index of their rule. Raises `Findings` with those outside the rules."""
+    """Return the findings by the index of their rule.
+
+    Raises `Findings` with those outside the rules.
+    """
     by_rule: dict[int | None, list[Finding]] = {}
     for finding in findings:
         by_rule.setdefault(_rule_at(tree, finding.place), []).append(finding)

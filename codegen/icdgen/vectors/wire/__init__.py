@@ -13,7 +13,9 @@ Script = list[dict[str, Any]]
 """Script of a client or a procedure, one row per moment."""
 
 
-def pieces(why: str, stream: bytes, source: Random) -> Iterator[tuple[str, list[bytes]]]:
+def pieces(
+    why: str, stream: bytes, source: Random
+) -> Iterator[tuple[str, list[bytes]]]:
     """Yield the stream in one piece, byte by byte, and cut at random positions."""
     yield why, [stream]
     yield f"{why}, byte by byte", [bytes([byte]) for byte in stream]

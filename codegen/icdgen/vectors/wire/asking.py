@@ -25,7 +25,12 @@ class Sample:
 
     def ask(self, at: int, row: StreamRow, **more: object) -> dict[str, Any]:
         """Return a row that sends a telecommand."""
-        return {"at": at, "telecommand": row.id, "bytes": self.source.randbytes(row.most).hex(), **more}
+        return {
+            "at": at,
+            "telecommand": row.id,
+            "bytes": self.source.randbytes(row.most).hex(),
+            **more,
+        }
 
     def come(self, at: int, row: StreamRow, lost: int = 0) -> dict[str, Any]:
         """Return a row that receives telemetry, after ``lost`` skipped sequence
@@ -34,7 +39,9 @@ class Sample:
         field = self.form.of("sequence")
         self._numbers += lost + 1
         values = {"sequence": self._numbers & field.mask} if field else {}
-        line = stream.encode(self.form, "telemetry", row.id, self.source.randbytes(row.most), values)
+        line = stream.encode(
+            self.form, "telemetry", row.id, self.source.randbytes(row.most), values
+        )
         return {"at": at, "receive": line.hex()}
 
 
@@ -45,10 +52,19 @@ def scripts(facts: Facts) -> Requests:
     if not form.telecommands:
         return
     for why, rows in _single_requests(form, sample):
-        yield f"client: {why}", {"op": "stream_client", "settings": SETTINGS, "script": rows}
+        yield f"client: {why}", {
+            "op": "stream_client",
+            "settings": SETTINGS,
+            "script": rows,
+        }
     for why, rows in _simultaneous_requests(form, sample):
         for requests in (1, 2, 3):
-            request = {"op": "stream_client", "requests": requests, "settings": SETTINGS, "script": rows}
+            request = {
+                "op": "stream_client",
+                "requests": requests,
+                "settings": SETTINGS,
+                "script": rows,
+            }
             yield f"client of {requests}: {why}", request
 
 
@@ -57,39 +73,71 @@ def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
     known_ids = {row_.id for row_ in (*form.telecommands, *form.telemetry)}
     # The smallest unused id fits into the id field whenever possible.
     unknown = next(id for id in range(len(known_ids) + 1) if id not in known_ids)
-    yield "unknown ids", [{"at": 0, "telecommand": unknown, "bytes": ""}, {"at": 0, "telemetry": unknown}]
+    yield "unknown ids", [
+        {"at": 0, "telecommand": unknown, "bytes": ""},
+        {"at": 0, "telemetry": unknown},
+    ]
     yield "a reply of an unknown id", [s.ask(0, row, reply=unknown)]
     for size in {row.least - 1, row.most + 1} - {-1}:
         yield f"{size} bytes", [{"at": 0, "telecommand": row.id, "bytes": "00" * size}]
     silent = next((row_ for row_ in form.telecommands if row_.reply is None), None)
     if silent:
-        yield "without a reply it is done when it is sent", [s.ask(0, silent), {"at": 500}, s.ask(500, silent)]
+        yield "without a reply it is done when it is sent", [
+            s.ask(0, silent),
+            {"at": 500},
+            s.ask(500, silent),
+        ]
     for frame in form.telemetry[:1]:
         reply_argument: dict[str, object] = {"reply": frame.id}
-        yield "what comes unasked", [s.come(0, frame), s.come(1, frame), s.come(2, frame, lost=3)]
+        yield "what comes unasked", [
+            s.come(0, frame),
+            s.come(1, frame),
+            s.come(2, frame, lost=3),
+        ]
         yield from _requests_with_reply(form, s, row, frame, reply_argument)
     for frame in form.telemetry:
         asks = {"telemetry": frame.id}
-        yield f"{frame.name} is requested", [{"at": 0, **asks}, s.come(30, frame), {"at": 31, **asks}, {"at": 131}]
-        yield f"{frame.name} never comes", [{"at": at, **asks} if not at else {"at": at} for at in range(0, 400, 100)]
+        yield f"{frame.name} is requested", [
+            {"at": 0, **asks},
+            s.come(30, frame),
+            {"at": 31, **asks},
+            {"at": 131},
+        ]
+        yield f"{frame.name} never comes", [
+            {"at": at, **asks} if not at else {"at": at} for at in range(0, 400, 100)
+        ]
     for row in form.telecommands:
         frame = next((row_ for row_ in form.telemetry if row_.id == row.reply), row)
         if frame is not row:
-            yield f"{row.name} is answered as the ICD says", [s.ask(0, row), s.come(30, frame)]
+            yield f"{row.name} is answered as the ICD says", [
+                s.ask(0, row),
+                s.come(30, frame),
+            ]
 
 
 def _requests_with_reply(
     form: Stream, s: Sample, row: StreamRow, frame: StreamRow, reply: dict[str, object]
 ) -> Iterator[tuple[str, Script]]:
     """Yield scripts of a telecommand with a reply that the caller specifies."""
-    other = next((telemetry for telemetry in form.telemetry if telemetry.id != frame.id), frame)
+    other = next(
+        (telemetry for telemetry in form.telemetry if telemetry.id != frame.id), frame
+    )
     untaken, cancel = {"untaken": True}, {"cancel": True}
     bad = bytearray.fromhex(s.come(0, frame)["receive"])
     # Delimited formats end with a delimiter, so a byte in the middle is damaged
     # instead.
     bad[-1 if form.delimited_by in ("length", "none") else len(bad) // 2] ^= 1
-    yield "the reply comes", [s.ask(0, row, **reply), s.come(30, frame), s.come(31, frame), {"at": 500}]
-    yield "another message comes first", [s.ask(0, row, **reply), s.come(5, other), s.come(6, frame)]
+    yield "the reply comes", [
+        s.ask(0, row, **reply),
+        s.come(30, frame),
+        s.come(31, frame),
+        {"at": 500},
+    ]
+    yield "another message comes first", [
+        s.ask(0, row, **reply),
+        s.come(5, other),
+        s.come(6, frame),
+    ]
     yield "the reply is damaged, then right", [
         s.ask(0, row, **reply), {"at": 5, "receive": bad.hex()}, s.come(6, frame), s.come(7, frame), s.come(8, frame),
     ]  # fmt: skip

@@ -32,10 +32,14 @@ class Sample:
         sent, frames = facts.telecommands.values(), facts.telemetry.values()
         acknowledged = [m for m in sent if m.acknowledge and m.kind != CONFIGURATION]
         # Prefer a telecommand that fits into one CAN packet.
-        self.plain: Message = max(acknowledged or sent, key=lambda m: (m.length <= 8, m.length))
+        self.plain: Message = max(
+            acknowledged or sent, key=lambda m: (m.length <= 8, m.length)
+        )
         self.long: Message = max(sent, key=lambda m: m.length)
         self.setting = next((m for m in sent if m.kind == CONFIGURATION), None)
-        self.silent = next((m for m in sent if not m.acknowledge and not m.expects_reset), None)
+        self.silent = next(
+            (m for m in sent if not m.acknowledge and not m.expects_reset), None
+        )
         self.reset = next((m for m in sent if m.expects_reset), None)
         self.wide: Message = max(frames, key=lambda m: m.length)
         self.frame: Message = next((m for m in frames if m.length > 1), self.wide)
@@ -71,7 +75,9 @@ def scripts(facts: Facts) -> Requests:
     if facts.polled and facts.i2c_address is not None:
         for checked in (False, True) if facts.checksum else (False,):
             for why, rows in _i2c(facts, sample, checked):
-                yield f"I2C{' with checksum' * checked}: {why}", _op(I2C, rows, **({"crc": True} if checked else {}))
+                yield f"I2C{' with checksum' * checked}: {why}", _op(
+                    I2C, rows, **({"crc": True} if checked else {})
+                )
     if facts.can:
         for why, rows in _can(facts, sample):
             yield f"CAN: {why}", _op(CAN, rows, address=OURS)
@@ -100,19 +106,41 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
 
     def reply(at: int, message: Message, more: int = 0) -> dict[str, Any]:
         data = s.source.randbytes(message.length + more)
-        return {"at": at, "receive": _line(facts, bytes([message.telemetry_id or 0]) + data)}
+        return {
+            "at": at,
+            "receive": _line(facts, bytes([message.telemetry_id or 0]) + data),
+        }
 
     plain, frame, framing = s.plain, s.frame, need(facts.framing, "uart")
-    other = next((m for m in facts.telecommands.values() if m.acknowledge and m is not plain), plain)
+    other = next(
+        (m for m in facts.telecommands.values() if m.acknowledge and m is not plain),
+        plain,
+    )
     escape = f"{framing.escape:02x}"
     begin, finish = f"{escape}{framing.start:02x}", f"{escape}{framing.end:02x}"
-    yield "a telecommand and its acknowledge", [s.ask(0, plain), ack(30, plain), s.ask(30, plain), ack(40, plain)]
+    yield "a telecommand and its acknowledge", [
+        s.ask(0, plain),
+        ack(30, plain),
+        s.ask(30, plain),
+        ack(40, plain),
+    ]
     for name, code in facts.errors.items():
         if name != "none":
             yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
     yield "refused with a code that has no name", [s.ask(0, plain), ack(30, plain, 200)]
-    yield "the next before the acknowledge", [s.ask(0, plain), s.ask(5, plain), s.request(5, frame), ack(30, plain)]
-    yield "no acknowledge", [s.ask(0, plain), {"at": 99}, {"at": 100}, s.request(101, frame), reply(102, frame)]
+    yield "the next before the acknowledge", [
+        s.ask(0, plain),
+        s.ask(5, plain),
+        s.request(5, frame),
+        ack(30, plain),
+    ]
+    yield "no acknowledge", [
+        s.ask(0, plain),
+        {"at": 99},
+        {"at": 100},
+        s.request(101, frame),
+        reply(102, frame),
+    ]
     yield "no acknowledge, and it may be repeated", [
         s.ask(0, plain, repeat=True), {"at": 100}, {"at": 200}, {"at": 299}, {"at": 300}, {"at": 1000},
     ]  # fmt: skip
@@ -123,19 +151,55 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
     yield "after a late acknowledge another id need not wait", [
         s.ask(0, plain, repeat=True), {"at": 100}, ack(120, plain), s.ask(125, other), ack(130, plain), ack(140, other),
     ]  # fmt: skip
-    yield "an unexpected acknowledge", [ack(0, plain), s.request(1, frame), ack(2, plain), reply(3, frame)]
-    yield "the acknowledge of another telecommand", [s.ask(0, plain), ack(1, other), ack(2, plain)]
+    yield "an unexpected acknowledge", [
+        ack(0, plain),
+        s.request(1, frame),
+        ack(2, plain),
+        reply(3, frame),
+    ]
+    yield "the acknowledge of another telecommand", [
+        s.ask(0, plain),
+        ack(1, other),
+        ack(2, plain),
+    ]
     yield "a frame", [s.request(0, frame), reply(30, frame)]
-    yield "the longest frame and the longest telecommand", [s.request(0, s.wide), reply(90, s.wide), s.ask(91, s.long)]
+    yield "the longest frame and the longest telecommand", [
+        s.request(0, s.wide),
+        reply(90, s.wide),
+        s.ask(91, s.long),
+    ]
     yield "a frame that comes in pieces, after noise", [
         s.request(0, frame), {"at": 1, "receive": "0055" + reply(1, frame)["receive"][:6]}, {"at": 2},
         {"at": 3, "receive": "00" * (frame.length - 1) + finish},
     ]  # fmt: skip
-    yield "a frame that comes at the third try", [s.request(0, frame), {"at": 100}, {"at": 200}, reply(250, frame)]
-    yield "a frame that never comes", [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}]
-    yield "time stands still, then jumps", [s.request(0, frame), {"at": 5000}, {"at": 5000}, reply(5001, frame)]
-    yield "a frame that is too long", [s.request(0, frame), reply(1, frame, 1), reply(2, frame)]
-    yield "a frame that was not asked for", [s.request(0, frame), reply(1, s.wide), reply(2, frame)]
+    yield "a frame that comes at the third try", [
+        s.request(0, frame),
+        {"at": 100},
+        {"at": 200},
+        reply(250, frame),
+    ]
+    yield "a frame that never comes", [
+        s.request(0, frame),
+        {"at": 100},
+        {"at": 200},
+        {"at": 300},
+    ]
+    yield "time stands still, then jumps", [
+        s.request(0, frame),
+        {"at": 5000},
+        {"at": 5000},
+        reply(5001, frame),
+    ]
+    yield "a frame that is too long", [
+        s.request(0, frame),
+        reply(1, frame, 1),
+        reply(2, frame),
+    ]
+    yield "a frame that was not asked for", [
+        s.request(0, frame),
+        reply(1, s.wide),
+        reply(2, frame),
+    ]
     yield "errors in the stream", [
         s.request(0, frame), {"at": 1, "receive": f"{begin}90{escape}00"},
         {"at": 2, "receive": f"{begin}{finish}{begin}90"}, reply(3, frame),
@@ -155,14 +219,32 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         s.request(500, frame), reply(501, frame),
     ]  # fmt: skip
     if s.setting:
-        yield "a setting is repeated", [s.ask(0, s.setting), {"at": 100}, ack(110, s.setting)]
+        yield "a setting is repeated", [
+            s.ask(0, s.setting),
+            {"at": 100},
+            ack(110, s.setting),
+        ]
     if s.silent:
-        yield "not acknowledged", [s.ask(0, s.silent), s.ask(0, s.silent), s.request(0, frame), reply(9, frame)]
+        yield "not acknowledged", [
+            s.ask(0, s.silent),
+            s.ask(0, s.silent),
+            s.request(0, frame),
+            reply(9, frame),
+        ]
     if s.reset:
         yield "a reset", [s.ask(0, s.reset), ack(5, s.reset)]
     unknown = next(id for id in range(256) if id not in facts.telecommands)
-    yield "an unknown id", [{"at": 0, "telecommand": unknown, "bytes": ""}, {"at": 0, "telemetry": 0}]
-    yield "a wrong length", [{"at": 0, "telecommand": plain.telecommand_id, "bytes": "00" * (plain.length + 1)}]
+    yield "an unknown id", [
+        {"at": 0, "telecommand": unknown, "bytes": ""},
+        {"at": 0, "telemetry": 0},
+    ]
+    yield "a wrong length", [
+        {
+            "at": 0,
+            "telecommand": plain.telecommand_id,
+            "bytes": "00" * (plain.length + 1),
+        }
+    ]
     if facts.files and UART in facts.files.packet_ids:
         data = bytes([facts.files.packet_ids[UART]]) + s.source.randbytes(
             facts.files.counter_bytes + facts.files.packet_bytes
@@ -181,36 +263,85 @@ def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]
         return
     bad = {"receive": _acknowledge(facts, s.plain, code)}
     good = {"receive": _acknowledge(facts, s.plain)}
-    yield "sent again after a wrong checksum", [s.ask(0, s.plain), {"at": 1, **bad}, {"at": 2, **good}]
-    yield "always a wrong checksum", [s.ask(0, s.plain), *({"at": at, **bad} for at in range(1, 5))]
+    yield "sent again after a wrong checksum", [
+        s.ask(0, s.plain),
+        {"at": 1, **bad},
+        {"at": 2, **good},
+    ]
+    yield "always a wrong checksum", [
+        s.ask(0, s.plain),
+        *({"at": at, **bad} for at in range(1, 5)),
+    ]
 
 
-def _checked_frames(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _checked_frames(
+    facts: Facts, s: Sample
+) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     id, data = s.frame.telemetry_id or 0, s.source.randbytes(s.frame.length)
-    right, bare = i2c.telecommand(facts, id, data, True), i2c.telecommand(facts, id, data, False)
+    right, bare = i2c.telecommand(facts, id, data, True), i2c.telecommand(
+        facts, id, data, False
+    )
     wrong = right[:-1] + bytes([right[-1] ^ 1])
-    good, bad, missing = ({"receive": _line(facts, checked)} for checked in (right, wrong, bare))
+    good, bad, missing = (
+        {"receive": _line(facts, checked)} for checked in (right, wrong, bare)
+    )
     yield "a frame with its checksum", [s.request(0, s.frame), {"at": 1, **good}]
-    yield "a wrong checksum, then the right one", [s.request(0, s.frame), {"at": 1, **bad}, {"at": 2, **good}]
-    yield "a frame without its checksum, then with it", [s.request(0, s.frame), {"at": 1, **missing}, {"at": 2, **good}]
-    yield "always a wrong checksum", [s.request(0, s.frame), *({"at": at, **bad} for at in (1, 101, 201)), {"at": 301}]
-    longer = {"receive": _line(facts, bare + bytes(facts.checksum.bytes + 1 if facts.checksum else 1))}
-    yield "more than a checksum behind a frame", [s.request(0, s.frame), {"at": 1, **longer}, {"at": 2, **good}]
+    yield "a wrong checksum, then the right one", [
+        s.request(0, s.frame),
+        {"at": 1, **bad},
+        {"at": 2, **good},
+    ]
+    yield "a frame without its checksum, then with it", [
+        s.request(0, s.frame),
+        {"at": 1, **missing},
+        {"at": 2, **good},
+    ]
+    yield "always a wrong checksum", [
+        s.request(0, s.frame),
+        *({"at": at, **bad} for at in (1, 101, 201)),
+        {"at": 301},
+    ]
+    longer = {
+        "receive": _line(
+            facts, bare + bytes(facts.checksum.bytes + 1 if facts.checksum else 1)
+        )
+    }
+    yield "more than a checksum behind a frame", [
+        s.request(0, s.frame),
+        {"at": 1, **longer},
+        {"at": 2, **good},
+    ]
 
 
-def _i2c(facts: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def _i2c(
+    facts: Facts, s: Sample, checked: bool
+) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     polled = facts.polled
     assert polled
-    checked_frames = bool(checked and facts.checksum and I2C in facts.checksum.telemetry_buses)
+    checked_frames = bool(
+        checked and facts.checksum and I2C in facts.checksum.telemetry_buses
+    )
 
     def frame(message: Message, data: bytes) -> str:
-        return i2c.telecommand(facts, message.telemetry_id or 0, data, checked_frames)[1:].hex()
+        return i2c.telecommand(facts, message.telemetry_id or 0, data, checked_frames)[
+            1:
+        ].hex()
 
-    def state(at: int, message: Message, processed: int, code: int = 0) -> dict[str, Any]:
-        raw: dict[str, Any] = {field.name: 0 for field in frame_fields(polled.message.layout, facts.node.orders)}
+    def state(
+        at: int, message: Message, processed: int, code: int = 0
+    ) -> dict[str, Any]:
+        raw: dict[str, Any] = {
+            field.name: 0
+            for field in frame_fields(polled.message.layout, facts.node.orders)
+        }
         raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
         raw[polled.error], raw[polled.parameter] = code, 7 if code else 0
-        return {"at": at, "receive": frame(polled.message, codec.encode(facts.node, polled.message, raw))}
+        return {
+            "at": at,
+            "receive": frame(
+                polled.message, codec.encode(facts.node, polled.message, raw)
+            ),
+        }
 
     plain, wide = s.plain, s.frame
     other = next((m for m in facts.telecommands.values() if m is not plain), plain)
@@ -222,7 +353,12 @@ def _i2c(facts: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
         s.ask(0, plain), written, {"at": 11}, state(12, other, 1), {"at": 22}, state(23, plain, 1),
     ]  # fmt: skip
     for name, code in facts.errors.items():
-        yield f"outcome {name}", [s.ask(0, plain), written, {"at": 11}, state(12, plain, 1, code)]
+        yield f"outcome {name}", [
+            s.ask(0, plain),
+            written,
+            {"at": 11},
+            state(12, plain, 1, code),
+        ]
     yield "never processed", [
         s.ask(0, plain), written, *(row for at in range(11, 100, 11) for row in ({"at": at}, state(at + 1, plain, 0))),
     ]  # fmt: skip
@@ -246,17 +382,31 @@ def _i2c(facts: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
         {"at": 220},
         {"at": 320},
     ]
-    yield "a frame", [s.request(0, wide), {"at": 1, "receive": frame(wide, bytes(range(wide.length)))}]
+    yield "a frame", [
+        s.request(0, wide),
+        {"at": 1, "receive": frame(wide, bytes(range(wide.length)))},
+    ]
     yield "a frame of the wrong length, then the right one", [
         s.request(0, wide), {"at": 1, "receive": "00"}, {"at": 11}, {"at": 12, "receive": frame(wide, bytes(wide.length))},
     ]  # fmt: skip
     if checked_frames:
         broken = bytes([1]).hex() + frame(wide, bytes(wide.length))[2:]
-        yield "a frame with a wrong checksum", [s.request(0, wide), *({"at": at, "receive": broken} for at in (1, 12))]
+        yield "a frame with a wrong checksum", [
+            s.request(0, wide),
+            *({"at": at, "receive": broken} for at in (1, 12)),
+        ]
     if s.silent:
-        yield "not acknowledged", [s.ask(0, s.silent), written, s.ask(2, s.silent), {"at": 3, "receive": ""}]
+        yield "not acknowledged", [
+            s.ask(0, s.silent),
+            written,
+            s.ask(2, s.silent),
+            {"at": 3, "receive": ""},
+        ]
     yield "a transfer that was not asked for", [{"at": 0, "receive": "00"}]
-    second = next((m for m in facts.telecommands.values() if m.acknowledge and m is not plain), other)
+    second = next(
+        (m for m in facts.telecommands.values() if m.acknowledge and m is not plain),
+        other,
+    )
     quiet = [
         {"at": 100},
         {"at": 110},
@@ -264,9 +414,18 @@ def _i2c(facts: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
         {"at": 220},
         {"at": 320},
     ]  # until all attempts of a request are used
-    near = next((m for m in facts.telemetry.values() if m is not wide and m.length == wide.length), wide)
+    near = next(
+        (
+            m
+            for m in facts.telemetry.values()
+            if m is not wide and m.length == wide.length
+        ),
+        wide,
+    )
     begin = 320 if near is not wide else 420  # a request of the same id is delayed
-    old, new = ({"receive": frame(near, bytes((value,)) * near.length)} for value in (1, 2))
+    old, new = (
+        {"receive": frame(near, bytes((value,)) * near.length)} for value in (1, 2)
+    )
     yield "frames after the time-out of their request do not belong to the next", [
         s.request(0, wide), *quiet, s.request(begin, near), *({"at": begin + n, **old} for n in (1, 2, 3)),
         {"at": begin + 4, **new},
@@ -301,25 +460,50 @@ def _can(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     assert facts.can
     node = facts.can.node_address
 
-    def come(at: int, kind: str, id: int | None, data: bytes = b"", source: int = node) -> list[dict[str, Any]]:
+    def come(
+        at: int, kind: str, id: int | None, data: bytes = b"", source: int = node
+    ) -> list[dict[str, Any]]:
         packets = can.split(facts, can.Message(kind, id or 0, source, OURS, data))
-        return [{"at": at, "receive": {"id": p.id, "bytes": p.data.hex()}} for p in packets]
+        return [
+            {"at": at, "receive": {"id": p.id, "bytes": p.data.hex()}} for p in packets
+        ]
 
     plain, frame, wide = s.plain, s.frame, s.wide
     id, frame_id = plain.telecommand_id, frame.telemetry_id
-    yield "a telecommand and its acknowledge", [s.ask(0, plain), *come(5, "acknowledge", id)]
-    yield "a long telecommand", [s.ask(0, s.long), *come(5, "acknowledge", s.long.telecommand_id)]
+    yield "a telecommand and its acknowledge", [
+        s.ask(0, plain),
+        *come(5, "acknowledge", id),
+    ]
+    yield "a long telecommand", [
+        s.ask(0, s.long),
+        *come(5, "acknowledge", s.long.telecommand_id),
+    ]
     yield "refused", [s.ask(0, plain), *come(5, "refusal", id)]
-    yield "a request refused", [s.request(0, frame), *come(5, "request_refusal", frame_id)]
-    yield "a frame", [s.request(0, frame), *come(5, "reply", frame_id, bytes(frame.length))]
+    yield "a request refused", [
+        s.request(0, frame),
+        *come(5, "request_refusal", frame_id),
+    ]
+    yield "a frame", [
+        s.request(0, frame),
+        *come(5, "reply", frame_id, bytes(frame.length)),
+    ]
     data = s.source.randbytes(wide.length)
     packets = come(5, "reply", wide.telemetry_id, data)
     yield "a long frame", [s.request(0, wide), *packets]
     if len(packets) > 1:
         yield "a long frame, turned round", [s.request(0, wide), *packets[::-1]]
         repeated = [{**row, "at": 105} for row in packets]
-        yield "a lost packet, and the repeated frame", [s.request(0, wide), *packets[1:], {"at": 100}, *repeated]
-    yield "a frame that is too short", [s.request(0, frame), *come(5, "reply", frame_id, bytes(1)), {"at": 100}]
+        yield "a lost packet, and the repeated frame", [
+            s.request(0, wide),
+            *packets[1:],
+            {"at": 100},
+            *repeated,
+        ]
+    yield "a frame that is too short", [
+        s.request(0, frame),
+        *come(5, "reply", frame_id, bytes(1)),
+        {"at": 100},
+    ]
     yield "from another node", [
         s.ask(0, plain),
         *come(5, "acknowledge", id, source=node ^ 2),

@@ -30,7 +30,13 @@ def requests(facts: Facts, source: Random) -> Requests:
 
 
 def _encode(direction: str, id: int, data: bytes, **values: int) -> dict[str, object]:
-    return {"op": "stream_encode", "direction": direction, "id": id, "bytes": data.hex(), "values": values}
+    return {
+        "op": "stream_encode",
+        "direction": direction,
+        "id": id,
+        "bytes": data.hex(),
+        "values": values,
+    }
 
 
 def _unknown(form: Stream, direction: str) -> int:
@@ -47,7 +53,9 @@ def _data(row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "ones", b"\xff" * row.most
     yield "what delimiters are made of", bytes(source.choices(_MARKERS, k=row.most))
     if row.most > 2:
-        yield "zeros at the end", source.randbytes(row.most // 2) + bytes(row.most - row.most // 2)
+        yield "zeros at the end", source.randbytes(row.most // 2) + bytes(
+            row.most - row.most // 2
+        )
         yield "one byte, then zeros", b"\x01" + bytes(row.most - 1)
 
 
@@ -59,32 +67,50 @@ def _encoded(form: Stream, direction: str, source: Random) -> Requests:
             line = stream.encode(form, direction, row.id, data)
             yield f"{row.name}: {why}, and back", _events(direction, [line])
         for size in {row.least - 1, row.most + 1} - {-1}:
-            yield f"{row.name}: a length that it does not have", _encode(direction, row.id, bytes(size))
+            yield f"{row.name}: a length that it does not have", _encode(
+                direction, row.id, bytes(size)
+            )
     for row in form.rows(direction)[:1]:
         data = source.randbytes(row.most)
         for field in form.fields:
             if field.role in GIVEN:
                 for value in sorted({0, 1, field.mask // 3, field.mask}):
-                    yield f"{field.role} {value}", _encode(direction, row.id, data, **{field.role: value})
-                    line = stream.encode(form, direction, row.id, data, {field.role: value})
+                    yield f"{field.role} {value}", _encode(
+                        direction, row.id, data, **{field.role: value}
+                    )
+                    line = stream.encode(
+                        form, direction, row.id, data, {field.role: value}
+                    )
                     yield f"{field.role} {value}, and back", _events(direction, [line])
                 if field.bits < 32:
                     too_large = {field.role: field.mask + 1}
-                    yield f"a {field.role} that does not fit", _encode(direction, row.id, data, **too_large)
+                    yield f"a {field.role} that does not fit", _encode(
+                        direction, row.id, data, **too_large
+                    )
         absent = next((role for role in GIVEN if form.of(role) is None), None)
         if absent:
-            yield "a value that no field takes", _encode(direction, row.id, data, **{absent: 7})
+            yield "a value that no field takes", _encode(
+                direction, row.id, data, **{absent: 7}
+            )
 
 
 def _events(direction: str, chunks: list[bytes], **more: int) -> dict[str, object]:
-    return {"op": "stream_events", "direction": direction, "chunks": [chunk.hex() for chunk in chunks], **more}
+    return {
+        "op": "stream_events",
+        "direction": direction,
+        "chunks": [chunk.hex() for chunk in chunks],
+        **more,
+    }
 
 
 def _streams(form: Stream, direction: str, source: Random) -> Requests:
     """Yield streams that are cut, noisy, damaged or truncated."""
     rows = form.rows(direction)
     short = min(rows, key=lambda row: row.most)
-    lines = [_line(form, direction, row, source, number) for number, row in enumerate(rows[:6])]
+    lines = [
+        _line(form, direction, row, source, number)
+        for number, row in enumerate(rows[:6])
+    ]
     good = _line(form, direction, short, source, 0)
     if form.delimited_by == PACKET:
         yield "packets, one after the other", _events(direction, lines)
@@ -95,10 +121,19 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         return
     streams = [
         ("messages, one after the other", b"".join(lines)),
-        ("noise before, between and after", b"\x00\xff\x7f" + good + b"noise" + good + b"\x55"),
+        (
+            "noise before, between and after",
+            b"\x00\xff\x7f" + good + b"noise" + good + b"\x55",
+        ),
         ("random bytes before", source.randbytes(300) + good + good),
-        ("random bytes rich in delimiters before", bytes(source.choices(_MARKERS, k=300)) + good + good),
-        ("the header of a message, then whole ones", good[: max(1, form.header_bytes)] + good + good),
+        (
+            "random bytes rich in delimiters before",
+            bytes(source.choices(_MARKERS, k=300)) + good + good,
+        ),
+        (
+            "the header of a message, then whole ones",
+            good[: max(1, form.header_bytes)] + good + good,
+        ),
         ("a message that is cut off, then whole ones", good[:-1] + good + good + good),
         ("a message that has only begun", good + good[: len(good) // 2]),
         *((why, damaged + good + good) for why, damaged in _damaged(good, source)),
@@ -121,10 +156,14 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         limit = form.header_bytes + short.most + form.trailer_bytes + more
         if limit >= form.header_bytes + form.trailer_bytes:
             why = "that it just fits" if more == 0 else "too small by one"
-            yield f"a buffer {why}", _events(direction, [good + lines[-1] + good + good], limit=limit)
+            yield f"a buffer {why}", _events(
+                direction, [good + lines[-1] + good + good], limit=limit
+            )
 
 
-def _line(form: Stream, direction: str, row: StreamRow, source: Random, number: int) -> bytes:
+def _line(
+    form: Stream, direction: str, row: StreamRow, source: Random, number: int
+) -> bytes:
     """Return the transmitted bytes of a message with a sequence number."""
     values = {"sequence": number} if form.of("sequence") else {}
     return stream.encode(form, direction, row.id, source.randbytes(row.most), values)
@@ -132,14 +171,21 @@ def _line(form: Stream, direction: str, row: StreamRow, source: Random, number: 
 
 def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
     """Yield the message with one error each."""
-    for at in sorted({0, 1, 2, 3, 4, len(good) // 2, len(good) - 2, len(good) - 1} & set(range(len(good)))):
+    for at in sorted(
+        {0, 1, 2, 3, 4, len(good) // 2, len(good) - 2, len(good) - 1}
+        & set(range(len(good)))
+    ):
         flipped = good[at] ^ 1 << source.randrange(8)
         yield f"byte {at} is damaged", good[:at] + bytes([flipped]) + good[at + 1 :]
     yield "a byte is lost", good[: len(good) // 2] + good[len(good) // 2 + 1 :]
-    yield "a byte comes twice", good[: len(good) // 2] + good[max(0, len(good) // 2 - 1) :]
+    yield "a byte comes twice", good[: len(good) // 2] + good[
+        max(0, len(good) // 2 - 1) :
+    ]
 
 
-def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: bytes) -> Iterator[tuple[str, bytes]]:
+def _nested(
+    form: Stream, direction: str, rows: tuple[StreamRow, ...], good: bytes
+) -> Iterator[tuple[str, bytes]]:
     """Yield a message within the data of another message, which is complete, damaged or
     truncated.
     """
@@ -148,17 +194,26 @@ def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: byt
         return
     line = stream.encode(form, direction, outer.id, (good * outer.most)[: outer.most])
     yield "a message within another one", line + good
-    yield "a message within a damaged one", line[:-1] + bytes([line[-1] ^ 0x10]) + good + good
+    yield "a message within a damaged one", line[:-1] + bytes(
+        [line[-1] ^ 0x10]
+    ) + good + good
     yield "messages within a truncated message", line[:-3] + good + good
 
 
-def _undefined_messages(form: Stream, direction: str, row: StreamRow, good: bytes) -> Iterator[tuple[str, bytes]]:
+def _undefined_messages(
+    form: Stream, direction: str, row: StreamRow, good: bytes
+) -> Iterator[tuple[str, bytes]]:
     """Yield messages with an unknown id or length, encoded with a packet format that
     defines them.
     """
     place = form.of("id")
     id = next(
-        (candidate for candidate in range(1, 1000) if all(candidate != row.id for row in form.rows(direction))), 0
+        (
+            candidate
+            for candidate in range(1, 1000)
+            if all(candidate != row.id for row in form.rows(direction))
+        ),
+        0,
     )
     variants = []
     if place and id <= place.mask:
@@ -177,7 +232,9 @@ def _undefined_messages(form: Stream, direction: str, row: StreamRow, good: byte
         yield f"a message {why}", good + line + good
 
 
-def _gaps(form: Stream, direction: str, row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
+def _gaps(
+    form: Stream, direction: str, row: StreamRow, source: Random
+) -> Iterator[tuple[str, bytes]]:
     place = form.of("sequence")
     if place is None:
         return
@@ -188,7 +245,13 @@ def _gaps(form: Stream, direction: str, row: StreamRow, source: Random) -> Itera
         ("the sequence restarts", (7, 0, 1)),
     ):
         fitting = [number & place.mask for number in numbers]
-        yield why, b"".join(_line(form, direction, row, source, number) for number in fitting)
+        yield why, b"".join(
+            _line(form, direction, row, source, number) for number in fitting
+        )
     sequence_rows = form.rows(direction)[:2]
-    turns = [_line(form, direction, row_, source, number) for number in (1, 2, 3) for row_ in sequence_rows]
+    turns = [
+        _line(form, direction, row_, source, number)
+        for number in (1, 2, 3)
+        for row_ in sequence_rows
+    ]
     yield "messages in turn", b"".join(turns)

@@ -14,7 +14,9 @@ from icdgen.vectors.wire import Requests
 def requests(facts: Facts, source: Random) -> Requests:
     """Yield requests on packed times, hole maps and the index file."""
     if facts.time:
-        bits, some = (1 << bit for bit in range(32)), (source.getrandbits(32) for _ in range(20))
+        bits, some = (1 << bit for bit in range(32)), (
+            source.getrandbits(32) for _ in range(20)
+        )
         for value in (0, 0xFFFFFFFF, 0x00210000, *bits, *some):
             yield f"{value:08x}", {"op": "dos_time", "value": value}
         dates = [
@@ -23,33 +25,77 @@ def requests(facts: Facts, source: Random) -> Requests:
             (1979, 12, 31, 0, 0, 0), (2108, 1, 1, 0, 0, 0), (2100, 2, 29, 0, 0, 0), (2021, 4, 31, 0, 0, 0),
             (2021, 0, 1, 0, 0, 0), (2021, 13, 1, 0, 0, 0), (2021, 1, 0, 0, 0, 0), (2021, 1, 1, 24, 0, 0),
             (2021, 1, 1, 0, 60, 0), (2021, 1, 1, 0, 0, 60),
-            # several errors at once: nonexistent parts are reported before unrepresentable ones, each from the year on
+            # several errors at once: nonexistent parts are reported before
+            # unrepresentable ones, each from the year on
             (2108, 1, 1, 24, 60, 0), (1979, 13, 32, 0, 0, 0), (2021, 2, 30, 0, 0, 60), (2108, 1, 1, 23, 0, 0),
         ]  # fmt: skip
         for date in dates:
-            yield "a date", {"op": "dos_time", **dict(zip(times.PARTS, date, strict=True))}
+            yield "a date", {
+                "op": "dos_time",
+                **dict(zip(times.PARTS, date, strict=True)),
+            }
     if facts.hole_map and facts.files:
         most, first = facts.hole_map.bytes * 8, facts.files.first_packet
         for count in (0, 1, 3, 8, 9, most - 1, most):
             every = range(first, first + count)
-            for received in ([], list(every), [n for n in every if n % 3], source.sample(every, count // 2)):
-                yield f"{count} packets", {"op": "hole_map", "packets": count, "received": received}
-        yield "too many packets", {"op": "hole_map", "packets": most + 1, "received": []}
-        yield "a packet beyond the end", {"op": "hole_map", "packets": 3, "received": [first + 3]}
+            for received in (
+                [],
+                list(every),
+                [n for n in every if n % 3],
+                source.sample(every, count // 2),
+            ):
+                yield f"{count} packets", {
+                    "op": "hole_map",
+                    "packets": count,
+                    "received": received,
+                }
+        yield "too many packets", {
+            "op": "hole_map",
+            "packets": most + 1,
+            "received": [],
+        }
+        yield "a packet beyond the end", {
+            "op": "hole_map",
+            "packets": 3,
+            "received": [first + 3],
+        }
         for count in (0, 5, most):
-            yield "any map", {"op": "hole_map", "packets": count, "bytes": source.randbytes(facts.hole_map.bytes).hex()}
+            yield "any map", {
+                "op": "hole_map",
+                "packets": count,
+                "bytes": source.randbytes(facts.hole_map.bytes).hex(),
+            }
         yield "a map that is too short", {"op": "hole_map", "packets": 1, "bytes": "00"}
     if facts.index:
         index = facts.index
         sizes = {role: place.bytes for role, place in index.fields.items()}
         entries: list[dict[str, Any]] = [
-            {r: source.randbytes(n).hex() if r == "meta" else source.getrandbits(8 * n) for r, n in sizes.items()}
+            {
+                r: (
+                    source.randbytes(n).hex()
+                    if r == "meta"
+                    else source.getrandbits(8 * n)
+                )
+                for r, n in sizes.items()
+            }
             for _ in range(3)
         ]
-        index_entries = [reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])}) for e in entries]
+        index_entries = [
+            reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])})
+            for e in entries
+        ]
         data = reference.write_index(facts, index_entries)
         yield "three entries", {"op": "index_encode", "entries": entries}
         for size in (0, 1, index.entry_bytes, len(data) - 1, len(data)):
-            yield f"{size} of {len(data)} bytes", {"op": "index_decode", "bytes": data[:size].hex()}
-        yield "meta-data that are too short", {"op": "index_encode", "entries": [{**entries[0], "meta": "00"}]}
-        yield "a number that does not fit", {"op": "index_encode", "entries": [{**entries[0], "counter": 256}]}
+            yield f"{size} of {len(data)} bytes", {
+                "op": "index_decode",
+                "bytes": data[:size].hex(),
+            }
+        yield "meta-data that are too short", {
+            "op": "index_encode",
+            "entries": [{**entries[0], "meta": "00"}],
+        }
+        yield "a number that does not fit", {
+            "op": "index_encode",
+            "entries": [{**entries[0], "counter": 256}],
+        }

@@ -15,9 +15,14 @@ def masks(facts: Facts) -> list[bytes]:
     # A frame shorter than its slot is followed by fill bytes.
     short = [bit for bit, row in layout.bits.items() if row.length < layout.slot_bytes]
     free = [bit for bit in range(layout.size * 8) if bit not in layout.bits]
-    single = [1 << bit for bit in (*sorted(layout.bits)[::7], *short, *free[:1], *free[-1:])]
+    single = [
+        1 << bit for bit in (*sorted(layout.bits)[::7], *short, *free[:1], *free[-1:])
+    ]
     some = sum(1 << bit for bit in (*sorted(layout.bits)[1:20:3], *short, *free[:1]))
-    return [number.to_bytes(layout.size, "little") for number in (0, *single, some, (1 << 8 * layout.size) - 1)]
+    return [
+        number.to_bytes(layout.size, "little")
+        for number in (0, *single, some, (1 << 8 * layout.size) - 1)
+    ]
 
 
 def requests(facts: Facts, source: Random) -> Requests:
@@ -29,25 +34,55 @@ def requests(facts: Facts, source: Random) -> Requests:
         slots = layout.selected(mask)
         data = [[source.randbytes(slot.length) for slot in slots] for _ in range(2)]
         if facts.log_file:
-            most = [(1 << 8 * size) - 1 for _, size in (facts.log_file.seconds, facts.log_file.milliseconds)]
+            most = [
+                (1 << 8 * size) - 1
+                for _, size in (facts.log_file.seconds, facts.log_file.milliseconds)
+            ]
             times = [(0, 0), (min(0xFFFFFFFF, most[0]), min(999, most[1]))]
             entries = [
-                {"seconds": s, "milliseconds": ms, "frames": [f.hex() for f in slots_data]}
+                {
+                    "seconds": s,
+                    "milliseconds": ms,
+                    "frames": [f.hex() for f in slots_data],
+                }
                 for (s, ms), slots_data in zip(times, data, strict=True)
             ]
             file = log_files.encode(
-                facts, mask, [(s, ms, slots_data) for (s, ms), slots_data in zip(times, data, strict=True)]
+                facts,
+                mask,
+                [
+                    (s, ms, slots_data)
+                    for (s, ms), slots_data in zip(times, data, strict=True)
+                ],
             )
-            yield "two entries", {"op": "log_encode", "mask": mask.hex(), "entries": entries}
-            for size in sorted({0, len(mask) - 1, len(mask), len(mask) + 1, len(file) - 1, len(file)}):
-                yield f"{size} of {len(file)} bytes", {"op": "log_decode", "bytes": file[:size].hex()}
+            yield "two entries", {
+                "op": "log_encode",
+                "mask": mask.hex(),
+                "entries": entries,
+            }
+            for size in sorted(
+                {0, len(mask) - 1, len(mask), len(mask) + 1, len(file) - 1, len(file)}
+            ):
+                yield f"{size} of {len(file)} bytes", {
+                    "op": "log_decode",
+                    "bytes": file[:size].hex(),
+                }
         if facts.log_message:
             message = log_files.encode_message(facts, mask, data[0])
             frames = [frame.hex() for frame in data[0]]
-            yield "an unsolicited log", {"op": "log_message_encode", "mask": mask.hex(), "frames": frames}
+            yield "an unsolicited log", {
+                "op": "log_message_encode",
+                "mask": mask.hex(),
+                "frames": frames,
+            }
             for size in (len(message), len(message) - 1, 3):
-                yield f"{size} of {len(message)} bytes", {"op": "log_message_decode", "bytes": message[:size].hex()}
-    mask_of_one = (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()
+                yield f"{size} of {len(message)} bytes", {
+                    "op": "log_message_decode",
+                    "bytes": message[:size].hex(),
+                }
+    mask_of_one = (
+        (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()
+    )
     invalid = [
         ("a frame too few", []),
         ("a frame too many", ["00" * layout.slot_bytes] * 2),

@@ -23,9 +23,17 @@ class FileNode:
     or acknowledge is lost.
     """
 
-    def __init__(self, facts: Facts, bus: str, source: Random, loss: float = 0.0) -> None:
+    def __init__(
+        self, facts: Facts, bus: str, source: Random, loss: float = 0.0
+    ) -> None:
         assert facts.files and facts.hole_map and facts.crc16
-        self.facts, self.form, self.bus, self.source, self.loss = facts, facts.files, bus, source, loss
+        self.facts, self.form, self.bus, self.source, self.loss = (
+            facts,
+            facts.files,
+            bus,
+            source,
+            loss,
+        )
         self.files: dict[tuple[int, int], bytes] = {}
         self.pointer = 0
         self.block = b""  # loaded for download
@@ -36,8 +44,14 @@ class FileNode:
         self.uploaded: dict[int, bytes] = {}
         self.program = b""
         self.polls = 0  # remaining polls until the node reports completion
-        self.steps = {step.message.ids[0]: (name, step) for name, step in self.form.steps.items()}
-        self.holes = {id: n for n, m in enumerate(facts.hole_map.messages) for id in (m.telecommand_id, m.telemetry_id)}
+        self.steps = {
+            step.message.ids[0]: (name, step) for name, step in self.form.steps.items()
+        }
+        self.holes = {
+            id: n
+            for n, m in enumerate(facts.hole_map.messages)
+            for id in (m.telecommand_id, m.telemetry_id)
+        }
 
     def lost(self) -> bool:
         return self.source.random() < self.loss
@@ -47,7 +61,10 @@ class FileNode:
         if request.kind == TELECOMMAND:
             acknowledged = self.facts.telecommands[request.id].acknowledge
             if acknowledged and self.lost():  # either the request or its acknowledge
-                return [*(self._telecommand(request) if self.lost() else ()), {"event": "timeout"}]
+                return [
+                    *(self._telecommand(request) if self.lost() else ()),
+                    {"event": "timeout"},
+                ]
             if not acknowledged and self.lost():
                 # An unacknowledged telecommand always succeeds for the client, even if
                 # it is lost.
@@ -83,25 +100,45 @@ class FileNode:
         elif name == "upload.packet":
             self.uploaded[raw["number"] - self.form.first_packet] = raw["bytes"]
         elif name == "upload.finalize":
-            data = b"".join(self.uploaded[n] for n in range(len(self.uploaded)))[: raw["length"]]
-            self.program = self.program[: raw["offset"]].ljust(raw["offset"], b"\xff") + data
+            data = b"".join(self.uploaded[n] for n in range(len(self.uploaded)))[
+                : raw["length"]
+            ]
+            self.program = (
+                self.program[: raw["offset"]].ljust(raw["offset"], b"\xff") + data
+            )
             self.polls = 1
         return []
 
     def _packet(self, position: int) -> bytes:
         size = self.form.packet_bytes
         data = self.block[position * size : (position + 1) * size].ljust(size, b"\xee")
-        return self.facts.bytes_of(self.form.first_packet + position, self.form.counter_bytes) + data
+        return (
+            self.facts.bytes_of(
+                self.form.first_packet + position, self.form.counter_bytes
+            )
+            + data
+        )
 
     def _burst(self, everything: bool) -> list[dict[str, Any]]:
         count = self.facts.packets_of(len(self.block))
         first = self.form.first_packet
-        lost = range(count) if everything else [n - first for n in files.missing(self.facts, count, self.map)]
+        lost = (
+            range(count)
+            if everything
+            else [n - first for n in files.missing(self.facts, count, self.map)]
+        )
         if self.bus != UART:
             self.queue = list(lost)
             return []
-        sent = [(n, self._packet(n)[self.form.counter_bytes :]) for n in lost if not self.lost()]
-        return [{"event": "packet", "number": first + n, "bytes": data.hex()} for n, data in sent]
+        sent = [
+            (n, self._packet(n)[self.form.counter_bytes :])
+            for n in lost
+            if not self.lost()
+        ]
+        return [
+            {"event": "packet", "number": first + n, "bytes": data.hex()}
+            for n, data in sent
+        ]
 
     def _telemetry(self, id: int) -> bytes:
         if id in self.holes:
@@ -128,14 +165,30 @@ class FileNode:
         if step == "list.information":
             return {"busy": 1} if busy else self._listed()
         if step == "download.ready":
-            return {} if busy else {"ready": 1, "checksum": self._sum(self.block), "length": len(self.block)}
+            return (
+                {}
+                if busy
+                else {
+                    "ready": 1,
+                    "checksum": self._sum(self.block),
+                    "length": len(self.block),
+                }
+            )
         if step == "upload.checksum":
-            return {"checksum": self._sum(b"".join(self.uploaded[n] for n in sorted(self.uploaded)))}
+            return {
+                "checksum": self._sum(
+                    b"".join(self.uploaded[n] for n in sorted(self.uploaded))
+                )
+            }
         return {"busy": busy}
 
     def _listed(self) -> dict[str, Any]:
         if self.pointer >= len(self.files):
             return {}
         (type_, counter), content = list(self.files.items())[self.pointer]
-        about = {"size": len(content), "time": 0x51634000, "checksum": self._sum(content)}
+        about = {
+            "size": len(content),
+            "time": 0x51634000,
+            "checksum": self._sum(content),
+        }
         return {"type": type_, "counter": counter, **about}

@@ -18,7 +18,10 @@ def scripts(facts: Facts) -> Requests:
 
     An operation that the ICD does not describe is refused.
     """
-    forms = {"program_copy": facts.program_copy, "program_information": facts.program_information}
+    forms = {
+        "program_copy": facts.program_copy,
+        "program_information": facts.program_information,
+    }
     for name, form in forms.items():
         if form:
             yield from _ends(facts, name, form)
@@ -47,15 +50,32 @@ def _allowed(name: str, form: Operation) -> Requests:
 def _ends(facts: Facts, name: str, form: Operation) -> Requests:
     step, pause, end = form.progress, form.poll_interval, 1 + form.timeout
     program = form.programs[0] if form.programs else 1
-    bits = {field.name: field.bits for field in frame_fields(step.message.layout, facts.node.orders)}
+    bits = {
+        field.name: field.bits
+        for field in frame_fields(step.message.layout, facts.node.orders)
+    }
     begin: Script = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
     information = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
 
     def row(at: int, done: bool, **values: int) -> dict[str, Any]:
         """Return the row of a progress frame with these values by role."""
-        values_by_role = {"busy": int(not done), "ready": int(done), "program": program, **values}
-        frame_values = {role: values_by_role.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
-        return {"at": at, "event": {"event": "done", "bytes": step.frame(facts.node, frame_values).hex()}}
+        values_by_role = {
+            "busy": int(not done),
+            "ready": int(done),
+            "program": program,
+            **values,
+        }
+        frame_values = {
+            role: values_by_role.get(role, 0) & (1 << bits[name]) - 1
+            for role, name in step.fields.items()
+        }
+        return {
+            "at": at,
+            "event": {
+                "event": "done",
+                "bytes": step.frame(facts.node, frame_values).hex(),
+            },
+        }
 
     def case(why: str, *rows: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         return why, _request(name, program, [*begin, *rows])
@@ -66,15 +86,31 @@ def _ends(facts: Facts, name: str, form: Operation) -> Requests:
         row(2, False), {"at": 1 + pause}, {"at": 2 + pause},
         row(3 + pause, False), {"at": 3 + 2 * pause}, row(4 + 2 * pause, True, **information),
     )  # fmt: skip
-    yield case("it fails", row(2, False), {"at": 2 + pause}, row(3 + pause, True, error=1))
+    yield case(
+        "it fails", row(2, False), {"at": 2 + pause}, row(3 + pause, True, error=1)
+    )
     yield case("it fails, and is busy all the same", row(2, False, error=1))
     yield case(
         "a frame about another program",
         row(2, True, program=program + 1, **information), {"at": 2 + pause}, row(3 + pause, True, **information),
     )  # fmt: skip
-    yield case("busy for ever", row(end - 1, False), {"at": end - 1 + pause}, row(end + pause, False))
-    yield case("done at the last moment", row(end - 1, False), {"at": end - 1 + pause}, row(end + pause, True))
+    yield case(
+        "busy for ever",
+        row(end - 1, False),
+        {"at": end - 1 + pause},
+        row(end + pause, False),
+    )
+    yield case(
+        "done at the last moment",
+        row(end - 1, False),
+        {"at": end - 1 + pause},
+        row(end + pause, True),
+    )
     yield case("given up", row(end, False))
     yield case("a poll without a reply", {"at": 2, "event": {"event": "timeout"}})
-    yield "refused", _request(name, program, [{"at": 0}, {"at": 1, "event": {"event": "refused", "code": 3}}])
-    yield "no reply", _request(name, program, [{"at": 0}, {"at": 1, "event": {"event": "timeout"}}])
+    yield "refused", _request(
+        name, program, [{"at": 0}, {"at": 1, "event": {"event": "refused", "code": 3}}]
+    )
+    yield "no reply", _request(
+        name, program, [{"at": 0}, {"at": 1, "event": {"event": "timeout"}}]
+    )

@@ -18,7 +18,11 @@ def requests(facts: Facts, source: Random) -> Requests:
     node, other, third = form.node_address, 0x42, 0xFE
     samples: list[can.Message] = []
     for kind in CAN_KINDS:
-        ids = facts.telecommands if kind in ("telecommand", "acknowledge", "refusal") else facts.telemetry
+        ids = (
+            facts.telecommands
+            if kind in ("telecommand", "acknowledge", "refusal")
+            else facts.telemetry
+        )
         if kind not in form.types:
             continue
         if kind not in CAN_WITH_DATA:
@@ -30,15 +34,37 @@ def requests(facts: Facts, source: Random) -> Requests:
             samples.append(can.Message(kind, id, *ends, source.randbytes(length)))
     for message in samples:
         why = f"{message.kind} {message.id}, {len(message.data)} bytes"
-        about = {"kind": message.kind, "id": message.id, "source": message.source, "destination": message.destination}
+        about = {
+            "kind": message.kind,
+            "id": message.id,
+            "source": message.source,
+            "destination": message.destination,
+        }
         yield why, {"op": "can_split", **about, "bytes": message.data.hex()}
-        yield why, {"op": "can_join", "packets": [_row(packet) for packet in can.split(facts, message)]}
+        yield why, {
+            "op": "can_join",
+            "packets": [_row(packet) for packet in can.split(facts, message)],
+        }
     if form.extended:
         most = form.extended.bytes
-        about = {"kind": "telecommand", "id": 0x7F, "source": other, "destination": node}
+        about = {
+            "kind": "telecommand",
+            "id": 0x7F,
+            "source": other,
+            "destination": node,
+        }
         for size in (most, most + 1):
-            yield f"{size} bytes", {"op": "can_split", **about, "bytes": source.randbytes(size).hex()}
-        yield "data where none is expected", {"op": "can_split", **about, "kind": "request", "bytes": "00"}
+            yield f"{size} bytes", {
+                "op": "can_split",
+                **about,
+                "bytes": source.randbytes(size).hex(),
+            }
+        yield "data where none is expected", {
+            "op": "can_split",
+            **about,
+            "kind": "request",
+            "bytes": "00",
+        }
         yield from _joins(facts, source, other, third)
 
 
@@ -52,13 +78,19 @@ def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
     """
     form = facts.can
     assert form and form.extended
-    long = sorted((m.length, id) for id, m in facts.telecommands.items() if m.length > form.extended.data_bytes * 2)
+    long = sorted(
+        (m.length, id)
+        for id, m in facts.telecommands.items()
+        if m.length > form.extended.data_bytes * 2
+    )
     if not long:
         return
     length, id = long[len(long) // 2]
     node, late = form.node_address, form.extended.packet_timeout
 
-    def sent(sender: int, seed: str, length: int = length, id: int = id) -> list[can.Packet]:
+    def sent(
+        sender: int, seed: str, length: int = length, id: int = id
+    ) -> list[can.Packet]:
         data = Random(f"{facts.node.name} {seed}").randbytes(length)
         return can.split(facts, can.Message("telecommand", id, sender, node, data))
 
@@ -76,29 +108,63 @@ def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
         ("two messages, one after the other", first + second),
         ("the same message twice", first + first),
         ("the last packet twice, then another message", [*first, first[-1], *second]),
-        ("a lost packet, then the same message again", [*first[:1], *first[2:], *first]),
+        (
+            "a lost packet, then the same message again",
+            [*first[:1], *first[2:], *first],
+        ),
         ("a lost last packet, then another message", [*first[:-1], *second]),
         ("a lost last packet, then a message that begins alike", [*first[:-1], *alike]),
         ("two senders, in turn", mixed),
         ("two senders in turn, one packet lost", mixed[:1] + mixed[2:]),
         ("an unknown id", unknown),
         ("an unknown id, the first packet lost", unknown[1:]),
-        ("a count that is too high", [can.Packet(first[0].id, first[0].data[:-1] + b"\xff"), *first]),
-        ("a packet that is too short", [*first[:2], can.Packet(first[2].id, first[2].data[:-1]), *first]),
-        ("a message type that does not exist", [can.Packet((1 << 29) - 1, b"\x01"), *first]),
+        (
+            "a count that is too high",
+            [can.Packet(first[0].id, first[0].data[:-1] + b"\xff"), *first],
+        ),
+        (
+            "a packet that is too short",
+            [*first[:2], can.Packet(first[2].id, first[2].data[:-1]), *first],
+        ),
+        (
+            "a message type that does not exist",
+            [can.Packet((1 << 29) - 1, b"\x01"), *first],
+        ),
     ]
     for why, row in rows:
-        yield why, {"op": "can_join", "packets": [_row(packet) for packet in row], "end": late}
-    yield "no receiver for them", {"op": "can_join", "address": node ^ 1, "packets": [_row(p) for p in first]}
+        yield why, {
+            "op": "can_join",
+            "packets": [_row(packet) for packet in row],
+            "end": late,
+        }
+    yield "no receiver for them", {
+        "op": "can_join",
+        "address": node ^ 1,
+        "packets": [_row(p) for p in first],
+    }
     paused = [_row(packet, late - 1) for packet in first[1:]]
-    yield "a pause just short enough", {"op": "can_join", "packets": [_row(first[0]), *paused]}
+    yield "a pause just short enough", {
+        "op": "can_join",
+        "packets": [_row(first[0]), *paused],
+    }
     paused = [_row(packet, late) for packet in first]
-    yield "a pause that is too long", {"op": "can_join", "packets": [_row(first[0]), *paused]}
+    yield "a pause that is too long", {
+        "op": "can_join",
+        "packets": [_row(first[0]), *paused],
+    }
     # One sender more than a joiner can handle by default.
     crowd = [sent(sender, str(sender)) for sender in range(5)]
     turns = [packet for turn in zip(*crowd, strict=True) for packet in turn]
     for senders in (4, 5):
-        request = {"op": "can_join", "senders": senders, "packets": [_row(p) for p in turns]}
+        request = {
+            "op": "can_join",
+            "senders": senders,
+            "packets": [_row(p) for p in turns],
+        }
         yield f"five senders, room for {senders}", request
-    request = {"op": "can_join", "senders": 1, "packets": [_row(p) for p in (*first, *foreign)]}
+    request = {
+        "op": "can_join",
+        "senders": 1,
+        "packets": [_row(p) for p in (*first, *foreign)],
+    }
     yield "one after the other, room for one", request

@@ -19,7 +19,9 @@ STEPS = 100_000  # limit above the steps of any procedure
 ATTEMPTS = 8  # attempts of a client
 
 
-def record(facts: Facts, request: dict[str, Any], node: FileNode) -> tuple[Script, transfer.Procedure]:
+def record(
+    facts: Facts, request: dict[str, Any], node: FileNode
+) -> tuple[Script, transfer.Procedure]:
     """Return the script of a procedure with the simulated node.
 
     Repeatable requests are repeated as by a client.
@@ -58,15 +60,30 @@ def scripts(facts: Facts) -> Requests:
     if form.upload:
         yield from _uploads(facts, form.upload)
     else:
-        request = {"op": "file", "do": "upload", "destination": 3, "bytes": "00", "script": [{"at": 0}]}
+        request = {
+            "op": "file",
+            "do": "upload",
+            "destination": 3,
+            "bytes": "00",
+            "script": [{"at": 0}],
+        }
         yield "the node takes no uploads", request
     if form.erase:
         for all_ in (False, True):
-            yield from _recorded(facts, "erased", {"do": "erase", "type": 2, "counter": 3, "all": all_}, 0.0)
+            yield from _recorded(
+                facts,
+                "erased",
+                {"do": "erase", "type": 2, "counter": 3, "all": all_},
+                0.0,
+            )
     if form.format:
         yield from _recorded(facts, "formatted", {"do": "format"}, 0.0)
         refusal = {"event": "refused", "code": 3}
-        yield "refused", {"op": "file", "do": "format", "script": [{"at": 0}, {"at": 1, "event": refusal}]}
+        yield "refused", {
+            "op": "file",
+            "do": "format",
+            "script": [{"at": 0}, {"at": 1, "event": refusal}],
+        }
         busy = [{"at": 0}, {"at": 1, "event": {"event": "done", "bytes": ""}}]
         frame = b"\xff".ljust(form.format.progress.message.length, b"\0").hex()
         for at in (2, 2 + form.format.poll_interval, form.format.timeout + 1):
@@ -82,7 +99,9 @@ def _node(facts: Facts, bus: str, loss: float, why: str) -> FileNode:
     return node
 
 
-def _recorded(facts: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART) -> Requests:
+def _recorded(
+    facts: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART
+) -> Requests:
     script, _ = record(facts, request, _node(facts, bus, loss, why))
     yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
 
@@ -92,9 +111,24 @@ def _downloads(facts: Facts) -> Requests:
     size = facts.files.packet_bytes
     for bus in facts.files.packet_ids:
         for loss in (0.0, 0.3):
-            request = {"do": "download", "bus": bus, "type": 2, "counter": 2, "size": 130, "block": 4 * size}
-            yield from _recorded(facts, f"a file in two blocks over {bus}", request, loss, bus)
-    request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "block": 2 * size}
+            request = {
+                "do": "download",
+                "bus": bus,
+                "type": 2,
+                "counter": 2,
+                "size": 130,
+                "block": 4 * size,
+            }
+            yield from _recorded(
+                facts, f"a file in two blocks over {bus}", request, loss, bus
+            )
+    request = {
+        "do": "download",
+        "bus": UART,
+        "type": 2,
+        "counter": 1,
+        "block": 2 * size,
+    }
     yield from _recorded(facts, "a file of unknown size", request, 0.1)
     request = {"do": "download", "bus": UART, "type": 2, "counter": 2, "size": 131}
     yield from _recorded(facts, "a file shorter than announced", request, 0.0)
@@ -118,9 +152,19 @@ class _NodeWithWrongChecksums(FileNode):
 
 def _uploads(facts: Facts, form: Upload) -> Requests:
     assert facts.files
-    size, most, allowed = facts.files.packet_bytes, form.destination_bytes, form.destinations
+    size, most, allowed = (
+        facts.files.packet_bytes,
+        form.destination_bytes,
+        form.destinations,
+    )
     destination = allowed[0] if allowed else 3
-    first = {"op": "file", "do": "upload", "destination": destination, "bytes": "00", "script": [{"at": 0}]}
+    first = {
+        "op": "file",
+        "do": "upload",
+        "destination": destination,
+        "bytes": "00",
+        "script": [{"at": 0}],
+    }
     for number in allowed:
         yield "a destination that is supported", {**first, "destination": number}
     for number in neighbours(allowed):
@@ -132,8 +176,17 @@ def _uploads(facts: Facts, form: Upload) -> Requests:
     if most is not None and most < len(data):
         return
     for loss in (0.0, 0.3):
-        request = {"do": "upload", "destination": destination, "bytes": data.hex(), "block": 4 * size}
+        request = {
+            "do": "upload",
+            "destination": destination,
+            "bytes": data.hex(),
+            "block": 4 * size,
+        }
         yield from _recorded(facts, "a program in two blocks", request, loss)
-    request = {"do": "upload", "destination": destination, "bytes": data[: 2 * size].hex()}
+    request = {
+        "do": "upload",
+        "destination": destination,
+        "bytes": data[: 2 * size].hex(),
+    }
     script, _ = record(facts, request, _NodeWithWrongChecksums(facts, UART, Random(1)))
     yield "a checksum that is never right", {"op": "file", **request, "script": script}

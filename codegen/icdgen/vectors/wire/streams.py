@@ -25,7 +25,10 @@ def checksums(facts: Facts, source: Random) -> Requests:
         ("ones", b"\xff" * 20),
     ]
     data += [(f"bit {bit}", bytes([1 << bit])) for bit in range(8)]
-    data += [(f"{size} random bytes", source.randbytes(size)) for size in (2, 7, 22, 255, 1000)]
+    data += [
+        (f"{size} random bytes", source.randbytes(size))
+        for size in (2, 7, 22, 255, 1000)
+    ]
     for op, declaration in (("crc8", facts.checksum), ("crc16", facts.crc16)):
         for why, content in data if declaration else ():
             yield why, {"op": op, "bytes": content.hex()}
@@ -38,12 +41,20 @@ def _messages(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "an id alone", b"\x80"
     yield "an id that is the escape byte", bytes([escape, 0])
     yield "nothing but escape bytes", bytes([escape] * 5)
-    yield "what looks like an end within the data", bytes([1, escape, escape, end, escape, end, 2])
-    yield "what looks like a start within the data", bytes([1, escape, start, 2, escape])
+    yield "what looks like an end within the data", bytes(
+        [1, escape, escape, end, escape, end, 2]
+    )
+    yield "what looks like a start within the data", bytes(
+        [1, escape, start, 2, escape]
+    )
     yield "the markers as data", bytes([end, start, end])
     yield "every byte", bytes([0x90, *range(256)])[: facts.longest]
-    for id in sorted({min(facts.telecommands), max(facts.telecommands)} if facts.telecommands else ()):
-        yield f"telecommand {id}", bytes([id]) + source.randbytes(facts.telecommands[id].length)
+    for id in sorted(
+        {min(facts.telecommands), max(facts.telecommands)} if facts.telecommands else ()
+    ):
+        yield f"telecommand {id}", bytes([id]) + source.randbytes(
+            facts.telecommands[id].length
+        )
     yield "the longest message", bytes([0x80]) + source.randbytes(facts.longest - 1)
     yield "the longest message, all escaped", bytes([escape] * facts.longest)
 
@@ -53,7 +64,10 @@ def encoded(facts: Facts, source: Random) -> Requests:
     yield "no id", {"op": "uart_encode", "bytes": ""}
     for why, message in _messages(facts, source):
         yield why, {"op": "uart_encode", "bytes": message.hex()}
-        yield why, {"op": "uart_decode", "bytes": uart.encode(need(facts.framing, "uart"), message).hex()}
+        yield why, {
+            "op": "uart_decode",
+            "bytes": uart.encode(need(facts.framing, "uart"), message).hex(),
+        }
 
 
 def streams(facts: Facts, source: Random) -> Requests:
@@ -68,44 +82,78 @@ def streams(facts: Facts, source: Random) -> Requests:
     good = line(0x90, 1, escape, end, 2)
     streams_to_decode = [
         ("two messages", good + line(0x91)),
-        ("noise before, between and after", b"\x00\xff\x7f" + good + b"noise" + good + b"\x55"),
+        (
+            "noise before, between and after",
+            b"\x00\xff\x7f" + good + b"noise" + good + b"\x55",
+        ),
         ("an escape byte before the start", bytes([escape]) + good),
         ("many escape bytes before the start", bytes([escape] * 5) + good),
         ("an end without a start", finish + good),
         ("a start within a message", begin + b"\x90\x01\x02" + good),
         ("two starts in a row", begin + good),
-        ("an escape byte before another byte", begin + bytes([0x90, escape, 0x55, 0x01]) + finish + good),
+        (
+            "an escape byte before another byte",
+            begin + bytes([0x90, escape, 0x55, 0x01]) + finish + good,
+        ),
         ("a message without an id", begin + finish + good),
         ("an escape byte at the very end", good + bytes([escape])),
-        ("an escape byte at the very end of a started message", good + begin + bytes([0x90, escape])),
+        (
+            "an escape byte at the very end of a started message",
+            good + begin + bytes([0x90, escape]),
+        ),
         ("a message that is not finished", good + begin + b"\x90\x01"),
         ("nothing", b""),
         ("random bytes", source.randbytes(600)),
-        ("random bytes rich in markers", bytes(source.choices([escape, start, end, 0, 0x90], k=600)) + good),
+        (
+            "random bytes rich in markers",
+            bytes(source.choices([escape, start, end, 0, 0x90], k=600)) + good,
+        ),
     ]
     for why, stream in streams_to_decode:
         yield why, {"op": "uart_decode", "bytes": stream.hex()}
         for how, chunks in pieces(why, stream, source):
-            yield how, {"op": "uart_events", "chunks": [chunk.hex() for chunk in chunks]}
+            yield how, {
+                "op": "uart_events",
+                "chunks": [chunk.hex() for chunk in chunks],
+            }
     # Ten bytes after unescaping: one more than the smaller buffer.
     long = line(0x90, *range(1, 9), escape)
     # No buffer is longer than the longest message
     for limit in (9, 10) if facts.longest >= 10 else ():
         cut = [(long + good[:-2]).hex(), finish.hex()]
-        yield f"ten bytes in a buffer of {limit}", {"op": "uart_events", "limit": limit, "chunks": cut}
+        yield f"ten bytes in a buffer of {limit}", {
+            "op": "uart_events",
+            "limit": limit,
+            "chunks": cut,
+        }
     too_long = uart.encode(framing, bytes([0x90]) * (facts.longest + 1))
-    yield "a message that is too long by one", {"op": "uart_events", "chunks": [(too_long + good).hex()]}
+    yield "a message that is too long by one", {
+        "op": "uart_events",
+        "chunks": [(too_long + good).hex()],
+    }
     for why, message in _kinds(facts, source):
-        yield why, {"op": "uart_events", "chunks": [uart.encode(framing, message).hex()]}
+        yield why, {
+            "op": "uart_events",
+            "chunks": [uart.encode(framing, message).hex()],
+        }
 
 
 def _kinds(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     """Yield messages of each kind, and messages of no kind."""
     if facts.acknowledge:
-        ids = sorted({min(facts.telecommands, default=0), facts.framing.escape if facts.framing else 0})
+        ids = sorted(
+            {
+                min(facts.telecommands, default=0),
+                facts.framing.escape if facts.framing else 0,
+            }
+        )
         for id in ids:
-            yield f"the acknowledge of telecommand {id}", bytes([id, *bytes(facts.acknowledge.length - 1)])
-        yield "an acknowledge that is too long", bytes([ids[0], *bytes(facts.acknowledge.length)])
+            yield f"the acknowledge of telecommand {id}", bytes(
+                [id, *bytes(facts.acknowledge.length - 1)]
+            )
+        yield "an acknowledge that is too long", bytes(
+            [ids[0], *bytes(facts.acknowledge.length)]
+        )
     files = facts.files
     if files and UART in files.packet_ids:
         size = files.counter_bytes + files.packet_bytes

@@ -18,13 +18,29 @@ from icdgen.vectors.wire.node import FileNode
 
 Values = dict[str, Any]  # values of the frame of a step, by role
 
-# Waits of procedures: step, request, values of its frame during the wait, and attribute of the time limit.
+# Waits of procedures: step, request, values of its frame during the wait, and attribute
+# of the time limit.
 PROCEDURES_THAT_WAIT: tuple[tuple[str, dict[str, Any], Values, str], ...] = (
     ("list.information", {"do": "list"}, {"busy": 1}, "timeout"),
-    ("download.ready", {"do": "download", "bus": UART, "type": 2, "counter": 0, "size": 1}, {}, "ready_timeout"),
+    (
+        "download.ready",
+        {"do": "download", "bus": UART, "type": 2, "counter": 0, "size": 1},
+        {},
+        "ready_timeout",
+    ),
     ("upload.initiated", {"do": "upload", "bytes": "00"}, {"busy": 1}, "erase_timeout"),
-    ("upload.finalized", {"do": "upload", "bytes": "00"}, {"busy": 1}, "finalize_timeout"),
-    ("erase.progress", {"do": "erase", "type": 2, "counter": 0, "all": True}, {"busy": 1}, "timeout"),
+    (
+        "upload.finalized",
+        {"do": "upload", "bytes": "00"},
+        {"busy": 1},
+        "finalize_timeout",
+    ),
+    (
+        "erase.progress",
+        {"do": "erase", "type": 2, "counter": 0, "all": True},
+        {"busy": 1},
+        "timeout",
+    ),
     ("format.progress", {"do": "format"}, {"busy": 1}, "timeout"),
 )
 
@@ -41,13 +57,21 @@ def scripts(facts: Facts) -> Requests:
         if request["do"] == "upload":
             request = {**request, "destination": next(iter(procedure.destinations), 0)}
         for early in (1, 0):
-            why = "a millisecond before its time is over" if early else "when its time is over"
+            why = (
+                "a millisecond before its time is over"
+                if early
+                else "when its time is over"
+            )
             file_request = {"op": "file", **request}
-            script = _never_done(facts, file_request, name, values, getattr(procedure, time) - early)
+            script = _never_done(
+                facts, file_request, name, values, getattr(procedure, time) - early
+            )
             yield f"{name}: nothing new {why}", {**file_request, "script": script}
 
 
-def _never_done(facts: Facts, request: dict[str, Any], name: str, values: Values, last: int) -> Script:
+def _never_done(
+    facts: Facts, request: dict[str, Any], name: str, values: Values, last: int
+) -> Script:
     """Return the script of a procedure whose frame has ``values`` until ``last`` ms
     have passed.
     """
@@ -68,7 +92,11 @@ def _never_done(facts: Facts, request: dict[str, Any], name: str, values: Values
             if first_frame_at >= 0 and now > first_frame_at + last:
                 break
         elif pending.kind == TELEMETRY and pending.id == step.message.telemetry_id:
-            first_frame_at, now = (now, now + 1) if first_frame_at < 0 else (first_frame_at, first_frame_at + last)
+            first_frame_at, now = (
+                (now, now + 1)
+                if first_frame_at < 0
+                else (first_frame_at, first_frame_at + last)
+            )
             script.append({"at": now, "event": waiting})
             procedure.event(now, waiting)
         else:
@@ -88,7 +116,9 @@ def _clients_without_settings(facts: Facts) -> Requests:
     request_row = {"at": 0, "telemetry": frame.telemetry_id}
     patience, tries = facts.client.reply_timeout, facts.client.retries + 1
     for bus in (bus for bus, form in waits.items() if form):
-        rows = [{"at": patience * n + late} for n in range(1, tries + 1) for late in (-1, 0)]
+        rows = [
+            {"at": patience * n + late} for n in range(1, tries + 1) for late in (-1, 0)
+        ]
         yield f"{bus}: silence", {
             "op": "client",
             "bus": bus,
@@ -97,7 +127,11 @@ def _clients_without_settings(facts: Facts) -> Requests:
     sent = next((m for m in facts.telecommands.values() if m.acknowledge), None)
     if sent is not None and facts.polled and facts.i2c_address is not None:
         for early in (1, 0):
-            why = "a millisecond before its time is over" if early else "when its time is over"
+            why = (
+                "a millisecond before its time is over"
+                if early
+                else "when its time is over"
+            )
             yield f"{I2C}: not processed {why}", {
                 "op": "client",
                 "bus": I2C,
@@ -108,12 +142,25 @@ def _clients_without_settings(facts: Facts) -> Requests:
 def _polls(facts: Facts, sent: Message, early: int) -> Iterator[dict[str, Any]]:
     """Yield a telecommand that is not processed within its time limit."""
     assert facts.polled
-    data = Step(facts.polled.message, {"id": facts.polled.id}).frame(facts.node, {"id": sent.telecommand_id or 0})
-    state = i2c.telecommand(facts, facts.polled.message.telemetry_id or 0, data, False)[1:].hex()
-    yield {"at": 0, "telecommand": sent.telecommand_id, "bytes": bytes(sent.length).hex()}
+    data = Step(facts.polled.message, {"id": facts.polled.id}).frame(
+        facts.node, {"id": sent.telecommand_id or 0}
+    )
+    state = i2c.telecommand(facts, facts.polled.message.telemetry_id or 0, data, False)[
+        1:
+    ].hex()
+    yield {
+        "at": 0,
+        "telecommand": sent.telecommand_id,
+        "bytes": bytes(sent.length).hex(),
+    }
     yield {"at": 1, "receive": ""}
     pause, end = facts.client.poll_interval, 1 + facts.client.poll_timeout
-    yield from ({"at": pause}, {"at": 1 + pause}, {"at": 2 + pause, "receive": state}, {"at": 1 + 2 * pause})
+    yield from (
+        {"at": pause},
+        {"at": 1 + pause},
+        {"at": 2 + pause, "receive": state},
+        {"at": 1 + 2 * pause},
+    )
     poll_at = max(2 + 2 * pause, end - 2)
     last = max(poll_at, end - early)
     yield from ({"at": poll_at}, {"at": last, "receive": state}, {"at": last + pause})

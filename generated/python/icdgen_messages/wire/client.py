@@ -90,8 +90,9 @@ class Client(Generic[N]):
         self._transfers: list[I2cTransfer] = []
         # I2C: number of transfers taken, but not yet passed to `transferred`
         self._unreported = 0
-        # hold: wait until no reply to an earlier request can arrive. wait: for the reply.
-        # I2C only: pause until the next poll or attempt. poll: wait for the result.
+        # hold: wait until no reply to an earlier request can arrive. wait: for the
+        # reply. I2C only: pause until the next poll or attempt. poll: wait for the
+        # result.
         self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
         self._request = Request("telemetry", 0)
         self._attempts = 0
@@ -119,7 +120,10 @@ class Client(Generic[N]):
     def send(
         self, now: float, message: NodeMessage[N], repeat: bool = False
     ) -> list[Event]:
-        """Send a telecommand or set a configuration. See `start`; also raise `RangeError`."""
+        """Send a telecommand or set a configuration.
+
+        See `start`; also raise `RangeError`.
+        """
         id, data = sent_id(self.link, message), message_of(message).to_bytes()
         return self.start(now, Request("telecommand", id, data, repeat))
 

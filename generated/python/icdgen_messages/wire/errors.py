@@ -39,11 +39,17 @@ class ChecksumError(IcdError):
 
 
 class BusyError(IcdError):
-    """Another request is in progress. A second one would overrun the buffer of the node."""
+    """Another request is in progress.
+
+    A second one would overrun the buffer of the node.
+    """
 
 
 def need(part: Optional[T], name: str) -> T:
-    """Return a part of a link. Raise `UnsupportedError` if the ICD does not describe it."""
+    """Return a part of a link.
+
+    Raise `UnsupportedError` if the ICD does not describe it.
+    """
     if part is None:
         raise UnsupportedError(f"the ICD says nothing about `{name}`")
     return part

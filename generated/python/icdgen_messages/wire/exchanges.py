@@ -106,7 +106,10 @@ class Exchanges(Generic[N]):
     def _messages_in(
         self, events: list[Event], kinds: tuple[NodeMessageClass[N, Message], ...]
     ) -> Iterator[Message]:
-        """Return the unsolicited messages of these classes; all messages without ``kinds``."""
+        """Return the unsolicited messages of these classes.
+
+        All messages without ``kinds``.
+        """
         for event in events:
             if not isinstance(event, Arrived) or (kinds and event.type not in kinds):
                 continue
@@ -146,7 +149,8 @@ class Exchanges(Generic[N]):
                 events = yield None
         finally:
             if isinstance(client, Client):
-                client.cancel()  # otherwise it stays busy after an exception of the port
+                # Otherwise it stays busy after an exception of the port.
+                client.cancel()
             elif is_going_on:
                 client.cancel(reply=reply)
 
@@ -226,7 +230,10 @@ class Exchanges(Generic[N]):
 
 
 def executed(outcome: Outcome, name: str) -> AnyDone:
-    """Return the outcome if it is `Done`. Otherwise raise `RefusedError` or `ReplyTimeoutError`."""
+    """Return the outcome if it is `Done`.
+
+    Otherwise raise `RefusedError` or `ReplyTimeoutError`.
+    """
     if isinstance(outcome, Refused):
         raise RefusedError(outcome, name)
     if isinstance(outcome, Timeout):

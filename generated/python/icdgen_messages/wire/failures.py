@@ -10,7 +10,10 @@ from .events import Refused, Timeout
 
 
 class RefusedError(IcdError):
-    """The node rejected a request. ``event`` has the reason, ``name`` is the message."""
+    """The node rejected a request.
+
+    ``event`` has the reason, ``name`` is the message.
+    """
 
     def __init__(self, event: Refused, name: str = "") -> None:
         why = event.reason or ("no reason" if event.code is None else str(event.code))

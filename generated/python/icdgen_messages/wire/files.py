@@ -30,7 +30,10 @@ class HoleMap:
 
     @classmethod
     def from_bytes(cls, link: Link, packets: int, data: bytes) -> HoleMap:
-        """Decode a map. Bits beyond the end of the block are ignored. Raise `LengthError`."""
+        """Decode a map.
+
+        Bits beyond the end of the block are ignored. Raise `LengthError`.
+        """
         form = need(link.hole_map, "file_transfer.hole_map")
         if len(data) != form.bytes:
             raise LengthError("a hole map", form.bytes, len(data))
@@ -96,7 +99,9 @@ class IndexEntry(NamedTuple):
 
 
 def read_index(link: Link, data: bytes) -> tuple[list[IndexEntry], int]:
-    """Decode an index file. Return its entries and the number of surplus bytes at its end.
+    """Decode an index file.
+
+    Return its entries and the number of surplus bytes at its end.
 
     Raise `UnsupportedError`.
     """

@@ -32,7 +32,9 @@ class LogFrame(NamedTuple):
 
 
 class LogEntry(NamedTuple):
-    """An entry of a log file: Unix time, and frames in ascending order of the mask bits."""
+    """An entry of a log file: Unix time, and frames in ascending order of the mask
+    bits.
+    """
 
     seconds: int
     milliseconds: int
@@ -65,7 +67,10 @@ class LogMessage(NamedTuple):
 
     @staticmethod
     def encode(link: Link, mask: bytes, frames: Iterable[bytes]) -> bytes:
-        """Encode a log message with its id. Raise `LengthError` and `UnsupportedError`."""
+        """Encode a log message with its id.
+
+        Raise `LengthError` and `UnsupportedError`.
+        """
         form = need(link.log_message, "unsolicited_log")
         head = bytearray(form.frames_at)
         head[0] = form.id
@@ -93,7 +98,10 @@ class LogReader:
         return len(self._rest)
 
     def feed(self, data: Buffer) -> list[LogEntry]:
-        """Process the next bytes of the file. Return the entries that are now complete."""
+        """Process the next bytes of the file.
+
+        Return the entries that are now complete.
+        """
         form, data = self._form, self._rest + bytes(data)
         position = 0
         if self.mask is None:

@@ -65,7 +65,10 @@ class Procedure:
 
     @property
     def deadline(self) -> Optional[float]:
-        """Time of the next call of `next`, in milliseconds; None while waiting for an outcome."""
+        """Time of the next call of `next`, in milliseconds.
+
+        None while waiting for an outcome.
+        """
         return self._action.until if isinstance(self._action, Wait) else None
 
     def next(self, now: float) -> Optional[Request]:
@@ -129,7 +132,10 @@ class Procedure:
     def _require(
         self, request: Request
     ) -> Generator[Action, Optional[Outcome], AnyDone]:
-        """Send a request and return its outcome. The procedure fails unless it was executed."""
+        """Send a request and return its outcome.
+
+        The procedure fails unless it was executed.
+        """
         outcome = yield from self._outcome_of(request)
         if isinstance(outcome, Done):
             return outcome
@@ -138,7 +144,10 @@ class Procedure:
     def _execute(
         self, step: Step, values: Optional[Values] = None, repeat: bool = True
     ) -> Generator[Action, Optional[Outcome], None]:
-        """Send the telecommand of a step. The procedure fails unless it was executed."""
+        """Send the telecommand of a step.
+
+        The procedure fails unless it was executed.
+        """
         yield from self._require(self._telecommand(step, values, repeat))
 
     def _frame(
@@ -160,7 +169,8 @@ class Procedure:
         timeout: float,
         program: Optional[int] = None,
     ) -> Generator[Action, Optional[Outcome], tuple[Values, bytes]]:
-        """Request the frame of a step until its flag has the value ``wanted``, or an error.
+        """Request the frame of a step until its flag has the value ``wanted``, or an
+        error.
 
         If the frame identifies a program, it must be ``program``.
         """

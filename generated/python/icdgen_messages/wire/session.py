@@ -82,7 +82,10 @@ class BusSession(Exchanges[N]):
         )
 
     def send(self, message: NodeMessage[N], repeat: bool = False) -> None:
-        """Send a telecommand or set a configuration. Raise as `get` and `Client.send`."""
+        """Send a telecommand or set a configuration.
+
+        Raise as `get` and `Client.send`.
+        """
         outcome = self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 

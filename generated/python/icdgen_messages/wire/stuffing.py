@@ -12,7 +12,9 @@ _HDLC_FLIP = 0x20
 
 
 class Frame(NamedTuple):
-    """A frame between delimiters, its number of bytes on the line, and its error or None."""
+    """A frame between delimiters, its number of bytes on the line, and its error or
+    None.
+    """
 
     bytes: bytes
     size: int

@@ -318,7 +318,10 @@ class Upload(FileProcedure):
 
 
 class Erase(FileProcedure):
-    """Delete a file, or all files. Deletion of all files ends when the node is not busy."""
+    """Delete a file, or all files.
+
+    Deletion of all files ends when the node is not busy.
+    """
 
     def __init__(
         self, link: Link, type: int = 0, counter: int = 0, all: bool = False

@@ -87,7 +87,10 @@ class AsyncSession(Exchanges[N]):
         return outcome_of(outcome, class_of(message))
 
     async def send(self, message: NodeMessage[N], repeat: bool = False) -> None:
-        """Send a telecommand or set a configuration. Raise as `get` and `Client.send`."""
+        """Send a telecommand or set a configuration.
+
+        Raise as `get` and `Client.send`.
+        """
         outcome = await self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
 

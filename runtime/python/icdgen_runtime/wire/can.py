@@ -234,7 +234,10 @@ class CanJoiner:
         return events
 
     def _make_room(self) -> bool:
-        """Drop the oldest complete message if there are too many. Return whether there is room."""
+        """Drop the oldest complete message if there are too many.
+
+        Return whether there is room.
+        """
         if len(self._open) < self._senders:
             return True
         for key, joining in self._open.items():
@@ -244,7 +247,9 @@ class CanJoiner:
         return False
 
     def _length(self, head: CanMessage) -> Optional[int]:
-        """Return the bytes of a known message that needs several packets, otherwise None."""
+        """Return the bytes of a known message that needs several packets, otherwise
+        None.
+        """
         if head.kind == "telecommand":
             sent = self._link.commands.get(head.id)
             length = sent.length if sent else None

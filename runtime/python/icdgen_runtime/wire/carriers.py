@@ -101,14 +101,20 @@ class CanCarrier:
 
 
 def _is_foreign(message: Any) -> bool:
-    """Return whether a packet cannot belong to a link. All links have 29-bit identifiers."""
+    """Return whether a packet cannot belong to a link.
+
+    All links have 29-bit identifiers.
+    """
     return bool(
         not message.is_extended_id or message.is_error_frame or message.is_remote_frame
     )
 
 
 class I2cCarrier:
-    """Transport over an I2C bus of smbus2. ``joins``: use a repeated start for each read."""
+    """Transport over an I2C bus of smbus2.
+
+    ``joins``: use a repeated start for each read.
+    """
 
     bus: Bus = "i2c"
 
@@ -117,7 +123,10 @@ class I2cCarrier:
         self._message = _library_class(port, "i2c_msg")
 
     def send(self, client: Any) -> None:
-        """Do nothing. A transaction has an immediate result, so `receive` performs it."""
+        """Do nothing.
+
+        A transaction has an immediate result, so `receive` performs it.
+        """
 
     def receive(
         self, client: Any, now: Callable[[], float], seconds: float

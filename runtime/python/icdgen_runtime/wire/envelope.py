@@ -29,7 +29,9 @@ class CrcForm(NamedTuple):
 
 
 class EnvelopeField(NamedTuple):
-    """A field of the header or trailer: a number in some bytes, shifted, of ``bits`` bits."""
+    """A field of the header or trailer: a number in some bytes, shifted, of ``bits``
+    bits.
+    """
 
     role: str
     in_trailer: bool

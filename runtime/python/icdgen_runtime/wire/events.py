@@ -1,4 +1,7 @@
-"""Events of a client. Every request ends with one of `Done`, `Refused` and `Timeout`."""
+"""Events of a client.
+
+Every request ends with one of `Done`, `Refused` and `Timeout`.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +61,10 @@ class Refused:
 
 @dataclass(frozen=True)
 class Timeout:
-    """A request had no reply. ``reply``: with header and trailer, the id of the missing reply."""
+    """A request had no reply.
+
+    ``reply``: with header and trailer, the id of the missing reply.
+    """
 
     id: int
     attempts: int
@@ -67,7 +73,10 @@ class Timeout:
 
 @dataclass(frozen=True)
 class Malformed:
-    """A reply does not have the length of the message. The client still waits for a reply."""
+    """A reply does not have the length of the message.
+
+    The client still waits for a reply.
+    """
 
     id: int
 

@@ -45,7 +45,9 @@ class Settings(NamedTuple):
 
 
 class Sent(NamedTuple):
-    """A telecommand: its length, whether it is acknowledged, and whether it is a setting."""
+    """A telecommand: its length, whether it is acknowledged, and whether it is a
+    setting.
+    """
 
     length: int
     acknowledged: bool = True

@@ -27,7 +27,10 @@ class DosTime(NamedTuple):
         return _wrong(self) is None
 
     def datetime(self) -> datetime:
-        """Return a `datetime` without time zone. Raise `ValueError` if it does not exist."""
+        """Return a `datetime` without time zone.
+
+        Raise `ValueError` if it does not exist.
+        """
         return datetime(*self)
 
 

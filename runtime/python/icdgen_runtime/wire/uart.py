@@ -1,4 +1,7 @@
-"""UART: conversion between messages and a byte stream. A message is the id and the data."""
+"""UART: conversion between messages and a byte stream.
+
+A message is the id and the data.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,10 @@ _EMPTY = UartEvent("empty")
 
 
 def uart_encode(link: Link, message: Buffer) -> bytes:
-    """Encode a message, which begins with its id. Raise `LengthError` if it is empty."""
+    """Encode a message, which begins with its id.
+
+    Raise `LengthError` if it is empty.
+    """
     framing, message = need(link.framing, "uart"), bytes(message)
     if not message:
         raise LengthError("a message", 1, 0)
