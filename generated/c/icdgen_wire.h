@@ -61,17 +61,17 @@ typedef struct {
     uint8_t escaped;
     /** Whether the id is escaped like the data. */
     bool escapes_id;
-    /** Whether an escape byte before any other byte is skipped with it, or an error. */
+    /** Whether an escape byte and an unknown byte are skipped; otherwise it is an error. */
     bool ignores_other;
 } icd_framing_t;
 
 /** The acknowledge on the UART: its length, and where the id of the telecommand and the error code stand. */
 typedef struct {
-    /** Bytes of the message. */
+    /** Length of the message. */
     uint16_t length;
-    /** Where the id of the telecommand stands. */
+    /** Offset of the id of the telecommand. */
     uint16_t id_at;
-    /** Where the error code stands. */
+    /** Offset of the error code. */
     uint16_t error_at;
 } icd_acknowledge_t;
 
@@ -134,17 +134,17 @@ typedef struct {
 
 /** The optional checksum of telecommands and frames. */
 typedef struct {
-    /** Whether the id byte is part of what the checksum covers. */
+    /** Whether the checksum covers the id byte. */
     bool covers_id;
-    /** Where telecommands have it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telecommands may have a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telecommand_buses;
-    /** Where telemetry has it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telemetry may have a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_buses;
-    /** Where telecommands are not taken without it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telecommands must have a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telecommand_always;
-    /** Where telemetry never is without it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telemetry always has a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_always;
-    /** Bytes that it adds to a message. */
+    /** Length of the checksum. */
     uint8_t bytes;
     icd_crc_form_t crc;
 } icd_checksum_form_t;
@@ -171,13 +171,13 @@ typedef enum {
 typedef struct {
     /** Data bytes of a packet. */
     uint8_t data_bytes;
-    /** Index of the byte that counts the packets that follow. */
+    /** Index of the byte with the number of packets that follow. */
     uint8_t left_at;
     /** Value of that byte in the last packet. */
     uint8_t left_in_last;
-    /** Most packets of a message. */
+    /** Maximum number of packets of a message. */
     uint32_t packets;
-    /** Most bytes of a message. */
+    /** Maximum number of bytes of a message. */
     uint32_t bytes;
     /** Value of unused bytes of the last packet. */
     uint8_t fill;
@@ -189,7 +189,7 @@ typedef struct {
 typedef struct {
     /** Address of the node. */
     uint8_t node_address;
-    /** Most data bytes of one packet; CAN 2.0 allows 8. */
+    /** Maximum number of data bytes of one packet; CAN 2.0 allows 8. */
     uint8_t data_bytes;
     icd_can_part_t type;
     icd_can_part_t channel;
@@ -210,7 +210,7 @@ typedef struct {
 typedef struct {
     /** Length of the mask. */
     uint8_t size;
-    /** Whether bit 0 is the most significant one of a byte. */
+    /** Whether bit 0 is the most significant bit of a byte. */
     bool msb0;
     /** Length of each frame in a log. */
     uint16_t slot_bytes;
@@ -227,27 +227,27 @@ typedef struct {
 
 /** The file form of a log. */
 typedef struct {
-    /** Where the mask stands in the header. */
+    /** Offset of the mask in the header. */
     uint16_t mask_at;
-    /** Bytes of the header. */
+    /** Length of the header. */
     uint16_t header_bytes;
-    /** Where the Unix time stands in an entry. */
+    /** Offset and length of the Unix time in an entry. */
     icd_part_t seconds;
-    /** Where the milliseconds stand in an entry. */
+    /** Offset and length of the milliseconds in an entry. */
     icd_part_t milliseconds;
-    /** Where in an entry the selected frames begin. */
+    /** Offset of the selected frames in an entry. */
     uint16_t frames_at;
-    /** Type of such a file; -1 if the ICD does not say. */
+    /** Type of a log file; -1 if the ICD does not say. */
     int16_t file_type;
 } icd_log_file_form_t;
 
 /** The unsolicited form of a log; places are counted from the id. */
 typedef struct {
-    /** Id of such messages. */
+    /** Id of the message. */
     uint8_t id;
-    /** Where the mask stands. */
+    /** Offset of the mask. */
     uint16_t mask_at;
-    /** Where the selected frames begin, counted from the id. */
+    /** Offset of the selected frames. */
     uint16_t frames_at;
 } icd_log_message_form_t;
 
@@ -268,7 +268,7 @@ typedef struct {
 typedef struct {
     /** Length of an entry. */
     uint16_t entry_bytes;
-    /** Type of such a file; -1 if the ICD does not say. */
+    /** Type of the index file; -1 if the ICD does not say. */
     int16_t file_type;
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
@@ -330,7 +330,7 @@ typedef struct {
     uint16_t bytes;
     /** Bytes of the map in each message. */
     uint16_t message_bytes;
-    /** Whether bit 0 is the most significant one of a byte. */
+    /** Whether bit 0 is the most significant bit of a byte. */
     bool msb0;
     /** Value of the bit of a received packet. */
     bool received;
@@ -350,9 +350,9 @@ typedef struct {
     uint16_t first_packet;
     /** Value of the bytes of the last packet beyond the end of the file. */
     uint8_t fill;
-    /** Most packets of a block. */
+    /** Maximum number of packets of a block. */
     uint32_t block_packets;
-    /** Most bytes of a block. */
+    /** Maximum number of bytes of a block. */
     uint32_t block_bytes;
     int16_t packet_ids[3];
 } icd_files_form_t;
@@ -361,13 +361,13 @@ typedef struct {
 typedef struct {
     /** Returns to the first file. */
     icd_step_t reset;
-    /** Goes on to the next file. */
+    /** Advances to the next file. */
     icd_step_t advance;
     /** Describes a file. */
     icd_step_t information;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** Longest time that the busy flag stays set, in milliseconds. */
+    /** Longest time that the busy flag is set, in milliseconds. */
     uint32_t timeout;
 } icd_list_form_t;
 
@@ -375,7 +375,7 @@ typedef struct {
 typedef struct {
     /** Loads a block. */
     icd_step_t load;
-    /** Tells whether the block is loaded. */
+    /** Reports that the block is loaded. */
     icd_step_t ready;
     /** Starts the transfer of the block. */
     icd_step_t burst;
@@ -383,15 +383,15 @@ typedef struct {
     uint32_t message_length;
     /** Whether the checksum of a block covers the padding of its last packet. */
     bool checksum_covers_fill;
-    /** Counter that goes with the type of the index file. */
+    /** Counter of the index file, in addition to its type. */
     uint8_t index_counter;
     /** Time between two polls of the ready flag, in milliseconds. */
     uint32_t poll_interval;
     /** Longest time to load a block, in milliseconds. */
     uint32_t ready_timeout;
-    /** Time without a packet after which a burst is over, in milliseconds. */
+    /** Time without a packet after which a burst has ended, in milliseconds. */
     uint32_t silence;
-    /** Most bursts for one block. */
+    /** Maximum number of bursts for one block. */
     uint32_t rounds;
 } icd_download_form_t;
 
@@ -399,17 +399,17 @@ typedef struct {
 typedef struct {
     /** Erases the destination. */
     icd_step_t initiate;
-    /** Tells whether the destination is erased. */
+    /** Reports that the destination is erased. */
     icd_step_t initiated;
     /** Begins a block. */
     icd_step_t begin;
-    /** Carries a packet. */
+    /** Contains a packet. */
     icd_step_t packet;
-    /** Tells the checksum of the block received. */
+    /** Reports the checksum of the received block. */
     icd_step_t checksum;
     /** Commits a block. */
     icd_step_t finalize;
-    /** Tells whether the block is committed. */
+    /** Reports that the block is committed. */
     icd_step_t finalized;
     /** Value of the block size in `initiate`. */
     uint32_t block_size;
@@ -421,11 +421,11 @@ typedef struct {
     uint32_t erase_timeout;
     /** Longest time to commit a block, in milliseconds. */
     uint32_t finalize_timeout;
-    /** Most rounds of packets for one block. */
+    /** Maximum number of rounds of packets for one block. */
     uint32_t rounds;
-    /** Size of a destination in bytes: no file may be larger; 0 if the ICD does not say. */
+    /** Size of a destination in bytes, the maximum size of a file; 0 if the ICD does not say. */
     uint32_t destination_bytes;
-    /** Supported destinations; NULL: all. */
+    /** Supported destinations; empty if all are supported. */
     const uint8_t *destinations;
     /** Their number. */
     uint16_t destinations_count;
@@ -433,9 +433,9 @@ typedef struct {
 
 /** Erasing files, or formatting their medium. */
 typedef struct {
-    /** Begins it. */
+    /** Starts the procedure. */
     icd_step_t request;
-    /** Tells whether it is done. */
+    /** Reports that it has ended. */
     icd_step_t progress;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
@@ -445,15 +445,15 @@ typedef struct {
 
 /** An operation on a stored program: a telecommand starts it, and a frame reports its end. */
 typedef struct {
-    /** Starts it. */
+    /** Starts the operation. */
     icd_step_t request;
-    /** Tells when it is done. */
+    /** Reports that it has ended. */
     icd_step_t progress;
     /** Time between two polls of that frame, in milliseconds. */
     uint32_t poll_interval;
     /** Longest duration, in milliseconds. */
     uint32_t timeout;
-    /** Supported programs; NULL: all. */
+    /** Supported programs; empty if all are supported. */
     const uint8_t *programs;
     /** Their number. */
     uint16_t programs_count;

@@ -36,7 +36,7 @@ from icdgen.protocol.declared import (
 UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 
 _BITS = ("lsb0", "msb0")
-_MSB0 = "whether bit 0 is the most significant one of a byte"
+_MSB0 = "whether bit 0 is the most significant bit of a byte"
 CAN_WITH_DATA = ("telecommand", "reply")  # other kinds have no data
 CAN_KINDS = (
     "telecommand",
@@ -79,7 +79,7 @@ class Framing:
         "the parts of a message in which the escape byte is doubled",
     )  # fmt: skip
     ignores_other: bool = flag(
-        "other", "whether an escape byte before any other byte is skipped with it, or an error", False,
+        "other", "whether an escape byte and an unknown byte are skipped; otherwise it is an error", False,
         ("error", "ignore"), key_about="handling of any other byte after the escape byte",
     )  # fmt: skip
 
@@ -88,9 +88,9 @@ class Framing:
 class Acknowledge:
     """Acknowledge message on the UART. Positions count from its first byte."""
 
-    length: int = octets("", "bytes of the message")
-    id_at: int = octets("", "where the id of the telecommand stands")
-    error_at: int = octets("", "where the error code stands")
+    length: int = octets("", "length of the message")
+    id_at: int = octets("", "offset of the id of the telecommand")
+    error_at: int = octets("", "offset of the error code")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -148,19 +148,21 @@ class Checksum:
 
     crc: Crc
     covers_id: bool = flag(
-        "covers_id", "whether the id byte is part of what the checksum covers", False
+        "covers_id", "whether the checksum covers the id byte", False
     )
     telecommand_buses: tuple[str, ...] = buses(
-        "telecommand", "where telecommands have it"
+        "telecommand", "buses on which telecommands may have a checksum"
     )
-    telemetry_buses: tuple[str, ...] = buses("telemetry", "where telemetry has it")
+    telemetry_buses: tuple[str, ...] = buses(
+        "telemetry", "buses on which telemetry may have a checksum"
+    )
     telecommand_always: tuple[str, ...] = buses(
-        "telecommand", "where telecommands are not taken without it"
+        "telecommand", "buses on which telecommands must have a checksum"
     )
     telemetry_always: tuple[str, ...] = buses(
-        "telemetry", "where telemetry never is without it"
+        "telemetry", "buses on which telemetry always has a checksum"
     )
-    bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
+    bytes: int = octets("", "length of the checksum", 1, BYTE)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -178,7 +180,7 @@ class Extended:
     data_bytes: int = octets("data_bytes", "data bytes of a packet", 1, 8)
     left_at: int = octets(
         "packets_left_byte",
-        "index of the byte that counts the packets that follow",
+        "index of the byte with the number of packets that follow",
         0,
         7,
     )
@@ -190,11 +192,11 @@ class Extended:
         holds=BYTE,
     )
     packets: int = number(
-        "max_packets", "most packets of a message", 1, default=CAN_PACKETS
+        "max_packets", "maximum number of packets of a message", 1, default=CAN_PACKETS
     )
     bytes: int = octets(
         "max_bytes",
-        "most bytes of a message",
+        "maximum number of bytes of a message",
         1,
         U32,
         lambda preceding: preceding["data_bytes"] * preceding["packets"],
@@ -214,7 +216,7 @@ class Can:
     node_address: int = octet("node_address", "address of the node")
     data_bytes: int = octets(
         "max_data_bytes",
-        "most data bytes of one packet; CAN 2.0 allows 8",
+        "maximum number of data bytes of one packet; CAN 2.0 allows 8",
         1,
         CAN_DATA_BYTES,
         CAN_DATA_BYTES,
@@ -269,15 +271,17 @@ class LogMask:
 class LogFile:
     """Log as a file."""
 
-    mask_at: int = octets("", "where the mask stands in the header")
-    header_bytes: int = octets("", "bytes of the header")
-    seconds: tuple[int, int] = span("where the Unix time stands in an entry")
-    milliseconds: tuple[int, int] = span("where the milliseconds stand in an entry")
+    mask_at: int = octets("", "offset of the mask in the header")
+    header_bytes: int = octets("", "length of the header")
+    seconds: tuple[int, int] = span("offset and length of the Unix time in an entry")
+    milliseconds: tuple[int, int] = span(
+        "offset and length of the milliseconds in an entry"
+    )
     frames_at: int = octets(
-        "frames_byte", "where in an entry the selected frames begin", 0
+        "frames_byte", "offset of the selected frames in an entry", 0
     )
     file_type: int | None = number(
-        "file_type.value", "type of such a file", 0, BYTE, None
+        "file_type.value", "type of a log file", 0, BYTE, None
     )
 
 
@@ -285,11 +289,9 @@ class LogFile:
 class LogMessage:
     """Log as an unsolicited message. Positions count from the id."""
 
-    id: int = number("id", "id of such messages", most=BYTE)
-    mask_at: int = octets("", "where the mask stands")
-    frames_at: int = octets(
-        "frames_byte", "where the selected frames begin, counted from the id", 0
-    )
+    id: int = number("id", "id of the message", most=BYTE)
+    mask_at: int = octets("", "offset of the mask")
+    frames_at: int = octets("frames_byte", "offset of the selected frames", 0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -314,7 +316,7 @@ class Index:
 
     entry_bytes: int = octets("entry_bytes", "length of an entry")
     file_type: int | None = number(
-        "file_type.value", "type of such a file", 0, BYTE, None
+        "file_type.value", "type of the index file", 0, BYTE, None
     )
     fields: dict[str, IndexField]
 
@@ -374,10 +376,10 @@ class Listing:
     """Procedure that reads the list of files."""
 
     reset: Step = telecommand("reset", "returns to the first file")
-    advance: Step = telecommand("advance", "goes on to the next file")
+    advance: Step = telecommand("advance", "advances to the next file")
     information: Step = telemetry("information", "describes a file")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
-    timeout: int = time("timeout_ms", "longest time that the busy flag stays set")
+    timeout: int = time("timeout_ms", "longest time that the busy flag is set")
 
 
 _COVERS_FILL = "whether the checksum of a block covers the padding of its last packet"
@@ -388,21 +390,25 @@ class Download:
     """Procedure that downloads a file."""
 
     load: Step = telecommand("load", "loads a block")
-    ready: Step = telemetry("ready", "tells whether the block is loaded")
+    ready: Step = telemetry("ready", "reports that the block is loaded")
     burst: Step = telecommand("burst", "starts the transfer of the block")
     message_length: int = number(
         "message_length", "value of the length in the burst telecommand", 0, U32
     )
     checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
     index_counter: int = number(
-        "index_counter", "counter that goes with the type of the index file", 0, BYTE, 0
+        "index_counter",
+        "counter of the index file, in addition to its type",
+        0,
+        BYTE,
+        0,
     )
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the ready flag")
     ready_timeout: int = time("ready_timeout_ms", "longest time to load a block")
     silence: int = time(
-        "silence_ms", "time without a packet after which a burst is over"
+        "silence_ms", "time without a packet after which a burst has ended"
     )
-    rounds: int = number("rounds", "most bursts for one block", 1, U32)
+    rounds: int = number("rounds", "maximum number of bursts for one block", 1, U32)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -410,12 +416,12 @@ class Upload:
     """Procedure that uploads a file."""
 
     initiate: Step = telecommand("initiate", "erases the destination")
-    initiated: Step = telemetry("initiated", "tells whether the destination is erased")
+    initiated: Step = telemetry("initiated", "reports that the destination is erased")
     begin: Step = telecommand("begin", "begins a block")
-    packet: Step = telecommand("packet", "carries a packet")
-    checksum: Step = telemetry("checksum", "tells the checksum of the block received")
+    packet: Step = telecommand("packet", "contains a packet")
+    checksum: Step = telemetry("checksum", "reports the checksum of the received block")
     finalize: Step = telecommand("finalize", "commits a block")
-    finalized: Step = telemetry("finalized", "tells whether the block is committed")
+    finalized: Step = telemetry("finalized", "reports that the block is committed")
     block_size: int = number(
         "block_size", "value of the block size in `initiate`", 0, U32
     )
@@ -427,17 +433,19 @@ class Upload:
     finalize_timeout: int = time(
         "finalize_timeout_ms", "longest time to commit a block"
     )
-    rounds: int = number("rounds", "most rounds of packets for one block", 1, U32)
+    rounds: int = number(
+        "rounds", "maximum number of rounds of packets for one block", 1, U32
+    )
     destination_bytes: int | None = octets(
         "destination_bytes",
-        "size of a destination in bytes: no file may be larger",
+        "size of a destination in bytes, the maximum size of a file",
         1,
         U32,
         None,
     )
     destinations: tuple[int, ...] = allowed(
         "destinations",
-        "supported destinations; none: all",
+        "supported destinations; empty if all are supported",
         "the destinations that are supported",
     )
 
@@ -446,8 +454,8 @@ class Upload:
 class Erasure:
     """Procedure that deletes files or formats their medium."""
 
-    request: Step = telecommand("request", "begins it")
-    progress: Step = telemetry("progress", "tells whether it is done")
+    request: Step = telecommand("request", "starts the procedure")
+    progress: Step = telemetry("progress", "reports that it has ended")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
     timeout: int = time("timeout_ms", "longest duration")
 
@@ -474,8 +482,12 @@ class Files:
     fill: int = octet(
         "fill", "value of the bytes of the last packet beyond the end of the file", 0
     )
-    block_packets: int = octets("block_packets", "most packets of a block", 1, U16 + 1)
-    block_bytes: int = octets("block_bytes", "most bytes of a block", 1, U32)
+    block_packets: int = octets(
+        "block_packets", "maximum number of packets of a block", 1, U16 + 1
+    )
+    block_bytes: int = octets(
+        "block_bytes", "maximum number of bytes of a block", 1, U32
+    )
     packet_ids: dict[str, int]  # bus -> id that heads a download packet there
     list: Listing | None
     download: Download | None
@@ -509,13 +521,13 @@ class Operation:
     is set.
     """
 
-    request: Step = telecommand("request", "starts it")
-    progress: Step = telemetry("progress", "tells when it is done")
+    request: Step = telecommand("request", "starts the operation")
+    progress: Step = telemetry("progress", "reports that it has ended")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}that frame")
     timeout: int = time("timeout_s", "longest duration")
     programs: tuple[int, ...] = allowed(
         "programs",
-        "supported programs; none: all",
+        "supported programs; empty if all are supported",
         "the programs for which this is supported, if not all",
     )
 

@@ -33,17 +33,17 @@ typedef struct {
     uint8_t escaped;
     /** Whether the id is escaped like the data. */
     bool escapes_id;
-    /** Whether an escape byte before any other byte is skipped with it, or an error. */
+    /** Whether an escape byte and an unknown byte are skipped; otherwise it is an error. */
     bool ignores_other;
 } icd_framing_t;
 
 /** The acknowledge on the UART: its length, and where the id of the telecommand and the error code stand. */
 typedef struct {
-    /** Bytes of the message. */
+    /** Length of the message. */
     uint16_t length;
-    /** Where the id of the telecommand stands. */
+    /** Offset of the id of the telecommand. */
     uint16_t id_at;
-    /** Where the error code stands. */
+    /** Offset of the error code. */
     uint16_t error_at;
 } icd_acknowledge_t;
 
@@ -106,17 +106,17 @@ typedef struct {
 
 /** The optional checksum of telecommands and frames. */
 typedef struct {
-    /** Whether the id byte is part of what the checksum covers. */
+    /** Whether the checksum covers the id byte. */
     bool covers_id;
-    /** Where telecommands have it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telecommands may have a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telecommand_buses;
-    /** Where telemetry has it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telemetry may have a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_buses;
-    /** Where telecommands are not taken without it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telecommands must have a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telecommand_always;
-    /** Where telemetry never is without it; bit n: on bus n of icd_bus_t. */
+    /** Buses on which telemetry always has a checksum; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_always;
-    /** Bytes that it adds to a message. */
+    /** Length of the checksum. */
     uint8_t bytes;
     icd_crc_form_t crc;
 } icd_checksum_form_t;
@@ -143,13 +143,13 @@ typedef enum {
 typedef struct {
     /** Data bytes of a packet. */
     uint8_t data_bytes;
-    /** Index of the byte that counts the packets that follow. */
+    /** Index of the byte with the number of packets that follow. */
     uint8_t left_at;
     /** Value of that byte in the last packet. */
     uint8_t left_in_last;
-    /** Most packets of a message. */
+    /** Maximum number of packets of a message. */
     uint32_t packets;
-    /** Most bytes of a message. */
+    /** Maximum number of bytes of a message. */
     uint32_t bytes;
     /** Value of unused bytes of the last packet. */
     uint8_t fill;
@@ -161,7 +161,7 @@ typedef struct {
 typedef struct {
     /** Address of the node. */
     uint8_t node_address;
-    /** Most data bytes of one packet; CAN 2.0 allows 8. */
+    /** Maximum number of data bytes of one packet; CAN 2.0 allows 8. */
     uint8_t data_bytes;
     icd_can_part_t type;
     icd_can_part_t channel;
@@ -182,7 +182,7 @@ typedef struct {
 typedef struct {
     /** Length of the mask. */
     uint8_t size;
-    /** Whether bit 0 is the most significant one of a byte. */
+    /** Whether bit 0 is the most significant bit of a byte. */
     bool msb0;
     /** Length of each frame in a log. */
     uint16_t slot_bytes;
@@ -199,27 +199,27 @@ typedef struct {
 
 /** The file form of a log. */
 typedef struct {
-    /** Where the mask stands in the header. */
+    /** Offset of the mask in the header. */
     uint16_t mask_at;
-    /** Bytes of the header. */
+    /** Length of the header. */
     uint16_t header_bytes;
-    /** Where the Unix time stands in an entry. */
+    /** Offset and length of the Unix time in an entry. */
     icd_part_t seconds;
-    /** Where the milliseconds stand in an entry. */
+    /** Offset and length of the milliseconds in an entry. */
     icd_part_t milliseconds;
-    /** Where in an entry the selected frames begin. */
+    /** Offset of the selected frames in an entry. */
     uint16_t frames_at;
-    /** Type of such a file; -1 if the ICD does not say. */
+    /** Type of a log file; -1 if the ICD does not say. */
     int16_t file_type;
 } icd_log_file_form_t;
 
 /** The unsolicited form of a log; places are counted from the id. */
 typedef struct {
-    /** Id of such messages. */
+    /** Id of the message. */
     uint8_t id;
-    /** Where the mask stands. */
+    /** Offset of the mask. */
     uint16_t mask_at;
-    /** Where the selected frames begin, counted from the id. */
+    /** Offset of the selected frames. */
     uint16_t frames_at;
 } icd_log_message_form_t;
 
@@ -240,7 +240,7 @@ typedef struct {
 typedef struct {
     /** Length of an entry. */
     uint16_t entry_bytes;
-    /** Type of such a file; -1 if the ICD does not say. */
+    /** Type of the index file; -1 if the ICD does not say. */
     int16_t file_type;
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
@@ -302,7 +302,7 @@ typedef struct {
     uint16_t bytes;
     /** Bytes of the map in each message. */
     uint16_t message_bytes;
-    /** Whether bit 0 is the most significant one of a byte. */
+    /** Whether bit 0 is the most significant bit of a byte. */
     bool msb0;
     /** Value of the bit of a received packet. */
     bool received;
@@ -322,9 +322,9 @@ typedef struct {
     uint16_t first_packet;
     /** Value of the bytes of the last packet beyond the end of the file. */
     uint8_t fill;
-    /** Most packets of a block. */
+    /** Maximum number of packets of a block. */
     uint32_t block_packets;
-    /** Most bytes of a block. */
+    /** Maximum number of bytes of a block. */
     uint32_t block_bytes;
     int16_t packet_ids[3];
 } icd_files_form_t;

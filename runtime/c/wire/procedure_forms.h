@@ -8,13 +8,13 @@
 typedef struct {
     /** Returns to the first file. */
     icd_step_t reset;
-    /** Goes on to the next file. */
+    /** Advances to the next file. */
     icd_step_t advance;
     /** Describes a file. */
     icd_step_t information;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
-    /** Longest time that the busy flag stays set, in milliseconds. */
+    /** Longest time that the busy flag is set, in milliseconds. */
     uint32_t timeout;
 } icd_list_form_t;
 
@@ -22,7 +22,7 @@ typedef struct {
 typedef struct {
     /** Loads a block. */
     icd_step_t load;
-    /** Tells whether the block is loaded. */
+    /** Reports that the block is loaded. */
     icd_step_t ready;
     /** Starts the transfer of the block. */
     icd_step_t burst;
@@ -30,15 +30,15 @@ typedef struct {
     uint32_t message_length;
     /** Whether the checksum of a block covers the padding of its last packet. */
     bool checksum_covers_fill;
-    /** Counter that goes with the type of the index file. */
+    /** Counter of the index file, in addition to its type. */
     uint8_t index_counter;
     /** Time between two polls of the ready flag, in milliseconds. */
     uint32_t poll_interval;
     /** Longest time to load a block, in milliseconds. */
     uint32_t ready_timeout;
-    /** Time without a packet after which a burst is over, in milliseconds. */
+    /** Time without a packet after which a burst has ended, in milliseconds. */
     uint32_t silence;
-    /** Most bursts for one block. */
+    /** Maximum number of bursts for one block. */
     uint32_t rounds;
 } icd_download_form_t;
 
@@ -46,17 +46,17 @@ typedef struct {
 typedef struct {
     /** Erases the destination. */
     icd_step_t initiate;
-    /** Tells whether the destination is erased. */
+    /** Reports that the destination is erased. */
     icd_step_t initiated;
     /** Begins a block. */
     icd_step_t begin;
-    /** Carries a packet. */
+    /** Contains a packet. */
     icd_step_t packet;
-    /** Tells the checksum of the block received. */
+    /** Reports the checksum of the received block. */
     icd_step_t checksum;
     /** Commits a block. */
     icd_step_t finalize;
-    /** Tells whether the block is committed. */
+    /** Reports that the block is committed. */
     icd_step_t finalized;
     /** Value of the block size in `initiate`. */
     uint32_t block_size;
@@ -68,11 +68,11 @@ typedef struct {
     uint32_t erase_timeout;
     /** Longest time to commit a block, in milliseconds. */
     uint32_t finalize_timeout;
-    /** Most rounds of packets for one block. */
+    /** Maximum number of rounds of packets for one block. */
     uint32_t rounds;
-    /** Size of a destination in bytes: no file may be larger; 0 if the ICD does not say. */
+    /** Size of a destination in bytes, the maximum size of a file; 0 if the ICD does not say. */
     uint32_t destination_bytes;
-    /** Supported destinations; NULL: all. */
+    /** Supported destinations; empty if all are supported. */
     const uint8_t *destinations;
     /** Their number. */
     uint16_t destinations_count;
@@ -80,9 +80,9 @@ typedef struct {
 
 /** Erasing files, or formatting their medium. */
 typedef struct {
-    /** Begins it. */
+    /** Starts the procedure. */
     icd_step_t request;
-    /** Tells whether it is done. */
+    /** Reports that it has ended. */
     icd_step_t progress;
     /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
@@ -92,15 +92,15 @@ typedef struct {
 
 /** An operation on a stored program: a telecommand starts it, and a frame reports its end. */
 typedef struct {
-    /** Starts it. */
+    /** Starts the operation. */
     icd_step_t request;
-    /** Tells when it is done. */
+    /** Reports that it has ended. */
     icd_step_t progress;
     /** Time between two polls of that frame, in milliseconds. */
     uint32_t poll_interval;
     /** Longest duration, in milliseconds. */
     uint32_t timeout;
-    /** Supported programs; NULL: all. */
+    /** Supported programs; empty if all are supported. */
     const uint8_t *programs;
     /** Their number. */
     uint16_t programs_count;

@@ -36,7 +36,7 @@ class Settings(NamedTuple):
     """Timeouts and retries of a client, in milliseconds."""
 
     reply_timeout: Number
-    """Timeout of a reply, in milliseconds."""
+    """Time-out of a reply, in milliseconds."""
     retries: int
     """Number of retries of a request."""
     poll_interval: Number
@@ -69,7 +69,8 @@ class Framing(NamedTuple):
     escapes_id: bool
     """Whether the id is escaped like the data."""
     ignores_other: bool
-    """Whether an escape byte and an unknown byte are skipped; otherwise it is an error."""
+    """Whether an escape byte and an unknown byte are skipped; otherwise it is an
+    error."""
 
 
 class Acknowledge(NamedTuple):

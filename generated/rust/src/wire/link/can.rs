@@ -7,7 +7,7 @@
 pub struct Can {
     /// Address of the node.
     pub node_address: u8,
-    /// Most data bytes of one packet; CAN 2.0 allows 8.
+    /// Maximum number of data bytes of one packet; CAN 2.0 allows 8.
     pub data_bytes: usize,
     /// Where the message type stands.
     pub kind: CanPart,
@@ -54,13 +54,13 @@ pub struct CanTypes {
 pub struct Extended {
     /// Data bytes of a packet.
     pub data_bytes: usize,
-    /// Index of the byte that counts the packets that follow.
+    /// Index of the byte with the number of packets that follow.
     pub left_at: usize,
     /// Value of that byte in the last packet.
     pub left_in_last: u8,
-    /// Most packets of a message.
+    /// Maximum number of packets of a message.
     pub packets: u32,
-    /// Most bytes of a message.
+    /// Maximum number of bytes of a message.
     pub bytes: usize,
     /// Value of unused bytes of the last packet.
     pub fill: u8,

@@ -7,7 +7,7 @@
 pub struct LogMask {
     /// Length of the mask.
     pub size: usize,
-    /// Whether bit 0 is the most significant one of a byte.
+    /// Whether bit 0 is the most significant bit of a byte.
     pub msb0: bool,
     /// Length of each frame in a log.
     pub slot_bytes: usize,
@@ -33,28 +33,28 @@ pub struct LogBit {
 /// The file form of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LogFile {
-    /// Where the mask stands in the header.
+    /// Offset of the mask in the header.
     pub mask_at: usize,
-    /// Bytes of the header.
+    /// Length of the header.
     pub header_bytes: usize,
-    /// Where the Unix time stands in an entry.
+    /// Offset and length of the Unix time in an entry.
     pub seconds: Span,
-    /// Where the milliseconds stand in an entry.
+    /// Offset and length of the milliseconds in an entry.
     pub milliseconds: Span,
-    /// Where in an entry the selected frames begin.
+    /// Offset of the selected frames in an entry.
     pub frames_at: usize,
-    /// Type of such a file.
+    /// Type of a log file.
     pub file_type: Option<u8>,
 }
 
 /// The unsolicited form of a log. Places count from the id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LogMessage {
-    /// Id of such messages.
+    /// Id of the message.
     pub id: u8,
-    /// Where the mask stands.
+    /// Offset of the mask.
     pub mask_at: usize,
-    /// Where the selected frames begin, counted from the id.
+    /// Offset of the selected frames.
     pub frames_at: usize,
 }
 
@@ -102,7 +102,7 @@ pub struct TimePart {
 pub struct IndexForm {
     /// Length of an entry.
     pub entry_bytes: usize,
-    /// Type of such a file.
+    /// Type of the index file.
     pub file_type: Option<u8>,
     /// Type of the file.
     pub kind: Span,

@@ -220,18 +220,18 @@ pub struct Framing {
     pub escaped: u8,
     /// Whether the id is escaped like the data.
     pub escapes_id: bool,
-    /// Whether an escape byte before any other byte is skipped with it, or an error.
+    /// Whether an escape byte and an unknown byte are skipped; otherwise it is an error.
     pub ignores_other: bool,
 }
 
 /// The acknowledge as a message on the UART, which counts from its first byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acknowledge {
-    /// Bytes of the message.
+    /// Length of the message.
     pub length: usize,
-    /// Where the id of the telecommand stands.
+    /// Offset of the id of the telecommand.
     pub id_at: usize,
-    /// Where the error code stands.
+    /// Offset of the error code.
     pub error_at: usize,
 }
 
@@ -282,17 +282,17 @@ impl CrcForm {
 /// The optional checksum of telecommands and frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum {
-    /// Whether the id byte is part of what the checksum covers.
+    /// Whether the checksum covers the id byte.
     pub covers_id: bool,
-    /// Where telecommands have it.
+    /// Buses on which telecommands may have a checksum.
     pub telecommand_buses: PerBus<bool>,
-    /// Where telemetry has it.
+    /// Buses on which telemetry may have a checksum.
     pub telemetry_buses: PerBus<bool>,
-    /// Where telecommands are not taken without it.
+    /// Buses on which telecommands must have a checksum.
     pub telecommand_always: PerBus<bool>,
-    /// Where telemetry never is without it.
+    /// Buses on which telemetry always has a checksum.
     pub telemetry_always: PerBus<bool>,
-    /// Bytes that it adds to a message.
+    /// Length of the checksum.
     pub bytes: usize,
     /// Its parameters.
     pub crc: CrcForm,

@@ -15,9 +15,9 @@ pub struct Files {
     pub first_packet: u32,
     /// Value of the bytes of the last packet beyond the end of the file.
     pub fill: u8,
-    /// Most packets of a block.
+    /// Maximum number of packets of a block.
     pub block_packets: usize,
-    /// Most bytes of a block.
+    /// Maximum number of bytes of a block.
     pub block_bytes: usize,
     /// Id of a download packet on each bus.
     pub packet_ids: PerBus<Option<u8>>,
@@ -42,7 +42,7 @@ pub struct HoleMapForm {
     pub bytes: usize,
     /// Bytes of the map in each message.
     pub message_bytes: usize,
-    /// Whether bit 0 is the most significant one of a byte.
+    /// Whether bit 0 is the most significant bit of a byte.
     pub msb0: bool,
     /// Value of the bit of a received packet.
     pub received: bool,
@@ -70,13 +70,13 @@ pub struct MapMessage {
 pub struct ListForm {
     /// Returns to the first file.
     pub reset: Step,
-    /// Goes on to the next file.
+    /// Advances to the next file.
     pub advance: Step,
     /// Describes a file.
     pub information: Step,
     /// Time between two polls of the busy flag.
     pub poll_interval_ms: u32,
-    /// Longest time that the busy flag stays set.
+    /// Longest time that the busy flag is set.
     pub timeout_ms: u32,
 }
 
@@ -85,7 +85,7 @@ pub struct ListForm {
 pub struct DownloadForm {
     /// Loads a block.
     pub load: Step,
-    /// Tells whether the block is loaded.
+    /// Reports that the block is loaded.
     pub ready: Step,
     /// Starts the transfer of the block.
     pub burst: Step,
@@ -93,15 +93,15 @@ pub struct DownloadForm {
     pub message_length: u32,
     /// Whether the checksum of a block covers the padding of its last packet.
     pub checksum_covers_fill: bool,
-    /// Counter that goes with the type of the index file.
+    /// Counter of the index file, in addition to its type.
     pub index_counter: u8,
     /// Time between two polls of the ready flag.
     pub poll_interval_ms: u32,
     /// Longest time to load a block.
     pub ready_timeout_ms: u32,
-    /// Time without a packet after which a burst is over.
+    /// Time without a packet after which a burst has ended.
     pub silence_ms: u32,
-    /// Most bursts for one block.
+    /// Maximum number of bursts for one block.
     pub rounds: u32,
 }
 
@@ -110,17 +110,17 @@ pub struct DownloadForm {
 pub struct UploadForm {
     /// Erases the destination.
     pub initiate: Step,
-    /// Tells whether the destination is erased.
+    /// Reports that the destination is erased.
     pub initiated: Step,
     /// Begins a block.
     pub begin: Step,
-    /// Carries a packet.
+    /// Contains a packet.
     pub packet: Step,
-    /// Tells the checksum of the block received.
+    /// Reports the checksum of the received block.
     pub checksum: Step,
     /// Commits a block.
     pub finalize: Step,
-    /// Tells whether the block is committed.
+    /// Reports that the block is committed.
     pub finalized: Step,
     /// Value of the block size in `initiate`.
     pub block_size: u32,
@@ -132,35 +132,35 @@ pub struct UploadForm {
     pub erase_timeout_ms: u32,
     /// Longest time to commit a block.
     pub finalize_timeout_ms: u32,
-    /// Most rounds of packets for one block.
+    /// Maximum number of rounds of packets for one block.
     pub rounds: u32,
-    /// Size of a destination in bytes: no file may be larger.
+    /// Size of a destination in bytes, the maximum size of a file.
     pub destination_bytes: Option<usize>,
-    /// Supported destinations; none: all.
+    /// Supported destinations; empty if all are supported.
     pub destinations: &'static [u8],
 }
 
 /// An operation on a stored program: a telecommand starts it, and a frame reports its end.
 #[derive(Clone, Copy, Debug)]
 pub struct OperationForm {
-    /// Starts it.
+    /// Starts the operation.
     pub request: Step,
-    /// Tells when it is done.
+    /// Reports that it has ended.
     pub progress: Step,
     /// Time between two polls of that frame.
     pub poll_interval_ms: u32,
     /// Longest duration.
     pub timeout_ms: u32,
-    /// Supported programs; none: all.
+    /// Supported programs; empty if all are supported.
     pub programs: &'static [u8],
 }
 
 /// Erasing, of files or of the whole medium.
 #[derive(Clone, Copy, Debug)]
 pub struct ErasureForm {
-    /// Begins it.
+    /// Starts the procedure.
     pub request: Step,
-    /// Tells whether it is done.
+    /// Reports that it has ended.
     pub progress: Step,
     /// Time between two polls of the busy flag.
     pub poll_interval_ms: u32,
