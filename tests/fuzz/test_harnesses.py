@@ -204,7 +204,7 @@ def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(
     streams = Streams(package)
     streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
     monkeypatch.setattr(
-        wire.UartDecoder, "_within", lambda self, data, position, events: len(data)
+        wire.UartDecoder, "_inside", lambda self, data, position, events: len(data)
     )
     with pytest.raises(AssertionError):
         streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
