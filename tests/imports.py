@@ -65,9 +65,8 @@ def _reached(name: str, graph: Graph) -> set[str]:
 
 
 def folded(graph: Graph, places: Iterable[str]) -> Graph:
-    """The graph of the places, each a module or a package with all that is in it.
-
-    The longest that fits counts.
+    """The graph of the places, each a module or a package with all that is in it; the
+    longest that fits counts.
 
     The outermost package stands for itself alone.
     """

@@ -24,9 +24,8 @@ _TEXT = ("utf-8", "surrogateescape")
 
 
 def folder() -> str | None:
-    """Return the cache folder.
-
-    Returns None if the cache is disabled or the user has no home folder.
+    """Return the cache folder; None if the cache is disabled or the user has no home
+    folder.
     """
     chosen = os.environ.get("ICDGEN_CACHE")
     if chosen in ("off", "0"):
@@ -53,10 +52,8 @@ def key(*parts: str) -> str:
 
 
 def recall(kind: str, name: str) -> bytes | None:
-    """Return the data of a record.
-
-    Returns None if it is absent, damaged, not private, or if a file that it lists has
-    changed.
+    """Return the data of a record; None if it is absent, damaged, not private, or if a
+    file that it lists has changed.
     """
     top = folder()
     if (
@@ -128,9 +125,8 @@ def _is_private_folder(path: str) -> bool:
 
 
 def _content(path: str) -> bytes:
-    """Return the bytes of a private file.
-
-    Returns empty for anything else, such as a link or a pipe.
+    """Return the bytes of a private file; empty for anything else, such as a link or a
+    pipe.
     """
     flags = (
         os.O_RDONLY

@@ -56,10 +56,8 @@ class _Commands(click.Group):
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse arguments.
-
-        Insert the default command unless they begin with a command or an option of the
-        group.
+        """Parse arguments; insert the default command unless they begin with a command
+        or an option of the group.
         """
         if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", *_FOLDERS):
             _refuse_mistyped(args[0])
@@ -159,9 +157,8 @@ def icdgen(ctx: click.Context) -> None:
 
 
 def _generate_or_help(ctx: click.Context) -> None:
-    """Generate the languages of icdgen.toml.
-
-    If it names none, print the help and exit with status 2.
+    """Generate the languages of icdgen.toml; if it names none, print the help and exit
+    with status 2.
     """
     from icdgen.commands.common import chosen
 
@@ -245,9 +242,8 @@ def _drop_unwritten_output() -> None:
 
 
 def _complain(message: str, help: str = "") -> int:
-    """Print an error and its help, unless the error stream is closed.
-
-    Return the exit status 2.
+    """Print an error and its help, unless the error stream is closed; return the exit
+    status 2.
     """
     lines = [f"icdgen: error: {line}" for line in message.split("\n")]
     lines += [f"  help: {line}" for line in help.split("\n") if line]

@@ -192,9 +192,8 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
 
 
 def _check_length(message: Message, lengths: range, actual: int) -> None:
-    """Raise `LengthError` for a length that is not in `lengths`.
-
-    It expects the next shorter length, or else the shortest.
+    """Raise `LengthError` for a length that is not in `lengths`; it expects the next
+    shorter length, or else the shortest.
     """
     if actual not in lengths:
         raise LengthError(
@@ -252,9 +251,8 @@ def is_present(field: FrameField, raw: Mapping[str, Raw]) -> bool:
 def message_of_frame(
     icd: Icd, messages: Sequence[Message], frame: bytes
 ) -> Message | None:
-    """Return the message of a frame among messages that share an id.
-
-    Returns None if the frame matches none of them.
+    """Return the message of a frame among messages that share an id; None if the frame
+    matches none of them.
 
     A frame matches a message that can have its length and whose constants it has.
     Constants of array elements, and constants that all the messages have in common, are
@@ -401,9 +399,8 @@ def check_raw(field: AnyScalar, value: int | bytes) -> None:
 
 
 def physical(field: AnyScalar, raw: int) -> Fraction | None:
-    """Return the exact physical value of an integer field with a scale.
-
-    Returns None for any other field.
+    """Return the exact physical value of an integer field with a scale; None for any
+    other field.
     """
     return field.scale.physical(raw) if field.scale else None
 
@@ -421,9 +418,8 @@ def physical_double(field: AnyScalar, raw: int) -> float | None:
 
 
 def value_double(field: AnyScalar, raw: int) -> float:
-    """Return the physical value of a number as a double.
-
-    Without a formula its raw value.
+    """Return the physical value of a number as a double; without a formula its raw
+    value.
     """
     physical = physical_double(field, raw)
     if physical is not None:
@@ -480,9 +476,8 @@ def _raw_on_curve(field: AnyScalar, curve: Curve, value: float) -> int:
 
 
 def text(raw: bytes) -> str:
-    """Return the characters of a text field up to the first NUL.
-
-    U+FFFD for each byte that is not ASCII.
+    """Return the characters of a text field up to the first NUL; U+FFFD for each byte
+    that is not ASCII.
     """
     return raw.split(b"\0", 1)[0].decode("ascii", "replace")
 

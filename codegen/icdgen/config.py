@@ -199,9 +199,8 @@ def _wrong(
 
 
 def _place(path: Path, text: str, section: str, key: str) -> Place:
-    """Return the place of a key, also in the form `section.key`.
-
-    The start of the file if the key is not found.
+    """Return the place of a key, also in the form `section.key`; the start of the file
+    if the key is not found.
 
     `tomllib` does not report positions.
     """

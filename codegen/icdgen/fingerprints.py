@@ -20,9 +20,8 @@ UNKNOWN = "?"
 
 
 def of_path(path: str) -> str:
-    """Return the SHA-256 of a file, or of the names in a folder.
-
-    `ABSENT` or `UNKNOWN` for other paths.
+    """Return the SHA-256 of a file, or of the names in a folder; `ABSENT` or `UNKNOWN`
+    for other paths.
     """
     try:
         status = os.stat(path)

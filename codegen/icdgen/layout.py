@@ -33,9 +33,8 @@ def pieces(field: FrameField | NodePlace, node: Node) -> tuple[Piece, ...]:
 
 
 def mask(field: FrameField | NodePlace, node: Node) -> int:
-    """Return a mask of the bits of a field in the frame.
-
-    Bit w of byte b is bit 8 * b + w.
+    """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b +
+    w.
     """
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at

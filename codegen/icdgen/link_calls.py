@@ -328,9 +328,8 @@ def _stream(form: Stream) -> Call:
 
 
 def _stream_rows(rows: tuple[StreamRow, ...]) -> tuple[Call, ...]:
-    """Return the calls for the messages of a direction.
-
-    The last argument is the response, if the ICD declares one.
+    """Return the calls for the messages of a direction; the last argument is the
+    response, if the ICD declares one.
     """
     values = (
         (row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply)

@@ -209,9 +209,8 @@ def _compiled() -> BytecodeCache:
         """
 
         def get_cache_key(self, name: str, filename: str | None = None) -> str:
-            """Return the path of the compiled code.
-
-            Returns empty for a template that is not shipped.
+            """Return the path of the compiled code; empty for a template that is not
+            shipped.
             """
             is_shipped = filename is not None and Path(filename).is_relative_to(
                 shipped.templates()

@@ -45,9 +45,8 @@ def close_to(wanted: str, names: Iterable[str]) -> str:
 
 
 def question(names: Iterable[str]) -> str:
-    """Return the help "did you mean `a` or `b`?" with similar names.
-
-    Returns empty without names.
+    """Return the help "did you mean `a` or `b`?" with similar names; empty without
+    names.
     """
     quoted = [f"`{name}`" for name in names]
     return f"did you mean {' or '.join(quoted)}?" if quoted else ""
@@ -62,9 +61,8 @@ def _has_words_of(name: str, part: str) -> bool:
 
 
 def _edits(word: str, other: str) -> int | None:
-    """Return the edit distance of two words (optimal string alignment).
-
-    Returns None if they are not similar.
+    """Return the edit distance of two words (optimal string alignment); None if they
+    are not similar.
     """
     if word == other:
         return 0

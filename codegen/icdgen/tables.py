@@ -23,9 +23,8 @@ class Column(NamedTuple):
 
 
 def width_of(stream: TextIO | None) -> int | None:
-    """Return the width of the terminal of a stream in characters.
-
-    Returns None if it is not a terminal, or closed.
+    """Return the width of the terminal of a stream in characters; None if it is not a
+    terminal, or closed.
     """
     try:
         return (

@@ -184,9 +184,8 @@ for path in sorted(source.rglob("*.rs")):
 def test_lines_of_rust_that_were_not_executed_are_told_and_fail(
     demo, tmp_path, monkeypatch, capsys, count, status
 ):
-    """The programs are built, run and counted as ever.
-
-    What reads the counts is no part of Rust and is replaced.
+    """The programs are built, run and counted as ever; what reads the counts is no part
+    of Rust and is replaced.
     """
     if not rust_coverage.can_count():
         pytest.skip("this rustc was built without the profiler's runtime")

@@ -97,9 +97,8 @@ class Pack:
         return [field.name for field in found.fields]
 
     def messages_of(self, change: dict[str, str]) -> list[str]:
-        """The message that a change is part of.
-
-        Those in which the struct stands that it is part of.
+        """The message that a change is part of; those in which the struct stands that
+        it is part of.
         """
         node, part = self.icd.node(change["node"]), change["part of"]
         holders = (

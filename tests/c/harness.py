@@ -15,10 +15,10 @@ from icdgen.backends.c.types import type_of
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from tests.conformance.icds import (
-    SHIPPED,  # noqa: F401
-    read,  # noqa: F401
-    shipped,  # noqa: F401
+from tests.conformance.icds import (  # noqa: F401
+    SHIPPED,
+    read,
+    shipped,
 )
 
 HERE = Path(__file__).parent

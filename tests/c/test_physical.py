@@ -119,9 +119,8 @@ def _survives(field: NodePlace) -> bool:
 
 
 def tables(field: NodePlace, wide: int):
-    """What the test program compares with, as bytes.
-
-    ``wide`` values of a field of more than 16 bits.
+    """What the test program compares with, as bytes; ``wide`` values of a field of more
+    than 16 bits.
     """
     source = random.Random(f"{field.scale}{field.bits}")
     raws = raw_values(field, wide, source)

@@ -208,9 +208,8 @@ CHOSEN = ("-DCUBEACP_CHOSEN", "-DCUBEACP_WITH_IDENTIFICATION")
 
 
 def test_a_program_may_choose_the_messages_of_its_tables(folder):
-    """Others do not compile.
-
-    Those that the wire layer asks for itself are there nevertheless.
+    """Others do not compile; those that the wire layer asks for itself are there
+    nevertheless.
     """
     rows = []
     for options in (

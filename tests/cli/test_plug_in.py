@@ -1,6 +1,5 @@
-"""A backend of another package that breaks is named, with its entry point.
-
-Nobody sees a traceback.
+"""A backend of another package that breaks is named, with its entry point; nobody sees
+a traceback.
 """
 
 from __future__ import annotations

@@ -28,9 +28,8 @@ COMMANDS = {
 
 
 def on_terminal(arguments: list[str], folder, delay: float) -> tuple[int, str]:
-    """Run with standard error on a terminal.
-
-    Return the exit status and what the terminal gets.
+    """Run with standard error on a terminal; return the exit status and what the
+    terminal gets.
     """
     pty = pytest.importorskip("pty")
     reading, terminal = pty.openpty()

@@ -1,6 +1,5 @@
-"""Generates and builds testees.
-
-What was built from the same sources by the same tools is taken from the cache.
+"""Generates and builds testees; what was built from the same sources by the same tools
+is taken from the cache.
 """
 
 from __future__ import annotations

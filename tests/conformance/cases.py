@@ -26,9 +26,8 @@ class Case(NamedTuple):
 
 
 def member_names(files: dict[str, dict]) -> dict[str, list[list]]:
-    """The members of each enumeration, by the name of the enumeration.
-
-    Nodes that include others know theirs.
+    """The members of each enumeration, by the name of the enumeration; nodes that
+    include others know theirs.
     """
     return {e["name"]: e["members"] for data in files.values() for e in data["enums"]}
 
@@ -50,9 +49,8 @@ def name_of(members: list[list], value: int) -> str | None:
 
 
 def _is_among(name: str, parts: Sequence[dict], raw: dict) -> bool:
-    """Whether an element of one of these parts is in a frame of these raw values.
-
-    What is in no part is in every frame.
+    """Whether an element of one of these parts is in a frame of these raw values; what
+    is in no part is in every frame.
     """
     for one in parts:
         element = name.removeprefix(one["part"] + "[")

@@ -57,9 +57,8 @@ class Testee:
         self.deaths = 0
 
     def ask(self, lines: Sequence[bytes]) -> list[bytes | None]:
-        """The answer to each line (without its newline).
-
-        None for each that was not answered because the testee died.
+        """The answer to each line (without its newline); None for each that was not
+        answered because the testee died.
         """
         if self.process is None:
             self.process = subprocess.Popen(

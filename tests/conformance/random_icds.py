@@ -25,16 +25,14 @@ from tests.conformance.wholes import with_wholes
 
 
 class Differs(AssertionError):
-    """A language does not agree with the reference codec.
-
-    The message says where, and holds the ICDs.
+    """A language does not agree with the reference codec; the message says where, and
+    holds the ICDs.
     """
 
 
 def written(trees: dict[str, dict], folder: Path) -> Icd:
-    """The checked ICDs of the trees.
-
-    Identifiers and formulas that the rules refuse are replaced. Raises `Differs`.
+    """The checked ICDs of the trees; identifiers and formulas that the rules refuse are
+    replaced. Raises `Differs`.
     """
     for name, tree in trees.items():
         (folder / f"{name}.yaml").write_text(

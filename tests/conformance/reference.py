@@ -59,9 +59,8 @@ class Reference:
             return {"ok": False, "error": "request", "detail": str(error)}
 
     def message(self, request: dict) -> tuple[Node, Any]:
-        """The message that is meant and the node that declares it.
-
-        All of a shared id, where a frame is to tell.
+        """The message that is meant and the node that declares it; all of a shared id,
+        where a frame is to tell.
         """
         name, kind, id = (
             key(request, "node", str),

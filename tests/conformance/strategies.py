@@ -39,9 +39,8 @@ class Names:
     seen: set
 
     def one(self, word: str) -> dict:
-        """``name`` and ``identifier`` of something.
-
-        The rules may refuse the identifier.
+        """``name`` and ``identifier`` of something; the rules may refuse the
+        identifier.
         """
         draw = self.draw
         number = len(self.seen)
@@ -262,9 +261,8 @@ def _uses_all(
 
 
 def _needed(enum: dict) -> int:
-    """Bits of the narrowest field that holds every member.
-
-    A negative one makes all of them signed.
+    """Bits of the narrowest field that holds every member; a negative one makes all of
+    them signed.
     """
     values = [
         value
@@ -336,9 +334,8 @@ def _bits_of(field: dict, orders: dict) -> int:
 def _fields(
     draw, enums: list[dict], orders: dict, structs: list[dict], in_struct: bool = False
 ) -> tuple[list[dict], int]:
-    """Fields one after another with gaps of reserved bits, and their bytes.
-
-    ``orders`` are those of the message.
+    """Fields one after another with gaps of reserved bits, and their bytes; ``orders``
+    are those of the message.
     """
     fields: list[dict] = []
     names = Names(draw, set())

@@ -54,9 +54,8 @@ def shapes():
 
 
 def assert_values_are_those_of_cantools(read: run.Read, text: str, folder) -> int:
-    """Compare raw and physical values of random frames of each message.
-
-    The number of values.
+    """Compare raw and physical values of random frames of each message; the number of
+    values.
     """
     import cantools
     from cantools.database.errors import DecodeError

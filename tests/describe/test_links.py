@@ -1,6 +1,5 @@
-"""What is described of a link: its assumptions stand in every language.
-
-What an ICD does not describe whole is not there.
+"""What is described of a link: its assumptions stand in every language; what an ICD
+does not describe whole is not there.
 """
 
 from __future__ import annotations

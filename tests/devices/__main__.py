@@ -66,9 +66,8 @@ def measure(
     sample: int | None = None,
     nodes: int | None = None,
 ) -> Row:  # fmt: skip
-    """What the format holds of a protocol, and how it agrees with the library.
-
-    Of ``nodes`` nodes, ``sample`` messages of each.
+    """What the format holds of a protocol, and how it agrees with the library; of
+    ``nodes`` nodes, ``sample`` messages of each.
 
     Raises `BuildError`, and `ImportError` where the library is not installed.
     """

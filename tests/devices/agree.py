@@ -29,18 +29,14 @@ class Agreement:
     messages: int = 0
     frames: int = 0
     values: int = 0
-    rounded: int = (
-        0  # ours is the double nearest to the exact value, the library's is not
-    )
+    # ours is the double nearest to the exact value, the library's is not
+    rounded: int = 0
     impossible: int = 0  # the library's value has more bits than the field
-    special: int = (
-        # Values that have a meaning, where the library has a value or says that there
-        # is none.
-        0
-    )
-    encoded: int = (
-        0  # frames of the library, from its raw values and from its physical ones
-    )
+    # Values that have a meaning, where the library has a value or says that there is
+    # none.
+    special: int = 0
+    # frames of the library, from its raw values and from its physical ones
+    encoded: int = 0
     refused: int = 0  # frames that the library takes for another message
     unread: set[str] = field(
         default_factory=set
@@ -213,9 +209,8 @@ def _to_encode(
 def _values(
     one: Definition, raw: dict[str, object]
 ) -> Iterator[tuple[str, dict, object]]:
-    """Name, field and value of all that an answer has.
-
-    Of an array a list, of what is open at the end as much as there is.
+    """Name, field and value of all that an answer has; of an array a list, of what is
+    open at the end as much as there is.
     """
     for part in one.fields:
         name = part["name"]
@@ -229,9 +224,8 @@ def _values(
 def _values_of(
     one: Definition, part: dict, name: str, count: int | None, raw: dict[str, object]
 ) -> Iterator[tuple[str, dict, object]]:
-    """A field that stands for itself or is an array.
-
-    Of an array of structs, the fields of each element.
+    """A field that stands for itself or is an array; of an array of structs, the fields
+    of each element.
     """
     if "struct" not in part:
         yield name, part, _value(raw, name, count)
@@ -278,9 +272,8 @@ def _counter(end: dict) -> tuple[str, int]:
 
 
 def _means_something(raw: object, part: dict) -> bool:
-    """Whether a raw value is one that the ICD gives a meaning.
-
-    Of a float its bits are given.
+    """Whether a raw value is one that the ICD gives a meaning; of a float its bits are
+    given.
     """
     if part["type"] != "float":
         return any(one["value"] == raw for one in part.get("special", ()))
@@ -314,9 +307,8 @@ def _physical(
 
 
 def random_frames(one: Definition, chance: random.Random, count: int) -> list[bytes]:
-    """Frames of a message: zeros, ones, random bytes.
-
-    With its constants, and as many elements as they say.
+    """Frames of a message: zeros, ones, random bytes; with its constants, and as many
+    elements as they say.
     """
     if not one.ends and not one.length:
         return [b""]

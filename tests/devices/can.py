@@ -1,6 +1,5 @@
-"""CAN databases of the opendbc package: read as `icdgen import` reads them.
-
-Cantools judges.
+"""CAN databases of the opendbc package: read as `icdgen import` reads them; cantools
+judges.
 """
 
 from __future__ import annotations
@@ -101,9 +100,8 @@ def _said_of(signal: Any, is_multiplexer: bool) -> Any:
 def _reader(
     message: Any, fields: list[dict]
 ) -> tuple[Callable[[bytes, bool], Values], Callable[[bytes], bytes]]:
-    """The library's reading, raw or scaled, and its frame of these values.
-
-    Signals that overlap, or that no selector has, it knows only one by one.
+    """The library's reading, raw or scaled, and its frame of these values; signals that
+    overlap, or that no selector has, it knows only one by one.
     """
     from cantools.database import Message
     from cantools.database.errors import DecodeError

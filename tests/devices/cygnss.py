@@ -1,6 +1,5 @@
-"""Packets of the CYGNSS satellites, whose definitions lie among the tests of ccsdspy.
-
-Ccsdspy reads the frames and judges.
+"""Packets of the CYGNSS satellites, whose definitions lie among the tests of ccsdspy;
+ccsdspy reads the frames and judges.
 """
 
 from __future__ import annotations
@@ -91,9 +90,8 @@ def _definition(overview: list[str], rows: list[dict[str, str]]) -> Definition:
 
 
 def _spelled(formula: str) -> str:
-    """A formula as an ICD spells it.
-
-    Some are the coefficients of a line, its constant first.
+    """A formula as an ICD spells it; some are the coefficients of a line, its constant
+    first.
     """
     line = re.fullmatch(r"(\S+) (\S+)", formula)
     return (

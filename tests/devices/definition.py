@@ -21,9 +21,8 @@ class NotSupported(ValueError):
 
 @dataclass
 class Definition:
-    """One message: what an ICD says of it, or why it cannot be said.
-
-    And the library's own reading of a frame.
+    """One message: what an ICD says of it, or why it cannot be said; and the library's
+    own reading of a frame.
     """
 
     name: str
@@ -38,15 +37,11 @@ class Definition:
     more: dict = field(default_factory=dict)
     structs: list[dict] = field(default_factory=list)
     raw_only: str = ""  # why some physical values of it cannot be said
-    unread: str = (
-        # Why the library itself reads no frame of it, so that it is no message to be
-        # held.
-        ""
-    )
+    # Why the library itself reads no frame of it, so that it is no message to be held.
+    unread: str = ""
     may_end_early: bool = False  # whether zeros at the end may be cut off
-    encoded: Callable[[bytes], bytes] | None = (
-        None  # the library's own frame of the values of a frame
-    )
+    # the library's own frame of the values of a frame
+    encoded: Callable[[bytes], bytes] | None = None
 
     def tree(self) -> dict:
         """As it stands in an ICD; bytes at the end that nothing describes are reserved."""
@@ -156,9 +151,8 @@ class Definitions:
 
 @dataclass(frozen=True)
 class Protocol:
-    """``load`` gives the definitions.
-
-    It raises `ImportError` where the library is not installed.
+    """``load`` gives the definitions; it raises `ImportError` where the library is not
+    installed.
     """
 
     name: str
@@ -184,18 +178,16 @@ def words(text: str) -> str:
 
 
 def unit(text: str | None) -> dict:
-    """The key of a unit that the built-in table has.
-
-    Others are left out, as no value depends on them.
+    """The key of a unit that the built-in table has; others are left out, as no value
+    depends on them.
     """
     found = SPELLINGS.get(text or "", text or "")
     return {"unit": found} if found in STANDARD else {}
 
 
 def formula(factor: str, offset: str = "0") -> dict:
-    """The key of the formula of a factor and an offset as they are printed.
-
-    None where the raw value is meant.
+    """The key of the formula of a factor and an offset as they are printed; none where
+    the raw value is meant.
     """
     slope, constant = Fraction(factor), Fraction(offset)
     if slope == 1 and constant == 0:

@@ -54,9 +54,8 @@ def _fields(
     structs: list[dict],
     owner: str,
 ) -> int:
-    """Appends the parts' fields, and the struct of what is open at the end.
-
-    Where they end. Raises `NotSupported`.
+    """Appends the parts' fields, and the struct of what is open at the end; where they
+    end. Raises `NotSupported`.
     """
     for part in parts:
         name, inner = before + part.name, part.subcon

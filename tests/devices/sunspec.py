@@ -1,6 +1,5 @@
-"""Models of SunSpec (Modbus) as `icdgen import` reads those that pysunspec2 ships.
-
-Pysunspec2 judges.
+"""Models of SunSpec (Modbus) as `icdgen import` reads those that pysunspec2 ships;
+pysunspec2 judges.
 """
 
 from __future__ import annotations
@@ -110,8 +109,7 @@ def _groups(group: dict) -> Iterator[dict]:
 
 
 def _read(tree: dict, data: bytes, scaled: bool) -> dict[str, object]:
-    """What pysunspec2 makes of the block, raw or those that have a factor of their own.
-
+    """What pysunspec2 makes of the block, raw or those that have a factor of their own;
     None is 'not implemented'.
     """
     from sunspec2.device import Model

@@ -69,9 +69,8 @@ def test_sunspec_curves_have_the_values_of_the_library_for_any_number_of_points(
 def test_sunspec_curves_with_a_fixed_number_of_points_have_the_values_of_the_library(
     language: str, tmp_path: Path
 ) -> None:
-    """The library reads the counts from the registers.
-
-    The import has them from the edited copy of the model.
+    """The library reads the counts from the registers; the import has them from the
+    edited copy of the model.
     """
     pytest.importorskip("sunspec2")
     models = [

@@ -1,6 +1,5 @@
-"""What C, Python and Rust put on a link, the protocol's own library takes.
-
-And what that sends, they find.
+"""What C, Python and Rust put on a link, the protocol's own library takes; and what
+that sends, they find.
 
 The links are those of `examples/links`. Each language is asked by pipe, as in the
 conformance run.

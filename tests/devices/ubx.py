@@ -19,9 +19,8 @@ from tests.devices.definition import (
     twice,
 )
 
-LONGEST = (
-    1024  # bytes of a payload, where only its length says how many elements there are
-)
+# bytes of a payload, where only its length says how many elements there are
+LONGEST = 1024
 
 VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
     ("get", "AID-ALPSRV-REQ"): ("AID-ALPSRV", {}),
@@ -47,9 +46,8 @@ VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
     ("set", "TIM-VCOCAL-V0"): ("TIM-VCOCAL", {"type": 0}),
     ("poll", "CFG-TP5-TPX"): ("CFG-TP5", {}),
 }
-"""Layouts that share an id: whose id it is, and the constants that tell them.
-
-Without any, lengths do or it is the general one.
+"""Layouts that share an id: whose id it is, and the constants that tell them; without
+any, lengths do or it is the general one.
 """
 
 TYPES = {
@@ -248,9 +246,8 @@ def _fields(
     owner: str,
     plus: int = 0,
 ) -> int:
-    """Appends the fields of a payload, and the struct of an open group.
-
-    Where those of every frame end. Raises `NotSupported`.
+    """Appends the fields of a payload, and the struct of an open group; where those of
+    every frame end. Raises `NotSupported`.
 
     ``plus``: so many elements more than its counter says.
     """

@@ -1,6 +1,5 @@
-"""Packets that XTCE defines, as `icdgen import` reads it.
-
-Space-packet-parser judges, which reads telemetry.
+"""Packets that XTCE defines, as `icdgen import` reads it; space-packet-parser judges,
+which reads telemetry.
 """
 
 from __future__ import annotations

@@ -1,6 +1,5 @@
-"""What can be compared: files, folders, git revisions, the output of `icdgen show`.
-
-And that order and spelling are nothing.
+"""What can be compared: files, folders, git revisions, the output of `icdgen show`; and
+that order and spelling are nothing.
 """
 
 from __future__ import annotations

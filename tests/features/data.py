@@ -107,9 +107,8 @@ def examples() -> dict[str, list[str]]:
 
 
 def _pages() -> list[Path]:
-    """Pages whose examples show features.
-
-    ``tests/protocol`` runs the examples of complete links.
+    """Pages whose examples show features; ``tests/protocol`` runs the examples of
+    complete links.
     """
     return [page for page in documents.pages() if page.stem != "example-links"]
 

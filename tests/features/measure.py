@@ -42,9 +42,8 @@ BUILT = (
 
 @dataclass(frozen=True)
 class Cell:
-    """Whether an output has a feature.
-
-    ``says`` is what it says of it wrongly said, or what keeps it from having it.
+    """Whether an output has a feature; ``says`` is what it says of it wrongly said, or
+    what keeps it from having it.
     """
 
     has: bool

@@ -94,9 +94,8 @@ class Subject:
 
     @cached_property
     def linked(self) -> tuple[Icd, str]:
-        """The ICD with a link on which it is spoken: its own.
-
-        Else a line and a log; else one with envelopes. Raises `Refused`.
+        """The ICD with a link on which it is spoken: its own; else a line and a log;
+        else one with envelopes. Raises `Refused`.
         """
         tree = yaml.safe_load(self.content)
         if "protocol" in tree:
@@ -336,9 +335,8 @@ def _answers(program: Program, now: int) -> list[bytes | None]:
 
 
 def _log(subject: Subject) -> tuple[object, object]:
-    """As CSV and as Parquet.
-
-    Of envelopes what is made of the bytes that the example sends.
+    """As CSV and as Parquet; of envelopes what is made of the bytes that the example
+    sends.
     """
     icd, name = subject.linked
     if subject.has_envelopes:

@@ -74,9 +74,8 @@ documents = st.dictionaries(
 
 
 def check(text: str) -> str:
-    """The formatted text, after everything that must hold for it.
-
-    Refused texts are not our concern.
+    """The formatted text, after everything that must hold for it; refused texts are not
+    our concern.
     """
     try:
         before = source.parse(text.encode("utf-8"), "before")

@@ -1,6 +1,5 @@
-"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it.
-
-Status 0 if nothing is found.
+"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it;
+status 0 if nothing is found.
 """
 
 from __future__ import annotations

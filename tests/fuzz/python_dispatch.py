@@ -7,9 +7,8 @@ from types import ModuleType
 
 DIRECTION, FIT, AS_ID = 1, 2, 4
 LONGEST = 65535  # bytes of a frame; a field that counts may tell of more
-EXACT_BITS = (
-    52  # physical values of wider fields need not lead back to the same raw value
-)
+# physical values of wider fields need not lead back to the same raw value
+EXACT_BITS = 52
 
 
 class Dispatch:
@@ -56,9 +55,8 @@ class Dispatch:
 
 
 def check(message, frame: bytes, package: ModuleType) -> None:
-    """Encoding gives the frame, but for reserved bits.
-
-    So does setting every physical value.
+    """Encoding gives the frame, but for reserved bits; so does setting every physical
+    value.
     """
     first = message.to_bytes()
     assert len(first) == (len(frame) if message.TAIL else message.LENGTH)

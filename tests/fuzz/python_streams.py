@@ -187,9 +187,8 @@ class Streams:
         assert not client.busy and ends == 1
 
     def download(self, link, size: int, data: bytes) -> None:
-        """Outcomes and packets of any kind.
-
-        The procedure ends, and delivers what it was given.
+        """Outcomes and packets of any kind; the procedure ends, and delivers what it
+        was given.
         """
         download = self.wire.Download(
             link, ("uart", "i2c", "can")[size % 3], 2, size, size or None

@@ -1,6 +1,5 @@
-"""The fuzz harnesses, on the frames of the golden vectors and on random bytes.
-
-Fuzzing proper is `python -m tests.fuzz`.
+"""The fuzz harnesses, on the frames of the golden vectors and on random bytes; fuzzing
+proper is `python -m tests.fuzz`.
 """
 
 from __future__ import annotations

@@ -179,9 +179,8 @@ def test_a_note_does_not_gainsay_the_manual_or_another_note(icd, id, gone, holds
 
 
 def test_what_is_no_fault_is_no_note(icd):
-    """Table 40 and section 5.5 say what a byte too many is.
-
-    All set and get ids stand in Table 47; and so on.
+    """Table 40 and section 5.5 say what a byte too many is; all set and get ids stand
+    in Table 47; and so on.
     """
     known = {e.id for node in icd.nodes for e in node.errata}
     assert not known & {

@@ -7,9 +7,8 @@ _FIELD = ("bits", "type", "enum", "unit", "formula", "formula_for", "const")
 
 
 def differences(wanted: dict, got: dict, tables: bool = True) -> list[str]:
-    """One line per difference.
-
-    Empty where every message, field, enumeration and loggable frame is equal.
+    """One line per difference; empty where every message, field, enumeration and
+    loggable frame is equal.
 
     ``tables``: the table numbers too.
     """

@@ -17,10 +17,8 @@ TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENU
 
 
 def icdgen(*arguments, cwd) -> subprocess.CompletedProcess:
-    """Run icdgen.
-
-    An import of `pump.txt` gets the rules of the pump unless it has a profile of its
-    own.
+    """Run icdgen; an import of `pump.txt` gets the rules of the pump unless it has a
+    profile of its own.
     """
     rules = (
         ["--profile", "pump.yaml"]

@@ -41,9 +41,8 @@ def test_icdgen_rule_explains_and_lists_the_findings_of_an_import(tmp_path):
 
 
 def draw_message(path, below: float = 0, crop=None) -> None:
-    """A ruled message table near the lower edge of the page.
-
-    ``below``: points by which its last row lies under it.
+    """A ruled message table near the lower edge of the page; ``below``: points by which
+    its last row lies under it.
     """
     canvas = Canvas(str(path), pagesize=(400, 300), invariant=1)
     if crop:

@@ -1,6 +1,5 @@
-"""`icdgen --lang xlsx` and `--lang csv` write tables for reviews.
-
-The shipped profile `tables` reads the same layouts back.
+"""`icdgen --lang xlsx` and `--lang csv` write tables for reviews; the shipped profile
+`tables` reads the same layouts back.
 """
 
 from __future__ import annotations

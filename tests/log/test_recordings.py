@@ -51,9 +51,8 @@ EPOCH, OTHER = bytes.fromhex("01614AB37B0F"), bytes.fromhex("0107000102")
 
 @pytest.fixture
 def capture(tmp_path) -> Path:
-    """Three messages.
-
-    One that the ICD does not have, one damaged, noise, and the beginning of another.
+    """Three messages; one that the ICD does not have, one damaged, noise, and the
+    beginning of another.
     """
     damaged = bytearray(ubx(EPOCH))
     damaged[-1] ^= 1

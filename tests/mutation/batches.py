@@ -22,9 +22,8 @@ TRIED = frozenset({"ICD021", "ICD024"})
 
 @dataclass
 class Batch:
-    """Mutants by the name of their node.
-
-    Those that the rules refuse, with the findings; those that code can be made from.
+    """Mutants by the name of their node; those that the rules refuse, with the
+    findings; those that code can be made from.
     """
 
     mutants: dict[str, Mutant]

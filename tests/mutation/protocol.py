@@ -61,9 +61,8 @@ class Mutant:
 
 
 def mutants(icd: Icd) -> Iterator[Mutant]:
-    """Every number one more and one less, every truth value the other way round.
-
-    Reasons of assumptions are words.
+    """Every number one more and one less, every truth value the other way round;
+    reasons of assumptions are words.
     """
     for node in icd.nodes:
         for path, value in _leaves(node.protocol):

@@ -20,9 +20,8 @@ from pathlib import Path
 
 
 def digests_of(arguments: list[str]) -> dict[str, str]:
-    """Run one command in a process of its own.
-
-    Return digests by output file, of the text and the exit status.
+    """Run one command in a process of its own; return digests by output file, of the
+    text and the exit status.
     """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -43,9 +42,8 @@ def digests_of(arguments: list[str]) -> dict[str, str]:
 
 
 def _run(arguments: list[str], text: Path) -> None:
-    """Run a command in this process with standard output and error in a file.
-
-    Never returns.
+    """Run a command in this process with standard output and error in a file; never
+    returns.
     """
     stream = os.open(text, os.O_WRONLY | os.O_CREAT)
     os.dup2(stream, 1)
@@ -78,9 +76,9 @@ def _digest(content: bytes) -> str:
 def main() -> None:
     commands, digests, part, parts = sys.argv[1:]
     os.environ["ICDGEN_CACHE"] = "off"
-    from icdgen import (
-        cli,  # noqa: F401
-    )  # imported before the forks, so that each need not
+    from icdgen import (  # noqa: F401
+        cli,
+    )
 
     results = {}
     for number, (name, arguments) in enumerate(

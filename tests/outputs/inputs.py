@@ -40,9 +40,8 @@ _SINGLE = ("examples", "docs", "tests/conformance/links")
 
 
 class Command(NamedTuple):
-    """A command line of icdgen.
-
-    `{out}` in an argument is an empty folder of the command's own.
+    """A command line of icdgen; `{out}` in an argument is an empty folder of the
+    command's own.
     """
 
     name: str
@@ -50,9 +49,8 @@ class Command(NamedTuple):
 
 
 def commands(random_count: int) -> Iterator[Command]:
-    """List the commands for all sets of ICDs.
-
-    Random ICDs are written into `build/`, as paths appear in outputs.
+    """List the commands for all sets of ICDs; random ICDs are written into `build/`, as
+    paths appear in outputs.
     """
     yield Command("icd assurance", ["--lang", "assurance", "--out", "{out}", "icd"])
     for name, files in _sets(random_count):

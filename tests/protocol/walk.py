@@ -248,9 +248,8 @@ class Source:
 
 
 def told(thing: Any) -> Any:
-    """Facts as plain values.
-
-    A message, which is not of the protocol section, by its name.
+    """Facts as plain values; a message, which is not of the protocol section, by its
+    name.
     """
     if isinstance(thing, Message | Node):
         return thing.name
@@ -296,9 +295,8 @@ def cases(icd: Icd, known: Facts) -> Iterator[str]:
 
 
 def outcomes(source: Source, key: Key, whole: bool) -> Iterator[tuple[Path_, Any, str]]:
-    """Each place and other value, and what became of it.
-
-    Not ``whole``: until something did.
+    """Each place and other value, and what became of it; not ``whole``: until something
+    did.
     """
     for place in places(source.section, key.path):
         for other in source.others(key, place):
@@ -323,9 +321,8 @@ def sources(work: Path) -> Iterator[Source]:
 
 
 def walked(work: Path, whole: bool) -> dict[str, set[str]]:
-    """What came of the changes of each key, in any of the ICDs.
-
-    Nothing, where it does not stand or has but one value.
+    """What came of the changes of each key, in any of the ICDs; nothing, where it does
+    not stand or has but one value.
     """
     found: dict[str, set[str]] = {str(key): set() for key in all_keys()}
     for source in sources(work):

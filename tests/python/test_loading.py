@@ -77,9 +77,8 @@ def test_every_public_module_lists_its_names_as_a_literal(package):
 
 
 def _is_public(file: Path) -> bool:
-    """Whether users import from it: the package, its nodes, the wire layer.
-
-    Or it holds the types and links of a node.
+    """Whether users import from it: the package, its nodes, the wire layer; or it holds
+    the types and links of a node.
     """
     return file.name == "_link.py" or (file.parent.name == "_types") != (
         file.name == "__init__.py"

@@ -1,6 +1,5 @@
-"""Sessions over ports that fail, and over serial ports.
-
-Requests that are given up or come too late.
+"""Sessions over ports that fail, and over serial ports; requests that are given up or
+come too late.
 """
 
 from __future__ import annotations

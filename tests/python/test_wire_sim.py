@@ -177,9 +177,8 @@ def test_a_node_that_loses_every_packet_is_given_up(shipped, wire, file):
 
 
 def refusing(shipped, name: str, times: int, code: int = 0x55):
-    """A session with a bootloader that refuses a telecommand.
-
-    What it tells; and the port.
+    """A session with a bootloader that refuses a telecommand; what it tells; and the
+    port.
     """
     heard, boot = [], shipped.module("bootloader")
     port = Refusing(

@@ -77,9 +77,8 @@ def columns(data: bytes) -> float:
 
 
 def commanded(session: Session, any: type[Message]) -> Message:
-    """A session of some node takes all.
-
-    That of a node what it speaks, with what it includes, and what nobody knows.
+    """A session of some node takes all; that of a node what it speaks, with what it
+    includes, and what nobody knows.
     """
     session.send(Reset())
     own = Session(cubeacp.LINK, print, lambda seconds: b"")

@@ -18,10 +18,10 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.places import NodePlace
 from icdgen.render import Renderer
 from tests.conformance.build import build
-from tests.conformance.icds import (
-    SHIPPED,  # noqa: F401
-    read,  # noqa: F401
-    shipped,  # noqa: F401
+from tests.conformance.icds import (  # noqa: F401
+    SHIPPED,
+    read,
+    shipped,
 )
 from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
@@ -58,9 +58,8 @@ def main_of_testee(crate: Path) -> Path:
 
 
 def build_testee(icd: Icd) -> list[str]:
-    """The command that starts the testee, with the checks of a debug build.
-
-    Shared with the conformance run.
+    """The command that starts the testee, with the checks of a debug build; shared with
+    the conformance run.
     """
     return build(all_languages()["rust-debug"], icd)
 

@@ -1,6 +1,5 @@
-"""Arrays in Rust: `[T.
-
-N]`, accessors that take the index of an element, and no way to a panic.
+"""Arrays in Rust: `[T; N]`, accessors that take the index of an element, and no way to
+a panic.
 """
 
 from __future__ import annotations

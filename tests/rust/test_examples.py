@@ -25,9 +25,8 @@ UNWINDS = ("-C", "panic=unwind")  # as examples do
 
 
 def test_each_of_them_runs(subject):
-    """All.
-
-    Where each is a program of its own, those of the node with the fewest messages.
+    """All; where each is a program of its own, those of the node with the fewest
+    messages.
     """
     library, tools = Toolchain("default").library(
         subject.crate, "0", *UNWINDS, *STD

@@ -93,9 +93,8 @@ def test_no_unsafe_code_no_std_no_dependency(shipped):
 
 
 def test_hostile_text_stays_in_comments_and_strings(strange_texts):
-    """It compiles, which `test_tidy` shows.
-
-    Here: what it would need to break out is not there.
+    """It compiles, which `test_tidy` shows; here: what it would need to break out is
+    not there.
     """
     for name, text in strange_texts.items():
         assert all(char.isprintable() or char == "\n" for char in text), name

@@ -1,6 +1,5 @@
-"""A raw value with more bits than its field is refused, and the field is named.
-
-The largest that fits is written.
+"""A raw value with more bits than its field is refused, and the field is named; the
+largest that fits is written.
 """
 
 from __future__ import annotations

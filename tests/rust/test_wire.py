@@ -85,9 +85,8 @@ def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
 
 
 def test_a_node_of_which_the_icd_says_little(tmp_path):
-    """Another framing, numbers most significant byte first.
-
-    What is not described is refused.
+    """Another framing, numbers most significant byte first; what is not described is
+    refused.
     """
     (tmp_path / "small.yaml").write_text(SMALL)
     icd = harness.read(tmp_path / "small.yaml")

@@ -1,6 +1,5 @@
-"""Sessions of the crate over ports that fail, requests that are given up.
-
-And messages of other nodes, which do not compile.
+"""Sessions of the crate over ports that fail, requests that are given up; and messages
+of other nodes, which do not compile.
 """
 
 from __future__ import annotations
@@ -61,9 +60,8 @@ def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(
 
 @pytest.mark.parametrize("name", list(toolchains()))
 def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
-    """Telemetry 132 is `State` on both nodes.
-
-    It is refused where it is requested, and where it is taken from an event.
+    """Telemetry 132 is `State` on both nodes; it is refused where it is requested, and
+    where it is taken from an event.
     """
     tools = Toolchain(name)
     library = Toolchain(name).library(shipped.crate, "0")

@@ -125,9 +125,8 @@ def run(
 
 
 def against(client: list[str], *options: str) -> subprocess.CompletedProcess:
-    """The client's end against a simulator with these options.
-
-    The file it wants has 100 bytes.
+    """The client's end against a simulator with these options; the file it wants has
+    100 bytes.
     """
     with simulator(*options, "--tcp", "0") as (place, _):
         where = urlsplit(place)

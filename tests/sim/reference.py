@@ -83,9 +83,8 @@ class Session:
         return self.ask(Request(TELECOMMAND, message.telecommand_id, data, repeat))
 
     def identify(self) -> tuple[dict[str, int], bool] | None:
-        """What the node says it is, by role, and whether the ICD is that of it.
-
-        None without an answer.
+        """What the node says it is, by role, and whether the ICD is that of it; None
+        without an answer.
         """
         step = self.known.identification
         frame = self.telemetry(step.message) if step else None

@@ -66,9 +66,8 @@ def _pass(source: socket.socket, target: socket.socket, kept: bytearray) -> None
 
 
 def missing(icd: Icd, node: str, messages: list[bytes]) -> list[str]:
-    """Names of what was never requested or never sent.
-
-    Also of what came too late, after a reset.
+    """Names of what was never requested or never sent; also of what came too late,
+    after a reset.
     """
     known = facts.of(icd, icd.node(node))
     ids = [message[0] for message in messages]

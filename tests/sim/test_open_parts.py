@@ -57,9 +57,8 @@ def icd(tmp_path_factory):
 
 
 def frame(icd, message: str, *assigned: str) -> str:
-    """The frame of a message for which this was set, in hexadecimal.
-
-    The same from the next start on.
+    """The frame of a message for which this was set, in hexadecimal; the same from the
+    next start on.
     """
     line, _ = build(icd, None, Options(values=[(message, one) for one in assigned]))
     frames = [bytes(line.computer.program.values.frames[message])]

@@ -30,9 +30,8 @@ class Talking(Session):
 
 
 def uploading(code: int, times: int):
-    """What became of an upload whose first telecommand is refused.
-
-    What the session told; and the port.
+    """What became of an upload whose first telecommand is refused; what the session
+    told; and the port.
     """
     heard = []
     step = ICD.protocol_of(NODE)["file_transfer"]["upload"]["initiate"]["message"]

@@ -46,9 +46,8 @@ def demanded(icd: Icd, group, frame: bytes) -> object:
 
 
 def hold(icd: Icd, source: random.Random) -> int:
-    """Bytes that are looked at tell what the reference reads from fields.
-
-    How many frames were compared.
+    """Bytes that are looked at tell what the reference reads from fields; how many
+    frames were compared.
     """
     compared = 0
     for node in icd.nodes:

@@ -1,6 +1,5 @@
-"""Files made to hurt end in a finding, quickly.
-
-Those that are too large to keep are made here.
+"""Files made to hurt end in a finding, quickly; those that are too large to keep are
+made here.
 """
 
 from __future__ import annotations
@@ -20,10 +19,8 @@ HEAD = (
 
 @pytest.fixture
 def check(tmp_path, monkeypatch):
-    """Writes a file, loads it, and gives ``(code, message)`` of each finding.
-
-    All of it within two seconds of processor time, as a bound of what hostile files may
-    cost.
+    """Writes a file, loads it, and gives ``(code, message)`` of each finding; all of it
+    within two seconds of processor time, as a bound of what hostile files may cost.
     """
     monkeypatch.chdir(tmp_path)
 

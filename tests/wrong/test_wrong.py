@@ -1,6 +1,5 @@
-"""Every wrong ICD gives exactly the report that stands beside it.
-
-Every rule has a wrong ICD.
+"""Every wrong ICD gives exactly the report that stands beside it; every rule has a
+wrong ICD.
 """
 
 from __future__ import annotations

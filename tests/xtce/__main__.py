@@ -1,6 +1,5 @@
-"""``python -m tests.xtce [ICD ...]``: XTCE of ICDs read back and compared.
-
-Without arguments of many, see `sets`.
+"""``python -m tests.xtce [ICD ...]``: XTCE of ICDs read back and compared; without
+arguments of many, see `sets`.
 """
 
 from __future__ import annotations

@@ -21,9 +21,8 @@ from tests.xtce.readback import SPACE
 def differences(
     icd: Icd, node: Node, file: Path, frames: int, seed: int
 ) -> Iterator[tuple[int, str]]:
-    """Of each frame how many values were compared, and what is not alike of them.
-
-    Nothing if all is.
+    """Of each frame how many values were compared, and what is not alike of them;
+    nothing if all is.
     """
     from space_packet_parser.xtce.definitions import XtcePacketDefinition
 

@@ -128,9 +128,8 @@ def line(text: str) -> str:
 
 
 def _bits(field: NodePlace, node: Node) -> list[int]:
-    """The bits of the frame that a value has, the least significant first.
-
-    Bit w of byte b is 8 * b + w.
+    """The bits of the frame that a value has, the least significant first; bit w of
+    byte b is 8 * b + w.
     """
     if field.is_bytes:
         return list(range(field.at, field.at + field.bits))

@@ -22,9 +22,8 @@ SPACE = "{http://www.omg.org/spec/XTCE/20180204}"
 
 @dataclass
 class Compared:
-    """``differences`` are lines for people.
-
-    ``notes`` what files say that XTCE has no word for.
+    """``differences`` are lines for people; ``notes`` what files say that XTCE has no
+    word for.
     """
 
     nodes: int = 0

@@ -10,9 +10,8 @@ from icdgen.errors import UserError
 @click.command(epilog="Example: icdgen rule ICD055")
 @click.argument("code", required=False)
 def rule(code: str | None) -> None:
-    """Explain the rule CODE with examples.
-
-    Without CODE, list all rules of ICDs, comparisons and imports.
+    """Explain the rule CODE with examples; without CODE, list all rules of ICDs,
+    comparisons and imports.
     """
     from icdgen.diff import rule as of_changes
     from icdgen.diff.compare import RULES

@@ -170,9 +170,8 @@ class Arxml(_Xml):
 
     name, root = "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
-    most_bytes = (
-        64_000_000  # larger than for other kinds, because the format is verbose
-    )
+    # larger than for other kinds, because the format is verbose
+    most_bytes = 64_000_000
 
     def account_for(
         self, file: str, data: bytes, account: Account, reported: set[int | None]

@@ -50,10 +50,8 @@ class Part:
     bits: int
     order: str = BIG
     element: int = 8  # bits of an element, if their number varies
-    counter: Counter | None = (
-        # Of a variable-length part, which extends to the end of the frame without one.
-        None
-    )
+    # Of a variable-length part, which extends to the end of the frame without one.
+    counter: Counter | None = None
 
     @property
     def end(self) -> int:

@@ -16,9 +16,8 @@ from icdgen.icd.layout import integer_range
 SAME_NAME = "IMP073"
 BEYOND = "IMP074"
 LEFT_OUT = "IMP090"
-MOST_SPECIAL = (
-    1024  # special values of a field; each becomes a constant in generated code
-)
+# special values of a field; each becomes a constant in generated code
+MOST_SPECIAL = 1024
 _LONGEST = 400
 _LIMITS = ("min", "max", "above", "below")
 _OF_NUMBERS = ("unit", *_LIMITS)  # keys that an enumeration does not have
@@ -111,9 +110,8 @@ def _value_range(item: Item, bits: int) -> tuple[int, int]:
 
 
 def _covers(named: list[Item], first: int, last: int) -> bool:
-    """Return whether each value from ``first`` to ``last`` has a name.
-
-    ``named`` is in ascending order.
+    """Return whether each value from ``first`` to ``last`` has a name; ``named`` is in
+    ascending order.
     """
     following = first
     for member in named:

@@ -52,9 +52,8 @@ class Place(NamedTuple):
 
 
 def usual(places: Iterable[Place]) -> str:
-    """Return the order of most fields that span bytes.
-
-    `LITTLE` if there is no majority for `BIG`.
+    """Return the order of most fields that span bytes; `LITTLE` if there is no majority
+    for `BIG`.
     """
     orders = [place.order for place in places if not place.is_within_byte]
     return BIG if 2 * orders.count(BIG) > len(orders) else LITTLE

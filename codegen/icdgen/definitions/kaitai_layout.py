@@ -668,8 +668,7 @@ def _position(instance: tuple[str, Any]) -> float:
 
 
 def _unit(attribute: Map) -> str:
-    """Return the unit from the key `-unit`, a convention of Kaitai Struct files.
-
-    The language itself has no units.
+    """Return the unit from the key `-unit`, a convention of Kaitai Struct files; the
+    language itself has no units.
     """
     return str(attribute.get("-unit") or "")

@@ -56,9 +56,8 @@ class Part(containers.Part):
     mask: int = 0
     value: int = 0
     excluded: set[tuple[int, int]] = field(default_factory=set)
-    is_whole: bool = (
-        True  # False for bytes that replace an attribute that is not supported
-    )
+    # False for bytes that replace an attribute that is not supported
+    is_whole: bool = True
 
     @property
     def is_ordered(self) -> bool:

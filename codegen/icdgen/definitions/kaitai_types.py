@@ -34,11 +34,8 @@ class Piece(containers.Piece):
     ``bits`` is the width of one element.
     """
 
-    is_bits: bool = (
-        # A bit-sized integer, which begins at the next bit; other types begin at a
-        # byte.
-        False
-    )
+    # A bit-sized integer, which begins at the next bit; other types begin at a byte.
+    is_bits: bool = False
 
 
 @dataclass

@@ -14,9 +14,8 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
 GROUP = "icdgen.definitions"
-MAX_BYTES = (
-    8_000_000  # readers need up to about a gigabyte of memory for a file of this size
-)
+# readers need up to about a gigabyte of memory for a file of this size
+MAX_BYTES = 8_000_000
 _START = 65_536  # bytes that identify the kind of a file
 
 _BUILT_IN = {

@@ -69,9 +69,8 @@ def parse(
         ) from None
     for element in root.iter():
         if isinstance(element, AccountedElement):
-            element.is_text_read = (
-                False  # the builder reads the text when it appends to it
-            )
+            # the builder reads the text when it appends to it
+            element.is_text_read = False
     return root
 
 

@@ -28,9 +28,8 @@ _MOST_DEPTH = 8  # levels of nested groups
 _MOST_POINTS = 20_000  # of a file
 _MOST_REGISTERS = MOST_BYTES // 2
 _LONGEST = 2048  # bytes of a model with a group that repeats any number of times
-_MOST_INNER = (
-    20  # repetitions of a group in another one; devices have fewer points in a curve
-)
+# repetitions of a group in another one; devices have fewer points in a curve
+_MOST_INNER = 20
 _HEAD = 2 * _REGISTER  # bits of the id and length that begin each model
 # Units of SunSpec with a different spelling than the built-in unit.
 _SPELLED = {

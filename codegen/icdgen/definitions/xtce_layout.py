@@ -635,9 +635,8 @@ def _is_named(part: Part, reference: str) -> bool:
 
 
 def _counted(counter: Part, piece: Piece, most: int) -> int:
-    """Return the maximum number of elements, or bytes, that a field can count.
-
-    Returns 0 if it cannot count them.
+    """Return the maximum number of elements, or bytes, that a field can count; 0 if it
+    cannot count them.
     """
     if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
         return 0

@@ -53,16 +53,14 @@ class Piece(containers.Piece):
     """Field that a type describes, with its counter and the labels of its raw values."""
 
     size: str = ""  # parameter that gives the size; empty if the size is fixed
-    plus: int | None = (
-        None  # added to that parameter; None if it does not count bytes or elements
-    )
+    # added to that parameter; None if it does not count bytes or elements
+    plus: int | None = None
     values: dict[str, int] = field(default_factory=dict)  # by label
     members: list[tuple[str, Element]] = field(
         default_factory=list
     )  # names and types of the members of an aggregate, which has no field of its own
-    is_raw: bool = (
-        False  # whether only the raw bits are imported, without their meaning
-    )
+    # whether only the raw bits are imported, without their meaning
+    is_raw: bool = False
 
 
 @dataclass

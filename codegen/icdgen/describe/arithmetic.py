@@ -24,9 +24,8 @@ from icdgen.once import cached_property
 
 _INT64_MAX = (1 << 63) - 1
 _BITS_IN_DOUBLE = 32
-"""The widest integers that every language converts to a double without a loss.
-
-The next ones have 64 bits.
+"""The widest integers that every language converts to a double without a loss; the next
+ones have 64 bits.
 """
 _BITS_IN_SINGLE = 16
 """The same for floats of 32 bits."""
@@ -43,9 +42,8 @@ class IntegerAccess(NamedTuple):
 
 
 class Int64Terms(NamedTuple):
-    """p, c and q of `Steps` as literals of 64 bits.
-
-    Of a negated scale p and c have the opposite signs.
+    """p, c and q of `Steps` as literals of 64 bits; of a negated scale p and c have the
+    opposite signs.
     """
 
     p: int
@@ -113,10 +111,8 @@ class Arithmetic:
 
     @cached_property
     def integers(self) -> IntegerAccess | None:
-        """The integer accessors.
-
-        None if the values are not whole thousandths or millionths, or a step may
-        overflow.
+        """The integer accessors; None if the values are not whole thousandths or
+        millionths, or a step may overflow.
         """
         return _integers(self.steps, self.storage)
 

@@ -59,9 +59,8 @@ def struct_arrays_in(
 
 
 def all_struct_arrays(composite: Composite[Any]) -> Iterator[StructArray]:
-    """List all arrays of structs of a message.
-
-    Arrays in elements of an array come before it.
+    """List all arrays of structs of a message; arrays in elements of an array come
+    before it.
     """
     for field, name in named_arrays(
         composite, lambda field: field.element_struct is not None
@@ -75,9 +74,8 @@ def named_arrays(
     is_wanted: Callable[[FieldDescription], bool],
     prefix: str = "",
 ) -> Iterator[tuple[FieldDescription, str]]:
-    """List the arrays for which ``is_wanted`` holds, and their names.
-
-    Arrays in elements of an array come before it.
+    """List the arrays for which ``is_wanted`` holds, and their names; arrays in
+    elements of an array come before it.
     """
     for field in composite.walk(Into.STRUCTS):
         if is_wanted(field):
@@ -143,9 +141,8 @@ def loop_from(first: FieldDescription, count: int) -> ArrayLoop | None:
 
 
 def loop_of(field: FieldDescription) -> ArrayLoop | None:
-    """Return the loop over all elements of an array.
-
-    Returns None if they are copied, or read and written one by one.
+    """Return the loop over all elements of an array; None if they are copied, or read
+    and written one by one.
     """
     if field.element_struct is not None:
         return ArrayLoop(

@@ -73,9 +73,8 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
 
 
 def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
-    """Return the smallest and largest physical value that can be set.
-
-    Returns None if a calibration has no inverse, and for floats.
+    """Return the smallest and largest physical value that can be set; None if a
+    calibration has no inverse, and for floats.
     """
     if field.type == "float" or not field.is_invertible:
         return None
@@ -84,9 +83,8 @@ def span(curve: Curve, field: AnyScalar) -> tuple[Fraction, Fraction] | None:
 
 
 def allowed_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
-    """Return the smallest and largest physical value by type and inclusive limits.
-
-    Returns None for an end without a bound.
+    """Return the smallest and largest physical value by type and inclusive limits; None
+    for an end without a bound.
     """
     least, most = _type_ends(field)
     low, high = (field.limits.min, field.limits.max) if field.limits else (None, None)
@@ -94,9 +92,8 @@ def allowed_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
 
 
 def _type_ends(field: AnyScalar) -> tuple[Fraction | None, Fraction | None]:
-    """Return the smallest and largest physical value by type alone.
-
-    Returns None for floats, flags, enumerations and bytes.
+    """Return the smallest and largest physical value by type alone; None for floats,
+    flags, enumerations and bytes.
     """
     ends = None
     if field.curve is not None:

@@ -106,9 +106,8 @@ def _explained(erratum: Erratum, owner: str | None) -> str:
 def message_comment(
     message: Message, log_bit: int | None = None, sharing: str = ""
 ) -> Comment:
-    """Return the comment of a message: name, kind, ids, length and table.
-
-    Summary; hazard, acknowledge and other facts.
+    """Return the comment of a message: name, kind, ids, length and table; summary;
+    hazard, acknowledge and other facts.
 
     ``log_bit`` is the bit of the log mask that selects it; ``sharing`` is a sentence on
     messages with the same id.
@@ -142,9 +141,8 @@ def message_comment(
 
 
 def condition_text(condition: Condition, message: Message | None = None) -> str:
-    """Return ``Mode is 1 or 2``.
-
-    With the message of the field, names of an enumeration instead of numbers.
+    """Return ``Mode is 1 or 2``; with the message of the field, names of an enumeration
+    instead of numbers.
     """
     nodes = {node.name: node for node in message.layout.fixed} if message else {}
     node = nodes.get(condition.field)
@@ -204,9 +202,8 @@ def struct_comment(struct: Struct) -> Comment:
 
 
 def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
-    """Return the comment of an enumeration: name and table.
-
-    Summary; fields with this type.
+    """Return the comment of an enumeration: name and table; summary; fields with this
+    type.
 
     ``users`` are the messages and structs that have these fields, by the names of the
     fields.
@@ -252,9 +249,8 @@ def member_comment(member: Member, elsewhere: Mapping[str, str]) -> Comment:
 def field_comment(
     field: NodePlace, elsewhere: Mapping[str, str], message: Message
 ) -> Comment:
-    """Return the comment of a field: name, place, range and unit.
-
-    Summary; conditions, limits and special values.
+    """Return the comment of a field: name, place, range and unit; summary; conditions,
+    limits and special values.
 
     ``elsewhere`` as for `_comment`.
     """
@@ -327,9 +323,8 @@ def _place(field: NodePlace) -> str:
 
 
 def _inner_count(field: NodePlace) -> str:
-    """Return the number of elements of a variable-length array in a struct.
-
-    Returns empty for any other field.
+    """Return the number of elements of a variable-length array in a struct; empty for
+    any other field.
     """
     size = field.node.size if isinstance(field.node, Array) else None
     return (
@@ -397,9 +392,8 @@ def _meaning(field: NodePlace) -> str:
 
 
 def span_text(field: NodePlace) -> str:
-    """Return the range of the physical values, ``-327.68 to 327.67``.
-
-    Returns empty for a calibration without an inverse.
+    """Return the range of the physical values, ``-327.68 to 327.67``; empty for a
+    calibration without an inverse.
     """
     if field.curve is not None:
         ends = span(field.curve, field)

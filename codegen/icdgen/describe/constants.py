@@ -28,9 +28,8 @@ class Constant(NamedTuple):
     # A raw value (an int); else a physical value, or a limit beyond the raw type.
     is_raw: bool
     comment: str
-    number: str = (
-        ""  # of a float with the bits ``value``: `nan`, `inf`, `-inf`, or a decimal
-    )
+    # of a float with the bits ``value``: `nan`, `inf`, `-inf`, or a decimal
+    number: str = ""
 
     @property
     def double(self) -> float:

@@ -60,9 +60,8 @@ class FieldDescription(ScalarDescription):
     ``satellites[2].gnss``.
     """
     holder: str
-    """Name of the enclosing struct in an expression, ``satellites[2]``.
-
-    Empty for members of the message itself.
+    """Name of the enclosing struct in an expression, ``satellites[2]``; empty for
+    members of the message itself.
     """
     declaration: FieldDescription
     """Field as the struct or message declares it; for an element, the array."""
@@ -87,9 +86,8 @@ class FieldDescription(ScalarDescription):
         """Whether the field is in an element of an array of structs."""
 
     def _element(self, place: NodePlace) -> FieldDescription:
-        """Return the description of an element of an array.
-
-        For any other field the field itself.
+        """Return the description of an element of an array; for any other field the
+        field itself.
         """
         if place is self.model:
             return self
@@ -201,9 +199,8 @@ class FieldDescription(ScalarDescription):
 
     @property
     def needs_range_check(self) -> bool:
-        """Whether its type can store raw values that do not fit the field.
-
-        For a struct, whether that of a member can.
+        """Whether its type can store raw values that do not fit the field; for a
+        struct, whether that of a member can.
         """
         return self.is_narrow if self.struct is None else self.struct.is_narrow
 
@@ -228,9 +225,8 @@ class FieldDescription(ScalarDescription):
 
     @cached_property
     def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
-        """Members of a struct where it stands: once, or for each element of an array.
-
-        Empty without a struct.
+        """Members of a struct where it stands: once, or for each element of an array;
+        empty without a struct.
         """
         if self.struct is None:
             return ()
@@ -259,9 +255,8 @@ class FieldDescription(ScalarDescription):
 
     @cached_property
     def element_struct(self) -> StructDescription | None:
-        """Struct of the elements of an array, in the orders in effect here.
-
-        None for any other field.
+        """Struct of the elements of an array, in the orders in effect here; None for
+        any other field.
         """
         return (
             None
@@ -456,9 +451,8 @@ class Composite(Named[WithFields]):
 
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:
-        """Members that own bits or count elements, in the order of the ICD.
-
-        An array is one member, and so is a struct.
+        """Members that own bits or count elements, in the order of the ICD; an array is
+        one member, and so is a struct.
         """
         if not self.read_only_members:
             return self.declared_members

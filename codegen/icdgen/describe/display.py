@@ -79,9 +79,8 @@ def integer_text(field: AnyScalar, raw: int) -> str:
 
 
 def digits_of(field: FrameField | NodePlace) -> Digits | None:
-    """Return how physical values of a field are rounded.
-
-    Returns None if they are shown in full.
+    """Return how physical values of a field are rounded; None if they are shown in
+    full.
     """
     if field.display is not None and field.display.kind not in OF_BITS:
         places = field.display.places
@@ -146,9 +145,8 @@ def _by_resolution(step: float | Fraction) -> Digits:
 
 
 def _decimals(value: Fraction) -> int:
-    """Return the number of decimals of a fraction.
-
-    More than can be shown if they do not end.
+    """Return the number of decimals of a fraction; more than can be shown if they do
+    not end.
     """
     return next(
         (n for n in range(_MOST_DECIMALS + 1) if 10**n % value.denominator == 0),

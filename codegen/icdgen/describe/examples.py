@@ -51,9 +51,8 @@ class Example(NamedTuple):
 
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """Return the first field that can be set by a physical value.
-
-    Else the first number that is not constant.
+    """Return the first field that can be set by a physical value; else the first number
+    that is not constant.
     """
     # Counters keep their smallest value, because the frame of an example has the fewest
     # elements.

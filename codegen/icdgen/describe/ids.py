@@ -6,9 +6,8 @@ from icdgen.protocol.envelope import Stream
 
 
 def pair_bytes(form: Stream | None) -> int:
-    """Return the number of bytes as which an id is written, ``01 35``.
-
-    Returns 0 if it is written as a number.
+    """Return the number of bytes as which an id is written, ``01 35``; 0 if it is
+    written as a number.
 
     Protocols whose header has the id as several bytes, the most significant first,
     write these apart (class and number, say). Ids in little-endian order are numbers.

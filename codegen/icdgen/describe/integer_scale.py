@@ -45,9 +45,8 @@ class IntegerScale(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def integer_scale(steps: Steps) -> IntegerScale | None:
-    """Return the scale in thousandths if every raw value is a whole number of them.
-
-    Else in millionths; else None.
+    """Return the scale in thousandths if every raw value is a whole number of them;
+    else in millionths; else None.
     """
     for per in (1000, 1_000_000):
         factor, offset = Fraction(steps.p * per, steps.q), Fraction(

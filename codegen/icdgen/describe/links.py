@@ -86,9 +86,8 @@ class Assumptions:
         }
 
     def why(self, section: str, key: str) -> str:
-        """Return why the value of a key is assumed.
-
-        Returns empty if it is not, or if the reason was returned before.
+        """Return why the value of a key is assumed; empty if it is not, or if the
+        reason was returned before.
         """
         return self._left.pop((section, key), "")
 
@@ -154,17 +153,15 @@ class LinkDescription:
 
     @property
     def telecommands(self) -> list[SentMessage]:
-        """Messages by ascending id.
-
-        Empty if the link has packets, whose format lists the messages.
+        """Messages by ascending id; empty if the link has packets, whose format lists
+        the messages.
         """
         return self._sent(self.facts.telecommands)
 
     @property
     def telemetry(self) -> list[SentMessage]:
-        """Messages by ascending id.
-
-        Empty if the link has packets, whose format lists the messages.
+        """Messages by ascending id; empty if the link has packets, whose format lists
+        the messages.
         """
         return self._sent(self.facts.telemetry)
 
@@ -257,9 +254,8 @@ class LinkDescription:
 
     @property
     def joined_bytes(self) -> int:
-        """Bytes of all packets of the longest message on CAN.
-
-        0 if no message has several packets.
+        """Bytes of all packets of the longest message on CAN; 0 if no message has
+        several packets.
         """
         extended = self.facts.can and self.facts.can.extended
         return (

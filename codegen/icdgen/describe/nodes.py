@@ -57,9 +57,8 @@ class MessageDescription(Composite[Message]):
 
     @property
     def last_part(self) -> VariablePartDescription | None:
-        """Last part of variable length.
-
-        None if all frames have the same length or may end early.
+        """Last part of variable length; None if all frames have the same length or may
+        end early.
         """
         return self.variable_parts[-1] if self.variable_parts else None
 

@@ -58,17 +58,15 @@ def points_text(curve: Curve, most: int) -> str:
 
 
 def value_text(raw: int) -> str:
-    """Return a raw value with a meaning as text: ``90 (0x5A)``.
-
-    Values below 10 in decimal only.
+    """Return a raw value with a meaning as text: ``90 (0x5A)``; values below 10 in
+    decimal only.
     """
     return f"{raw} (0x{raw:X})" if raw > 9 else str(raw)
 
 
 def special_text(special: Special) -> str:
-    """Return a special value as text: ``65535 (0xFFFF)``.
-
-    For floats ``NaN``, ``-infinity``, ``-99.9``.
+    """Return a special value as text: ``65535 (0xFFFF)``; for floats ``NaN``,
+    ``-infinity``, ``-99.9``.
     """
     words = {"nan": "NaN", "inf": "infinity", "-inf": "-infinity"}
     return words.get(special.number, special.number) or value_text(special.value)

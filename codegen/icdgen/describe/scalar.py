@@ -31,8 +31,7 @@ class ScalarDescription(Named[NodePlace]):
     steps: steps.Steps | None
     """Steps of the physical value in whole numbers; None without a scale."""
     curve: Curve | None
-    """Calibration of the physical value in doubles, a polynomial or a lookup table.
-
+    """Calibration of the physical value in doubles, a polynomial or a lookup table;
     None without one.
     """
     physical_name: str
@@ -78,9 +77,8 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def integer_scale(self) -> IntegerScale | None:
-        """Physical value in whole thousandths or millionths of the unit.
-
-        None if these are not exact.
+        """Physical value in whole thousandths or millionths of the unit; None if these
+        are not exact.
         """
         return None if self.steps is None else integer_scale(self.steps)
 
@@ -152,9 +150,8 @@ class ScalarDescription(Named[NodePlace]):
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """Runs of bits in bytes of the frame that make up a number.
-
-        Empty for derived values.
+        """Runs of bits in bytes of the frame that make up a number; empty for derived
+        values.
         """
         if self.model.derived:
             return ()

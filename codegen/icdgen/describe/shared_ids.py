@@ -12,9 +12,8 @@ from icdgen.wording import listing
 
 
 def sharing(ids: Ids, message: Message) -> str:
-    """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``.
-
-    Returns empty if no message of its node has the same id.
+    """Return ``Shares its id with Ephemeris and Almanac, and has Type 1.``; empty if no
+    message of its node has the same id.
     """
     sentences: dict[str, None] = {}
     for id, groups in (

@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 from operator import itemgetter
 
 from icdgen.diff.change import Change
-from icdgen.diff.changes import (
-    enumerations,  # noqa: F401
-    errata,  # noqa: F401
-    frames,  # noqa: F401
-    framing,  # noqa: F401
-    layout,  # noqa: F401
-    names,  # noqa: F401
-    numbers,  # noqa: F401
-    sense,  # noqa: F401
-    structs,  # noqa: F401
-    text,  # noqa: F401
+from icdgen.diff.changes import (  # noqa: F401
+    enumerations,
+    errata,
+    frames,
+    framing,
+    layout,
+    names,
+    numbers,
+    sense,
+    structs,
+    text,
 )
 from icdgen.diff.context import Context
 from icdgen.diff.layers import LAYERS

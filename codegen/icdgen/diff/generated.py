@@ -80,9 +80,8 @@ class NamesOfIcd:
     def names_in_owner(
         self, part: Part, declared: Declared, owner: DeclaredPart | None = None
     ) -> tuple[Name, ...]:
-        """Return the names of a field or member that is ``declared`` there.
-
-        ``owner`` can be another one.
+        """Return the names of a field or member that is ``declared`` there; ``owner``
+        can be another one.
         """
         here = self.owner(declared)
         owner = here if owner is None else owner
@@ -128,9 +127,8 @@ def symbols_in(
 
 
 def _names(symbols: Iterable[Symbol], type_in_rust: str = "") -> tuple[Name, ...]:
-    """Return the names of the API among identifiers.
-
-    ``type_in_rust`` is the type of the owner of a field or member.
+    """Return the names of the API among identifiers; ``type_in_rust`` is the type of
+    the owner of a field or member.
     """
     names: dict[Name, None] = {}
     for language, identifier in symbols:

@@ -15,9 +15,8 @@ def path(out: Path, language: str) -> Path:
 
 
 def read(out: Path, language: str) -> dict[str, str]:
-    """Return the SHA-256 of each file that icdgen wrote, by relative path.
-
-    Returns empty without a readable manifest.
+    """Return the SHA-256 of each file that icdgen wrote, by relative path; empty
+    without a readable manifest.
     """
     try:
         data = json.loads(path(out, language).read_text(encoding="utf-8"))
@@ -49,9 +48,8 @@ def digest(data: bytes) -> str:
 
 
 def _is_inside(name: str) -> bool:
-    """Return whether a path of a manifest is in the folder.
-
-    Returns a manipulated manifest must not remove other files.
+    """Return whether a path of a manifest is in the folder; a manipulated manifest must
+    not remove other files.
     """
     parts = Path(name).parts
     return (

@@ -137,9 +137,8 @@ class _Trees(Arithmetic[_Tree]):
         self.names = sorted(sorted(filter(None, names)), key=len, reverse=True)
 
     def name_at(self, text: str, at: int) -> str:
-        """Return the longest name of a field that begins at an index of the text.
-
-        Returns empty if none does.
+        """Return the longest name of a field that begins at an index of the text; empty
+        if none does.
         """
         matches = (name for name in self.names if text.startswith(name, at))
         return next(

@@ -37,9 +37,8 @@ class Display:
 
 
 def display_of(value: Any) -> Display | None:
-    """Return the display format of a value of the key `display`.
-
-    Returns None if the value is absent or invalid.
+    """Return the display format of a value of the key `display`; None if the value is
+    absent or invalid.
     """
     if value in OF_BITS:
         return Display(value)

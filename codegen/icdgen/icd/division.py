@@ -1,6 +1,5 @@
-"""Split fields: a field whose parts are listed under ``bitfields``.
-
-Each part becomes a field of the message.
+"""Split fields: a field whose parts are listed under ``bitfields``; each part becomes a
+field of the message.
 """
 
 from __future__ import annotations

@@ -69,9 +69,8 @@ class Enum:
         return any(member.value < 0 for member in self.members)
 
     def member_of(self, value: int | bytes) -> Member | None:
-        """Return the member of a value.
-
-        Returns None if the enumeration does not name the value.
+        """Return the member of a value; None if the enumeration does not name the
+        value.
         """
         if isinstance(value, bytes):
             return None
@@ -109,9 +108,8 @@ class Enum:
 
     @property
     def unnamed(self) -> int | None:
-        """Smallest number from 0 on without a member.
-
-        None if every 64-bit number has one.
+        """Smallest number from 0 on without a member; None if every 64-bit number has
+        one.
         """
         # The number is 0 or directly follows a member.
         candidates = sorted(

@@ -209,9 +209,8 @@ class _ByName:
         self._rows: dict[tuple[int, str], dict[str, list[Map]]] = {}
 
     def of(self, owner: Map, key: str, name: str) -> Iterable[Map]:
-        """Return the mappings of a name in the list of a key.
-
-        All mappings for the name ``*``.
+        """Return the mappings of a name in the list of a key; all mappings for the name
+        ``*``.
         """
         if name == "*":
             return mappings(owner.get(key))

@@ -34,8 +34,7 @@ class Erratum:
 
     @property
     def sureness(self) -> str:
-        """Confidence in parentheses with a leading space, to append to a name.
-
-        Empty without a confidence.
+        """Confidence in parentheses with a leading space, to append to a name; empty
+        without a confidence.
         """
         return f" ({self.confidence})" if self.confidence else ""

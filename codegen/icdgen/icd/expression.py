@@ -45,9 +45,8 @@ class Token(NamedTuple):
         return not self.is_name and self.text[0].isdigit()
 
     def is_operator(self, operators: str) -> bool:
-        """Return whether the token is one of these operators.
-
-        Names can look like operators.
+        """Return whether the token is one of these operators; names can look like
+        operators.
         """
         return not self.is_name and self.text in operators
 
@@ -57,9 +56,8 @@ class Arithmetic(ABC, Generic[Value]):
 
     @abstractmethod
     def name_at(self, text: str, at: int) -> str:
-        """Return the longest name that begins at an index of the text.
-
-        Returns empty if no name begins there.
+        """Return the longest name that begins at an index of the text; empty if no name
+        begins there.
         """
 
     @abstractmethod

@@ -38,9 +38,8 @@ class Fault(NamedTuple):
         fix: str = "",
         related: Related | None = None,
     ) -> Fault:
-        """Return a fault of the value of a key.
-
-        ``fix`` is the correct value as YAML, if it is known.
+        """Return a fault of the value of a key; ``fix`` is the correct value as YAML,
+        if it is known.
         """
         place = owner.at(key)
         return cls(
@@ -51,9 +50,8 @@ class Fault(NamedTuple):
     def at_key(
         cls, owner: Map, key: str, message: str, help: str, fix: str = ""
     ) -> Fault:
-        """Return a fault of a key itself.
-
-        ``fix`` is the correct key as YAML, if it is known.
+        """Return a fault of a key itself; ``fix`` is the correct key as YAML, if it is
+        known.
         """
         return cls.of_place(owner, owner.key_at(key), message, help, fix)
 

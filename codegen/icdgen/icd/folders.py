@@ -79,9 +79,8 @@ def search(top: Path) -> Search:
 
 
 def _entries(folder: Path) -> tuple[list[str], list[str]]:
-    """Return the names of the files and of the subfolders of a folder.
-
-    Returns empty lists if it cannot be read.
+    """Return the names of the files and of the subfolders of a folder; empty lists if
+    it cannot be read.
     """
     files: list[str] = []
     folders: list[str] = []

@@ -173,9 +173,8 @@ class _Polynomials(Arithmetic[_Polynomial]):
     def power(
         self, base: _Polynomial, exponent: Token, is_negative: bool
     ) -> _Polynomial:
-        """Return a power with an integer exponent.
-
-        Only a constant can have a negative exponent.
+        """Return a power with an integer exponent; only a constant can have a negative
+        exponent.
         """
         if not exponent.text.isdigit() or int(exponent.text) > MAX_EXPONENT:
             raise FormulaError(

@@ -66,9 +66,8 @@ def name_of_steps(steps: Sequence[PathStep]) -> str:
 
 
 def alias_of_steps(steps: Sequence[PathStep]) -> str | None:
-    """Return the name with identifiers instead of names.
-
-    Returns None if no node on the path has an identifier.
+    """Return the name with identifiers instead of names; None if no node on the path
+    has an identifier.
     """
     if not any(step.node.identifier for step in steps):
         return None
@@ -137,9 +136,8 @@ class FrameField(OfScalar):
 
     @property
     def alias(self) -> str | None:
-        """Return the name with identifiers instead of names.
-
-        Returns None if no node on the path has an identifier.
+        """Return the name with identifiers instead of names; None if no node on the
+        path has an identifier.
         """
         return alias_of_steps(self.steps)
 

@@ -22,14 +22,10 @@ class Identifier:
     text: str
     owner: str  # the line of the ICD in words: "field `Foo` of `Bar`"
     source: Map | None  # the mapping of that line
-    role: str = (
-        ""  # distinguishes names of the same line: see `icdgen.describe.symbols`
-    )
-    part: object = (
-        # Object of the model that it names; None for a name of the generated code
-        # itself.
-        None
-    )
+    # distinguishes names of the same line: see `icdgen.describe.symbols`
+    role: str = ""
+    # Object of the model that it names; None for a name of the generated code itself.
+    part: object = None
 
 
 class Language(Protocol):

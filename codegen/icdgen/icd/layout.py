@@ -44,9 +44,8 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """Byte order and bit order that one mapping of the ICD declares.
-
-    Empty if it declares none.
+    """Byte order and bit order that one mapping of the ICD declares; empty if it
+    declares none.
     """
 
     byte: str = ""  # little | big
@@ -167,9 +166,8 @@ class Scalar(LayoutNode):
 
     @property
     def is_invertible(self) -> bool:
-        """Return whether each physical value has one nearest raw value.
-
-        Some lookup tables and polynomials fail this.
+        """Return whether each physical value has one nearest raw value; some lookup
+        tables and polynomials fail this.
         """
         return self.curve is None or has_inverse(
             self.curve, self.type == "float", self.raw_min, self.raw_max
@@ -190,9 +188,8 @@ class Scalar(LayoutNode):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StructRef(LayoutNode):
-    """Use of a struct in a message or in another struct.
-
-    All uses share the layout of the struct.
+    """Use of a struct in a message or in another struct; all uses share the layout of
+    the struct.
     """
 
     layout: Layout
@@ -263,9 +260,8 @@ class Layout:
 
     @property
     def shortest(self) -> int:
-        """Length of the shortest frame in bytes.
-
-        At least 1 if frames may end early, unless the message is empty.
+        """Length of the shortest frame in bytes; at least 1 if frames may end early,
+        unless the message is empty.
         """
         shortest = self.length + sum(
             part.fewest * part.shortest_step for part in self.parts
@@ -521,9 +517,8 @@ def stride(node: LayoutNode) -> int:
 
 
 def scalar_of(node: LayoutNode) -> Scalar | None:
-    """Return the scalar of a node, or of an element of an array of scalars.
-
-    Returns None for structs.
+    """Return the scalar of a node, or of an element of an array of scalars; None for
+    structs.
     """
     match node:
         case Scalar():

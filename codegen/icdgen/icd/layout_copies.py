@@ -63,9 +63,8 @@ def with_node(layout: Layout, old: LayoutNode, new: LayoutNode) -> Layout:
 
 
 def with_struct_layout(layout: Layout, old: Layout, new: Layout) -> Layout:
-    """Return a layout with `new` as the layout of a struct, at any depth.
-
-    The same object if it does not use `old`.
+    """Return a layout with `new` as the layout of a struct, at any depth; the same
+    object if it does not use `old`.
     """
     for node in layout.nodes:
         struct = struct_layout_of(node)
@@ -77,9 +76,8 @@ def with_struct_layout(layout: Layout, old: Layout, new: Layout) -> Layout:
 
 
 def with_enum(layout: Layout, old: Enum, new: Enum) -> Layout:
-    """Return a layout in which the enumeration `new` replaces `old`.
-
-    The same object if no field uses `old`.
+    """Return a layout in which the enumeration `new` replaces `old`; the same object if
+    no field uses `old`.
     """
     for node in layout.nodes:
         scalar, struct = scalar_of(node), struct_layout_of(node)

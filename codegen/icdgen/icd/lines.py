@@ -72,9 +72,8 @@ class Line(NodePlace):
         )
 
     def starts(self, first_only: bool = False) -> list[int]:
-        """Return the first bit of each element.
-
-        With `first_only` only within the first element of the outermost array.
+        """Return the first bit of each element; with `first_only` only within the first
+        element of the outermost array.
         """
         starts = [self.at]
         for level in self.levels[1:] if first_only else self.levels:

@@ -169,9 +169,8 @@ class _Loader:
         return node
 
     def read(self, path: Path, document: str) -> Map | None:
-        """Read a file and check its structure.
-
-        Return its tree, or None if it is not valid YAML.
+        """Read a file and check its structure; return its tree, or None if it is not
+        valid YAML.
         """
         name = str(path)
         self.inputs[path] = fingerprints.UNKNOWN
@@ -237,9 +236,8 @@ class _Loader:
         self.broken |= broken
 
     def overlay_path(self, tree: Map, path: Path) -> Path | None:
-        """Return the path of the errata overlay of a file, `errata/NODE.yaml`.
-
-        Returns None if the name of the node is invalid.
+        """Return the path of the errata overlay of a file, `errata/NODE.yaml`; None if
+        the name of the node is invalid.
         """
         head = tree.get("node")
         if not isinstance(head, Map) or id(head) in self.broken:

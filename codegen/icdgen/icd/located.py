@@ -58,9 +58,8 @@ class Map(dict[str, Any]):
         return place_of(self.spots[key][0])
 
     def at(self, key: str) -> Place:
-        """Return the place of the value of a key.
-
-        The place of the mapping if it does not have the key.
+        """Return the place of the value of a key; the place of the mapping if it does
+        not have the key.
         """
         return place_of(self.spots[key][1] if key in self.spots else self.spot)
 

@@ -25,9 +25,8 @@ class Special:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Bounds of the physical value (of the raw value if there is no scale).
-
-    None where the ICD gives no bound.
+    """Bounds of the physical value (of the raw value if there is no scale); None where
+    the ICD gives no bound.
     """
 
     min: Fraction | None = None
@@ -39,9 +38,8 @@ class Limits:
 def special(
     kind: str, bits: int, value: int | float | str, meaning: str
 ) -> Special | None:
-    """Return a special value.
-
-    Returns None if a field of this type and width cannot have the value.
+    """Return a special value; None if a field of this type and width cannot have the
+    value.
     """
     if kind != "float":
         return Special(value, meaning) if isinstance(value, int) else None
@@ -54,9 +52,8 @@ def special(
 
 
 def float_bits(value: int | float | str, bits: int) -> int | None:
-    """Return the bits of a float of this width from its value in an ICD.
-
-    Returns None if the width or the value is not valid.
+    """Return the bits of a float of this width from its value in an ICD; None if the
+    width or the value is not valid.
     """
     if bits not in floats.WIDTHS or (
         isinstance(value, str) and value not in floats.NAMED

@@ -42,9 +42,8 @@ def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
 
 
 def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
-    """Return the model and the fingerprints that `text` wrote.
-
-    Returns None if the data was not written by `text`.
+    """Return the model and the fingerprints that `text` wrote; None if the data was not
+    written by `text`.
     """
     try:
         icd, inputs = json.loads(data, object_hook=_Reader().object)

@@ -83,17 +83,15 @@ class NodePlace(OfScalar):
 
     @property
     def byte_order(self) -> str:
-        """Byte order that the node or an owner declares.
-
-        Empty if the default of the ICD node applies.
+        """Byte order that the node or an owner declares; empty if the default of the
+        ICD node applies.
         """
         return self.declared_orders.byte
 
     @property
     def bit_order(self) -> str:
-        """Bit order that the node or an owner declares.
-
-        Empty if the default of the ICD node applies.
+        """Bit order that the node or an owner declares; empty if the default of the ICD
+        node applies.
         """
         return self.declared_orders.bit
 
@@ -159,9 +157,8 @@ class NodePlace(OfScalar):
         return self.declared_orders.within(outer)
 
     def elements(self) -> tuple[NodePlace, ...]:
-        """Return the elements of an array, a struct as one place.
-
-        For any other node the place itself.
+        """Return the elements of an array, a struct as one place; for any other node
+        the place itself.
         """
         if not self.count:
             return (self,)

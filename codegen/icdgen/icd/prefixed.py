@@ -24,9 +24,8 @@ _PARTS: dict[type, tuple[str, ...]] = {
 
 
 def with_prefix(icd: Icd, prefix: str) -> Icd:
-    """Return ICDs with ``prefix`` before the name of each node.
-
-    The same object if the prefix is empty.
+    """Return ICDs with ``prefix`` before the name of each node; the same object if the
+    prefix is empty.
     """
     if not prefix:
         return icd

@@ -66,9 +66,8 @@ _RENAMED = re.compile(r"`(\w+):`")
 
 
 def of_syntax(problem: str, line: str, column: int) -> str:
-    """Return the help for a syntax error of YAML at a column (from 0) of a line.
-
-    Returns empty if the cause is unclear.
+    """Return the help for a syntax error of YAML at a column (from 0) of a line; empty
+    if the cause is unclear.
     """
     character = line[column : column + 1]
     if "tab character" in problem or character == "\t":
@@ -85,9 +84,8 @@ def of_syntax(problem: str, line: str, column: int) -> str:
 
 
 def value_around(line: str, column: int) -> tuple[int, int]:
-    """Return start and end of the unquoted value at a column (from 0) of a line.
-
-    Equal if there is no value.
+    """Return start and end of the unquoted value at a column (from 0) of a line; equal
+    if there is no value.
     """
     is_flow = any(bracket in line[:column] for bracket in "{[")
     starts = [
@@ -137,9 +135,8 @@ def of_value(
 
 
 def of_type(wanted: str | list[str], written: str) -> str:
-    """Return the spelling of a value as the ``wanted`` type of JSON Schema.
-
-    Returns empty if it cannot be converted safely.
+    """Return the spelling of a value as the ``wanted`` type of JSON Schema; empty if it
+    cannot be converted safely.
     """
     word = written.lower()
     if "boolean" in wanted:
@@ -169,9 +166,8 @@ def of_ambiguous(written: str) -> str:
 
 
 def plain_number(written: str) -> str:
-    """Return the plain spelling of a number, such as ``1.0e+20`` for ``1e20``.
-
-    Returns empty if its value is uncertain.
+    """Return the plain spelling of a number, such as ``1.0e+20`` for ``1e20``; empty if
+    its value is uncertain.
     """
     text = written.replace("_", "").removeprefix("+")
     if len(text) > _MOST_DIGITS:

@@ -78,9 +78,8 @@ def protocol() -> dict[str, Any]:
 
 
 def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
-    """Return the sub-schema of a key of a mapping.
-
-    Returns empty if the key is unknown or any key is allowed.
+    """Return the sub-schema of a key of a mapping; empty if the key is unknown or any
+    key is allowed.
     """
     inner: dict[str, Any] = _follow(form).get("properties", {}).get(key, {})
     return inner
@@ -121,9 +120,8 @@ def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
 def _explain(
     error: Any, path: list[Any], owner: Map, place: Place, lines: Lines
 ) -> list[Finding]:
-    """Return the findings of an error of `jsonschema_rs`.
-
-    Several if a mapping has several unknown keys.
+    """Return the findings of an error of `jsonschema_rs`; several if a mapping has
+    several unknown keys.
     """
     from icdgen.icd import remedies
 

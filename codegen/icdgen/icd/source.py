@@ -289,9 +289,8 @@ class Builder:
         return (roots[0] if roots else None), self.findings
 
     def with_quotes(self, place: Place, line: str, offset: int) -> Fix | None:
-        """Return a fix that puts the value at a place in quotes.
-
-        Returns None if the line would still have a syntax error.
+        """Return a fix that puts the value at a place in quotes; None if the line would
+        still have a syntax error.
 
         ``offset`` is the index of the line in the text.
         """
@@ -316,9 +315,8 @@ class Builder:
         return Fix(Place(self.name, place.line, start + 1, end - start), quoted)
 
     def key(self, value: object, event: Event) -> str:
-        """Return a key that is not a string as text.
-
-        Adds a finding if it is a mapping or a list.
+        """Return a key that is not a string as text; adds a finding if it is a mapping
+        or a list.
         """
         if isinstance(value, (Map, Seq)):
             self.add(
@@ -429,9 +427,8 @@ def _too_deep(place: Place) -> Finding:
 
 
 def _number(text: str, kind: str) -> int | float | str:
-    """Return the value of a number that matches `_NUMBER`.
-
-    ``kind`` is the name of the group.
+    """Return the value of a number that matches `_NUMBER`; ``kind`` is the name of the
+    group.
     """
     # Longer texts are not numbers of an ICD. As text, the schema check reports them.
     if len(text) >= 40:

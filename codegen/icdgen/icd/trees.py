@@ -20,9 +20,8 @@ def mappings(items: object) -> list[Map]:
 
 
 def at_path(tree: Any, path: Iterable[str]) -> Any:
-    """Return the value at a path of keys.
-
-    Returns None if a key is absent or a value on the path is not a mapping.
+    """Return the value at a path of keys; None if a key is absent or a value on the
+    path is not a mapping.
     """
     for key in path:
         tree = tree.get(key) if isinstance(tree, dict) else None

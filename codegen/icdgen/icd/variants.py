@@ -124,9 +124,8 @@ def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
 
 
 def common_length(group: Sequence[Variant]) -> int | None:
-    """Return the fixed length that all messages of a group have in common.
-
-    Returns None if lengths differ.
+    """Return the fixed length that all messages of a group have in common; None if
+    lengths differ.
     """
     layouts = [variant.message.layout for variant in group]
     lengths = {

@@ -29,9 +29,8 @@ def size(bits: int) -> int:
 
 
 def of_can(identifier: int, is_extended: bool, bits: int) -> int | None:
-    """Return the id of a CAN frame in a node whose ids have ``bits`` bits.
-
-    Returns None if the node has no frames of this format.
+    """Return the id of a CAN frame in a node whose ids have ``bits`` bits; None if the
+    node has no frames of this format.
 
     With 32 bits, a node has frames of both formats, and bit 31 marks extended frames.
     With 11 bits, it has no extended frames. Otherwise the identifier is the id.

@@ -17,18 +17,14 @@ class SourcePlace(NamedTuple):
     page: int | None = None
     line: int | None = None
     table: int | None = None
-    order: int | None = (
-        # Index of the table in the document, as table numbers may be missing or
-        # repeated.
-        None
-    )
+    # Index of the table in the document, as table numbers may be missing or repeated.
+    order: int | None = None
     file: str = ""  # if several files are one source
 
     @property
     def place(self) -> str:
-        """Place such as ``page 12`` or ``types.xml, line 3``.
-
-        Empty for the whole document.
+        """Place such as ``page 12`` or ``types.xml, line 3``; empty for the whole
+        document.
         """
         within = (
             f"page {self.page}"

@@ -56,9 +56,8 @@ def _many(kind: str, number: int) -> str:
 
 
 def as_json(result: Result, checked: Sequence[Finding]) -> str:
-    """Tables and findings for programs.
-
-    ``checked`` are the findings of `icdgen check` for the files.
+    """Tables and findings for programs; ``checked`` are the findings of `icdgen check`
+    for the files.
     """
     entries = [
         {

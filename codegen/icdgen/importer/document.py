@@ -34,9 +34,8 @@ class Box(NamedTuple):
 
 @dataclass(slots=True)
 class Cell:
-    """A cell.
-
-    ``text`` has the line breaks of the source, ``columns`` and ``rows`` are its spans.
+    """A cell; ``text`` has the line breaks of the source, ``columns`` and ``rows`` are
+    its spans.
     """
 
     text: str
@@ -72,9 +71,8 @@ class Slot(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Text of the cell in its first column, and in all rows that it spans.
-
-        Otherwise empty.
+        """Text of the cell in its first column, and in all rows that it spans;
+        otherwise empty.
         """
         return self.cell.text if self.is_origin else ""
 
@@ -98,11 +96,9 @@ class SourceTable:
     after: list[str] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
     sheet: str = ""  # of a spreadsheet
-    run: int = (
-        # Which run of ascending labels it is in: parts of a document may number their
-        # tables anew.
-        1
-    )
+    # Which run of ascending labels it is in: parts of a document may number their
+    # tables anew.
+    run: int = 1
 
     @property
     def page(self) -> int | None:
@@ -197,9 +193,8 @@ class Heading:
     text: str
     page: int | None = None
     line: int | None = None
-    size: float = (
-        0.0  # of its type; larger headings hold smaller ones that have no number
-    )
+    # of its type; larger headings hold smaller ones that have no number
+    size: float = 0.0
 
     def contains(self, other: Heading) -> bool:
         """Return whether the section continues at another heading.

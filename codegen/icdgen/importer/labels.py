@@ -17,9 +17,8 @@ _COUNTED = frozenset({"byte", "bytes", "octet", "octets"})
 
 
 class Labelled(NamedTuple):
-    """A label and its value as text.
-
-    ``what`` is the label's meaning by the profile, "" if it has none.
+    """A label and its value as text; ``what`` is the label's meaning by the profile, ""
+    if it has none.
     """
 
     what: str

@@ -131,9 +131,8 @@ class ReadMessage:
 
     @property
     def reserved_bytes(self) -> int:
-        """Number of bytes at the end that contain only reserved bits.
-
-        0 if the length varies.
+        """Number of bytes at the end that contain only reserved bits; 0 if the length
+        varies.
         """
         used = (max((field.end for field in self.fields), default=0) + 7) // 8
         is_variable = any("up_to" in field.facts for field in self.fields)

@@ -13,9 +13,8 @@ from icdgen.importer.words import number
 
 
 def mend_tables(tables: list[SourceTable], profile: Profile) -> list[ImportFinding]:
-    """Replace damaged words and put lost group headings back.
-
-    Return a note for each repair.
+    """Replace damaged words and put lost group headings back; return a note for each
+    repair.
     """
     notes = []
     for table in tables:

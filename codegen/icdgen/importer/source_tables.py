@@ -9,9 +9,8 @@ from icdgen.importer.words import table_name
 
 
 def from_document(document: Document) -> list[SourceTable]:
-    """Return the tables of a document, each with its number and the texts above it.
-
-    Those without any text are left out.
+    """Return the tables of a document, each with its number and the texts above it;
+    those without any text are left out.
     """
     tables: list[SourceTable] = []
     chain: list[Heading] = []

@@ -62,9 +62,8 @@ def write(tables: list[SourceTable], folder: Path, document: Document) -> list[P
 
 
 def text_of(table: SourceTable, document: Document, same: list[int]) -> str:
-    """Return the text of a table file.
-
-    ``same`` are the numbers of the tables with the same headings.
+    """Return the text of a table file; ``same`` are the numbers of the tables with the
+    same headings.
     """
     numbers = [str(number) for number in same if number != table.number]
     shown = ", ".join(numbers[:8]) + (" ..." if len(numbers) > 8 else "")

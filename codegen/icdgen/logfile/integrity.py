@@ -28,9 +28,8 @@ from icdgen.logfile.strided import numbers_at
 MINUTE, DAY, MONTH, YEAR = 60_000, 86_400_000, 30 * 86_400_000, 366 * 86_400_000  # ms
 YEAR_1990 = 631_152_000_000  # ms: an earlier time may be a counter
 LATEST_SECOND = 253_402_300_799  # the last one of the year 9999
-STEPS_IN_LIMIT = (
-    5  # an entry later than this number of usual steps is checked for damage
-)
+# an entry later than this number of usual steps is checked for damage
+STEPS_IN_LIMIT = 5
 LEARNED_ENTRIES = 64  # entries that determine the usual step
 COMPARED_ENTRIES = 8  # entries that determine the positions of other times in an entry
 FIRST_CHUNK, LAST_CHUNK = 16, 1 << 20  # entries, bytes

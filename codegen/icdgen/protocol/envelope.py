@@ -104,9 +104,8 @@ class Stream:
         return self.telemetry if direction == "telemetry" else self.telecommands
 
     def of(self, role: str) -> EnvelopeField | None:
-        """Return the field of a role that occurs at most once.
-
-        Returns None without such a field.
+        """Return the field of a role that occurs at most once; None without such a
+        field.
         """
         return next((field for field in self.fields if field.role == role), None)
 

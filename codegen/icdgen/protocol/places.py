@@ -27,7 +27,6 @@ PLACES: tuple[tuple[str, type[Any]], ...] = (
     ("checksums.*", sections.Crc),
     *((path, sections.CheckValue) for path in ("crc8", "crc16", "checksums.*")),
 )
-"""Where the facts of each part stand in the protocol section of an ICD.
-
-`*` is any name.
+"""Where the facts of each part stand in the protocol section of an ICD; `*` is any
+name.
 """

@@ -68,9 +68,8 @@ def excerpt(lines: Lines, place: Place, mark: str = "^") -> tuple[str, str] | No
 
 
 def corrected(lines: Lines, fix: Fix) -> tuple[str, str] | None:
-    """Return the corrected line, and marks below the new text.
-
-    Returns None if the text has no such line.
+    """Return the corrected line, and marks below the new text; None if the text has no
+    such line.
     """
     line, start = lines[fix.place.line], fix.place.column - 1
     if line is None:

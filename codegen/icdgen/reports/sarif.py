@@ -75,9 +75,8 @@ def _rule(code: str) -> dict[str, Any]:
 
 
 def described(code: str, rule: Explained, text: str) -> dict[str, Any]:
-    """Return the `reportingDescriptor` of a rule (SARIF, section 3.49).
-
-    ``text`` is its explanation in Markdown.
+    """Return the `reportingDescriptor` of a rule (SARIF, section 3.49); ``text`` is its
+    explanation in Markdown.
     """
     return {
         "id": code,

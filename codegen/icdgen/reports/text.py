@@ -112,9 +112,8 @@ class _Rows:
         label: str = "",
         begin: bool = False,
     ) -> str:
-        """Return a line of the source and marks below it, with a label after the marks.
-
-        Returns empty without ``content``.
+        """Return a line of the source and marks below it, with a label after the marks;
+        empty without ``content``.
         """
         if content is None:
             return ""

@@ -32,9 +32,8 @@ _COLUMNS = [
 
 
 def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
-    """Return a table of fields and reserved bits in the order of the frame.
-
-    Returns empty for a message without fields.
+    """Return a table of fields and reserved bits in the order of the frame; empty for a
+    message without fields.
     """
     rows = [
         (field.at, _row(field, message))
@@ -143,9 +142,8 @@ def remarks(
 def _variable_part(
     message: Message | Struct | None, field: NodePlace
 ) -> VariablePart | None:
-    """Return the variable-length part that contains a field.
-
-    Returns None for a field of the fixed part.
+    """Return the variable-length part that contains a field; None for a field of the
+    fixed part.
     """
     node = field.steps[0].node
     return (

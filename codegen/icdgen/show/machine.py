@@ -128,9 +128,8 @@ def _message(message: Message) -> _Object:
 
 
 def _variable_part(part: VariablePart) -> _Object:
-    """Return a variable-length part.
-
-    Without a counter if the length of the frame gives the number of elements.
+    """Return a variable-length part; without a counter if the length of the frame gives
+    the number of elements.
     """
     return _present(
         part=part.name,

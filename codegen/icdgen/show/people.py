@@ -314,9 +314,8 @@ def _erratum(erratum: Erratum, width: int | None) -> str:
 
 
 def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
-    """Return paragraphs, wrapped to the width of a terminal.
-
-    Returns empty paragraphs are omitted.
+    """Return paragraphs, wrapped to the width of a terminal; empty paragraphs are
+    omitted.
     """
     text = ""
     for line in map(clean, filter(None, lines)):

@@ -15,12 +15,10 @@ class Settings:
     boot_ms: int | None = None
     busy_ms: int = 20  # duration of loading, erasing, committing
     processing_ms: int = 0  # duration of a telecommand; the next one is lost meanwhile
-    strict: bool = (
-        False  # also reject unknown enumeration values and values out of limits
-    )
-    every_ms: int = (
-        1000  # period of unsolicited messages with header and trailer; 0: none
-    )
+    # also reject unknown enumeration values and values out of limits
+    strict: bool = False
+    # period of unsolicited messages with header and trailer; 0: none
+    every_ms: int = 1000
     values: dict[str, dict[str, int | bytes]] = field(
         default_factory=dict
     )  # set at each start

@@ -163,9 +163,8 @@ def raw_of(field: FrameField, value: float) -> int:
 
 
 def _raw_on_curve(field: FrameField, curve: Curve, value: float) -> int:
-    """Return the raw value of a calibration, limited to its range.
-
-    Returns 0 without an inverse.
+    """Return the raw value of a calibration, limited to its range; 0 without an
+    inverse.
     """
     if not field.is_invertible:
         return 0

@@ -64,9 +64,8 @@ def make(
 
 
 def _older(site: Site, previous: str, icds: list[Path]) -> Side:
-    """Load the older release.
-
-    If it has errors, the site has its findings and is not rendered.
+    """Load the older release; if it has errors, the site has its findings and is not
+    rendered.
     """
     from icdgen.diff import inputs
 

@@ -240,9 +240,8 @@ class _SpelledTrees:
 
 
 def _strings(value: Any, keys: tuple[str, ...] | None) -> Iterator[str]:
-    """Yield the texts of these keys at any depth.
-
-    Without ``keys`` the texts of all keys.
+    """Yield the texts of these keys at any depth; without ``keys`` the texts of all
+    keys.
     """
     if isinstance(value, dict):
         for key, item in value.items():

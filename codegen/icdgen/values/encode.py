@@ -394,9 +394,8 @@ def _differs(field: FrameField, raw: int, exact: Fraction) -> bool:
 
 
 def _check(field: FrameField, value: int, text: str, raw: bool) -> None:
-    """Raise `BadValue` for a value that is out of range.
-
-    A physical value must also satisfy constant, members and limits.
+    """Raise `BadValue` for a value that is out of range; a physical value must also
+    satisfy constant, members and limits.
     """
     is_in_range = field.raw_min <= value <= field.raw_max
     if raw:

@@ -19,9 +19,8 @@ _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "
 
 
 def members(field: AnyScalar) -> str:
-    """Return the members of the enumeration of a field, for the end of a message.
-
-    Returns empty without an enumeration.
+    """Return the members of the enumeration of a field, for the end of a message; empty
+    without an enumeration.
     """
     if not field.enum:
         return ""
@@ -36,9 +35,8 @@ def out_of_range(field: AnyScalar, text: str) -> str:
 
 
 def raw_value(field: FrameField, text: str) -> int | bytes:
-    """Return the raw value that a text gives directly.
-
-    The bits of a float are ``0x...``.
+    """Return the raw value that a text gives directly; the bits of a float are
+    ``0x...``.
 
     Raises `BadValue`. Does not check the range.
     """
@@ -108,9 +106,8 @@ def _bool(field: FrameField, text: str) -> int:
 
 
 def _bytes(field: FrameField, text: str) -> bytes:
-    """Return bytes of hexadecimal text.
-
-    Returns a field of variable length can have fewer than the most.
+    """Return bytes of hexadecimal text; a field of variable length can have fewer than
+    the most.
     """
     try:
         value = parse_hex(text)

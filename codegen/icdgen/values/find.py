@@ -54,9 +54,8 @@ class ArrayOfFields:
 
     @property
     def alias(self) -> str | None:
-        """Return the name with identifiers instead of names.
-
-        Returns None if no node on the path has an identifier.
+        """Return the name with identifiers instead of names; None if no node on the
+        path has an identifier.
         """
         return alias_of_steps(self.steps)
 
@@ -158,9 +157,8 @@ def find_message(
 def find_sharing(
     icd: Icd, node_name: str, key: str, kind: str | None = None
 ) -> list[Message]:
-    """Return the messages of one direction that share the id ``key``.
-
-    Returns an empty list if fewer than two have it.
+    """Return the messages of one direction that share the id ``key``; an empty list if
+    fewer than two have it.
 
     Raises `NotFound`.
     """
@@ -214,9 +212,8 @@ def find_field(
 def find_array(
     fields: Sequence[FrameField], key: str, vocabulary: tuple[str, ...] = ()
 ) -> list[FrameField]:
-    """Return the elements of the array with this name (in any case) or identifier.
-
-    Returns an empty list without a match.
+    """Return the elements of the array with this name (in any case) or identifier; an
+    empty list without a match.
     """
     arrays: list[ArrayOfFields] = []
     # The elements of an array are contiguous in `fields`, and the first has index 0.
@@ -394,9 +391,8 @@ def _list_fields(fields: Sequence[FrameField]) -> str:
 
 
 def _suggest_named(key: str, items: Sequence[_HasName] | Sequence[FrameField]) -> str:
-    """Return a question with similar names.
-
-    An item with a similar alias is listed by its name.
+    """Return a question with similar names; an item with a similar alias is listed by
+    its name.
     """
     names = {alias: item.name for item in items for alias in _aliases(item)} | {
         item.name: item.name for item in items

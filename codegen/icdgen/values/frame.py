@@ -42,9 +42,8 @@ class Row:
 
     @property
     def number(self) -> float | None:
-        """Physical value as the nearest double, or the number of a float field.
-
-        None for any other field.
+        """Physical value as the nearest double, or the number of a float field; None
+        for any other field.
         """
         if isinstance(self.raw, bytes):
             return None

@@ -18,9 +18,8 @@ _SPECIAL = {"nan": "nan", "inf": "inf", "infinity": "inf"}
 
 
 def integer(text: str) -> int | None:
-    """Return the integer that a text states: ``12``, ``-3``, ``0x5A``, ``0b101``.
-
-    Returns None for any other text.
+    """Return the integer that a text states: ``12``, ``-3``, ``0x5A``, ``0b101``; None
+    for any other text.
     """
     if len(text) > LONGEST:
         return None
@@ -32,9 +31,8 @@ def integer(text: str) -> int | None:
 
 
 def rational(text: str) -> Fraction | None:
-    """Return the exact value of ``12``, ``-0.5``, ``1e-3`` or ``1/3``.
-
-    Returns None for any other text.
+    """Return the exact value of ``12``, ``-0.5``, ``1e-3`` or ``1/3``; None for any
+    other text.
     """
     if len(text) > LONGEST:
         return None

@@ -16,9 +16,8 @@ from tests.conformance.languages import version
 
 @dataclass
 class Measured:
-    """What a command found.
-
-    ``language`` is that of the code, ``tools`` are asked for their versions.
+    """What a command found; ``language`` is that of the code, ``tools`` are asked for
+    their versions.
     """
 
     name: str

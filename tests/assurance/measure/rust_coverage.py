@@ -49,9 +49,8 @@ Lines = dict[str, Counter[int]]  # by file: how often each line was executed
 
 
 def can_count() -> bool:
-    """Whether rustc has what instrumented programs are linked with.
-
-    That of Debian 12 has not.
+    """Whether rustc has what instrumented programs are linked with; that of Debian 12
+    has not.
     """
     with tempfile.TemporaryDirectory() as folder:
         (empty := Path(folder) / "empty.rs").write_text("fn main() {}\n", "utf-8")
@@ -98,9 +97,8 @@ def rest(icd: Icd, source: Path, out: Path) -> Path:
 
 
 def measure(icd: Icd, folder: Path) -> tuple[Lines, Path, list[str]]:
-    """How often each line of each file was executed.
-
-    The folder of the crate's sources; what is wrong.
+    """How often each line of each file was executed; the folder of the crate's sources;
+    what is wrong.
     """
     language = Language("rust-coverage", rust_language.BACKENDS, (), build)
     results = (

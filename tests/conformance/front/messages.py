@@ -159,9 +159,8 @@ def _message(
 def _known(
     front: Front, request: Request
 ) -> tuple[tuple[int, int, int | str], list[Field]]:
-    """The route to a message and its fields.
-
-    Where the ICD has none, what the program says of that id.
+    """The route to a message and its fields; where the ICD has none, what the program
+    says of that id.
     """
     route, message = _message(front, request)
     if message is None and front.is_shared(route[0], request["kind"], request["id"]):
@@ -188,9 +187,8 @@ def _sized(value: object, size: int) -> bytes:
 
 
 def _raw(field: Field, given: object) -> int | str:
-    """A raw value of a request as the program is given it.
-
-    Whether it fits, the program says.
+    """A raw value of a request as the program is given it; whether it fits, the program
+    says.
     """
     if field["type"] == "float":
         return int.from_bytes(_sized(given, field["bits"] // 8), "big")
@@ -239,9 +237,8 @@ def _double(bits: str) -> str:
 
 
 def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
-    """What the program answers.
-
-    It may tell the field that it refuses by its name or by its place.
+    """What the program answers; it may tell the field that it refuses by its name or by
+    its place.
     """
     try:
         return front.ask(*words)

@@ -39,11 +39,9 @@ class Language:
     ]  # programs that must be there; with a space in it, the command that says the version, as "go version"
     build: Callable[[Path, Path], list[str]]
     kind: str = TESTEE
-    front: bool = (
-        # Whether the program is asked by way of the front; else it answers requests in
-        # JSON.
-        True
-    )
+    # Whether the program is asked by way of the front; else it answers requests in
+    # JSON.
+    front: bool = True
 
     def missing(self) -> list[str]:
         """The programs that are not there, or are a version manager's word that they
@@ -54,9 +52,8 @@ class Language:
 
 @cache
 def version(tool: str) -> str | None:
-    """Where the tool lies and what it says of its version.
-
-    None if it is not there or does not work.
+    """Where the tool lies and what it says of its version; None if it is not there or
+    does not work.
     """
     program, *words = tool.split()
     path = shutil.which(program)

@@ -19,9 +19,8 @@ def build(
     flags: tuple[str, ...] = (),
     start: tuple[str, ...] = (),
 ) -> list[str]:
-    """Compiles the testee as one translation unit a node.
-
-    With many small nodes as one altogether.
+    """Compiles the testee as one translation unit a node; with many small nodes as one
+    altogether.
     """
     testee = source / "c-testee"
     files = sorted(testee.rglob("*.c"))

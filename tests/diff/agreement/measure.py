@@ -34,9 +34,8 @@ class Score:
 
     wire: int = 0
     no_wire: int = 0
-    nothing: int = (
-        0  # no wire, meaning or source: all vectors pass, whatever they look at
-    )
+    # no wire, meaning or source: all vectors pass, whatever they look at
+    nothing: int = 0
     by_edit: Counter = field(default_factory=Counter)
     wrong: list[str] = field(default_factory=list)
 

@@ -1,6 +1,5 @@
-"""The generated code agrees with the diff, on a sample.
-
-``python -m tests.diff.agreement`` tries 500 edits.
+"""The generated code agrees with the diff, on a sample; ``python -m
+tests.diff.agreement`` tries 500 edits.
 """
 
 from __future__ import annotations

@@ -8,11 +8,11 @@ which it applies.
 
 from __future__ import annotations
 
-from tests.diff.edits import (
-    meaning,  # noqa: F401
-    source,  # noqa: F401
-    text,  # noqa: F401
-    wire,  # noqa: F401
+from tests.diff.edits import (  # noqa: F401
+    meaning,
+    source,
+    text,
+    wire,
 )
 from tests.diff.edits.edit import BEYOND, EDITS, TEXT
 

@@ -71,8 +71,7 @@ def with_layout(icd: Icd, node: Node, message: Message, layout: Layout) -> Icd:
 def with_fields(
     icd: Icd, node: Node, message: Message, fields: list[Scalar], **more: object
 ) -> Icd:
-    """Puts other scalars in the place of those of a message, all other nodes stay.
-
+    """Puts other scalars in the place of those of a message, all other nodes stay;
     ``more`` is of the layout.
     """
     others = [one for one in message.layout.fixed if not isinstance(one, Scalar)]

@@ -128,9 +128,8 @@ def _accept(folder: Path, fault: Finding, texts: dict[str, str]) -> None:
 
 
 def _mend(path: Path, lines: set[int]) -> None:
-    """Leaves the entries with faults out.
-
-    Only those places where there are others, and counts `places` anew.
+    """Leaves the entries with faults out; only those places where there are others, and
+    counts `places` anew.
     """
     texts = re.split(r"(?m)^(?=- |[a-z])", path.read_text(encoding="utf-8"))
     line, kept = 1, []
@@ -154,9 +153,8 @@ def _mend(path: Path, lines: set[int]) -> None:
 
 
 def _without_places(entry: str, hits: set[int]) -> str:
-    """The entry without the places in these lines of it.
-
-    Nothing if none is left, or the fault is no place's.
+    """The entry without the places in these lines of it; nothing if none is left, or
+    the fault is no place's.
     """
     parts = re.split(
         r"(?m)^(?=  (?:- |[a-z]))", entry

@@ -34,9 +34,8 @@ class Look:
     caption_below: bool = False
     mark: str = ": "
     caption_style: str = "B"
-    caption_slant: float = (
-        0  # degrees that the letters lean, for want of an italic font
-    )
+    # degrees that the letters lean, for want of an italic font
+    caption_slant: float = 0
     figures: str = "LEFT"
     two_lines: bool = False
     padding: float = 1.0

@@ -42,9 +42,8 @@ def table(
     spans: Sequence[tuple] = (),
     widths: Sequence[float] | None = None,
 ) -> Table:
-    """A ruled table.
-
-    ``spans``: (first column, first row, last column, last row) of merged cells.
+    """A ruled table; ``spans``: (first column, first row, last column, last row) of
+    merged cells.
     """
     style = [
         GRID,

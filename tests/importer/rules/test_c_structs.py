@@ -1,6 +1,5 @@
-"""Structs in C, of headers and of documents, are tables that rules read.
-
-Their layout is what gcc makes of them.
+"""Structs in C, of headers and of documents, are tables that rules read; their layout
+is what gcc makes of them.
 """
 
 from __future__ import annotations

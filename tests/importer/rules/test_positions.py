@@ -1,6 +1,5 @@
-"""Positions, orders, roles and empty cells of a table are read as a rule states them.
-
-What a rule leaves open is a finding.
+"""Positions, orders, roles and empty cells of a table are read as a rule states them;
+what a rule leaves open is a finding.
 """
 
 from __future__ import annotations

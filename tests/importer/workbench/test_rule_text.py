@@ -1,6 +1,5 @@
-"""The workbench changes one rule of a profile.
-
-Everything else keeps its text and its comments.
+"""The workbench changes one rule of a profile; everything else keeps its text and its
+comments.
 """
 
 from __future__ import annotations

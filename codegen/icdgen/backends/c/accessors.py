@@ -123,9 +123,8 @@ def _constant(head: str, value: str) -> str:
 
 
 def _as_double(field: FieldDescription) -> str:
-    """Return the physical value of a field of ``message`` as a double.
-
-    The raw value without a scale.
+    """Return the physical value of a field of ``message`` as a double; the raw value
+    without a scale.
     """
     if field.is_scaled:
         return f"{getter(field.message, field.physical_name)}(message)"

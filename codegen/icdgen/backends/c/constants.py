@@ -60,9 +60,8 @@ def _value(constant: Constant, field: FieldDescription) -> str:
 
 
 def _float(constant: Constant, bits: int) -> str:
-    """Return a special value of a float.
-
-    NaN and infinity by their bits, as some targets have no names for them.
+    """Return a special value of a float; NaN and infinity by their bits, as some
+    targets have no names for them.
     """
     assert isinstance(constant.value, int)
     if constant.number in floats.NAMED:
@@ -102,9 +101,8 @@ def within(enum: EnumDescription, member: Member) -> str:
 
 
 def _signed(value: int, bits: int) -> str:
-    """Return the literal of a signed integer of ``bits`` bits.
-
-    Of an `int` if ``bits`` is 0.
+    """Return the literal of a signed integer of ``bits`` bits; of an `int` if ``bits``
+    is 0.
     """
     if bits and value == -(1 << bits - 1):
         return f"INT{bits}_MIN"

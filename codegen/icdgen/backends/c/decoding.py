@@ -254,9 +254,8 @@ def elements(part: VariablePartDescription, counter: str = "") -> str:
 
 
 def miscount(part: VariablePartDescription, counter: str = "") -> str:
-    """Return the condition for a count that the variable part cannot have.
-
-    Returns empty if it can have all.
+    """Return the condition for a count that the variable part cannot have; empty if it
+    can have all.
     """
     count = counter or f"message->{part.counter.name}"
     failed = {"at least": "<", "at most": ">"}

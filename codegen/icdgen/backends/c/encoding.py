@@ -42,9 +42,8 @@ def size(message: MessageDescription) -> list[str]:
 
 
 def _encoded_elements(last: VariablePartDescription) -> str:
-    """Return the number of elements.
-
-    Returns 0 for a counter below the smallest, which encode refuses.
+    """Return the number of elements; 0 for a counter below the smallest, which encode
+    refuses.
     """
     if not last.model.low:
         return elements(last)
@@ -163,9 +162,8 @@ class _Frame:
         )
 
     def in_order(self) -> list[str]:
-        """Return the statements in the order of the bytes.
-
-        Bytes without a field become 0.
+        """Return the statements in the order of the bytes; bytes without a field become
+        0.
         """
         lines = []
         for byte, length, statement, terms in self.bytes.segments():

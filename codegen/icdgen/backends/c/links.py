@@ -37,9 +37,8 @@ class Table(NamedTuple):
 
 
 class Row(NamedTuple):
-    """Value of an initialiser, with a comment.
-
-    Subject to a condition of the preprocessor if there is one.
+    """Value of an initialiser, with a comment; subject to a condition of the
+    preprocessor if there is one.
     """
 
     value: str
@@ -359,9 +358,8 @@ class _Tables:
         return ", ".join(row.value for row in self.facts(name, part))
 
     def step(self, name: str, step: StepDescription) -> str:
-        """Return the initialiser of a step without braces.
-
-        Its places and its initial frame are separate tables.
+        """Return the initialiser of a step without braces; its places and its initial
+        frame are separate tables.
         """
         rows = [
             Row(
@@ -432,9 +430,8 @@ class _Tables:
         )
 
     def crc(self, name: str, parameters: Crc, is_crc: bool = True) -> str:
-        """Return the initialiser of a CRC without braces.
-
-        The table for whole bytes is separate.
+        """Return the initialiser of a CRC without braces; the table for whole bytes is
+        separate.
         """
         tables = ["NULL", "NULL"]
         if is_crc and parameters.width <= 16:

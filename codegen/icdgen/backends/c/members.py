@@ -18,9 +18,8 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, Into
 
 _Lines = Callable[[FieldDescription, str, str], list[str]]
-"""Function that returns the lines for a field, given its names in C and in the ICD.
-
-Empty if the field needs none.
+"""Function that returns the lines for a field, given its names in C and in the ICD;
+empty if the field needs none.
 """
 
 
@@ -32,9 +31,8 @@ def _statements(
     of: str = "",
     depth: int = 1,
 ) -> list[str]:
-    """Return the lines for a field.
-
-    For an array in a loop over ``count`` elements, an expression in C.
+    """Return the lines for a field; for an array in a loop over ``count`` elements, an
+    expression in C.
     """
     name, member = of + field.model.name, owner + field.member
     if not field.count:

@@ -44,9 +44,8 @@ macros can't be met.
 
 
 def stem(one: Composite[Any] | EnumDescription) -> str:
-    """``demo_estimated_roll``: stem of the functions and the type.
-
-    Of ``DemoState`` ``demo_state``, for it has the node's name.
+    """``demo_estimated_roll``: stem of the functions and the type; of ``DemoState``
+    ``demo_state``, for it has the node's name.
     """
     prefix = f"{one.node.name}_"
     return one.name if one.name.startswith(prefix) else prefix + one.name
@@ -58,9 +57,8 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
 
 
 def reading(message: MessageDescription, name: str) -> str:
-    """The function that reads an element of an array of structs.
-
-    ``name`` is that of `icdgen.describe.arrays`.
+    """The function that reads an element of an array of structs; ``name`` is that of
+    `icdgen.describe.arrays`.
     """
     return f"{stem(message)}_read_{name}"
 

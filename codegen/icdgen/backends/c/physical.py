@@ -79,9 +79,8 @@ def _limit(value: int, storage: Storage) -> str:
 
 
 def _kind(storage: Storage, bits: int = 0) -> str:
-    """Return the end of the name of a function: ``u16``.
-
-    With ``bits`` for integers of this width.
+    """Return the end of the name of a function: ``u16``; with ``bits`` for integers of
+    this width.
     """
     return f"{'i' if storage.signed else 'u'}{bits or storage.bits}"
 

@@ -25,9 +25,8 @@ def joined(terms: Sequence[str]) -> str:
 
 
 def either(tests: Sequence[str], operator: str = " || ") -> str:
-    """Return the disjunction of the tests.
-
-    With ``&&`` as the operator their conjunction.
+    """Return the disjunction of the tests; with ``&&`` as the operator their
+    conjunction.
     """
     return operator.join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
 

@@ -127,9 +127,8 @@ def constant(value: Constant, field: FieldDescription) -> str:
 
 
 def special_value(value: Special | Constant, bits: int) -> str:
-    """Return the literal of a special raw value.
-
-    For a float the value that the attribute has.
+    """Return the literal of a special raw value; for a float the value that the
+    attribute has.
     """
     if value.number in floats.NAMED:
         return f'float("{value.number}")'

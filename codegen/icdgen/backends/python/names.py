@@ -64,9 +64,8 @@ def module_name(one: Composite[Any] | EnumDescription) -> str:
 
 
 def home(one: Composite[Any] | EnumDescription, node: str, up: str) -> str:
-    """The module, as one that stands ``up`` dots below the package imports it.
-
-    ``node`` is that one's node.
+    """The module, as one that stands ``up`` dots below the package imports it; ``node``
+    is that one's node.
     """
     start = "." if one.node.name == node else f"{up}{one.node.name}."
     return f"{start}{TYPES}.{module_name(one)}"

@@ -76,9 +76,8 @@ def _spelled(parts: list[str]) -> str:
 
 
 def docstring(indent: int, paragraphs: Iterable[str]) -> str:
-    """Return paragraphs of `prose` between triple quotes.
-
-    The first line has no indentation.
+    """Return paragraphs of `prose` between triple quotes; the first line has no
+    indentation.
     """
     pad = " " * indent
     first, *further = paragraphs

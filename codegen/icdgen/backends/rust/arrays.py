@@ -1,6 +1,5 @@
-"""Arrays that a function per element, or per group of elements, reads and writes.
-
-And the names of these functions.
+"""Arrays that a function per element, or per group of elements, reads and writes; and
+the names of these functions.
 """
 
 from __future__ import annotations
@@ -14,17 +13,15 @@ from icdgen.describe.description import Composite
 
 
 def named(composite: Composite[Any]) -> Iterator[tuple[FieldDescription, str]]:
-    """List these arrays of a message with their names.
-
-    Arrays in elements of an array come before it.
+    """List these arrays of a message with their names; arrays in elements of an array
+    come before it.
     """
     return named_arrays(composite, lambda field: loop_of(field) is not None)
 
 
 def helper_of(field: FieldDescription) -> str:
-    """Return the helper of the support module that calls the function for all elements.
-
-    Returns empty without such a function.
+    """Return the helper of the support module that calls the function for all elements;
+    empty without such a function.
     """
     loop = loop_of(field)
     return "" if loop is None else "rounds" if loop.per_iteration > 1 else "each"

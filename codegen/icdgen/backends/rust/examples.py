@@ -15,9 +15,8 @@ from icdgen.describe.links import LinkDescription
 from icdgen.describe.nodes import Direction
 
 _SHORT = 8
-"""Bytes of a frame up to which an example shows all.
-
-Of longer frames it shows the bytes that are not 0.
+"""Bytes of a frame up to which an example shows all; of longer frames it shows the
+bytes that are not 0.
 """
 
 
@@ -73,9 +72,8 @@ def direction_example(
 def client_example(
     node: NodeDescription, link: LinkDescription, crate: str
 ) -> list[str]:
-    """Return lines in which a client on a UART requests a message and gets it.
-
-    None without UART or short messages.
+    """Return lines in which a client on a UART requests a message and gets it; none
+    without UART or short messages.
     """
     linked = [
         message

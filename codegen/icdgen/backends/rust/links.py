@@ -302,9 +302,8 @@ def _polled(step: StepDescription | None) -> Brackets | None:
 
 
 def _step(step: StepDescription | None, direction: str) -> Brackets | None:
-    """Return a step of a procedure.
-
-    Returns None if the node does not have the message in that direction.
+    """Return a step of a procedure; None if the node does not have the message in that
+    direction.
     """
     id = step and (
         step.message.telecommand_id

@@ -54,9 +54,8 @@ USED_IN_NODES = (
 
 
 def field_name(field: FieldDescription) -> str:
-    """``estimated_roll_angle``.
-
-    ``r#type`` where the name is a keyword; ``temperatures[3]``; ``satellites[2].gnss``.
+    """``estimated_roll_angle``; ``r#type`` where the name is a keyword;
+    ``temperatures[3]``; ``satellites[2].gnss``.
     """
     return raw_words(field.member)
 

@@ -125,9 +125,8 @@ def _quotient(steps: Steps, raw: str) -> str:
     p, c, q = steps.terms
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
-        value = (
-            f"{whole_double(c)} - {value}"  # in this order a result of 0 is never -0.0
-        )
+        # in this order a result of 0 is never -0.0
+        value = f"{whole_double(c)} - {value}"
     elif c:
         value = f"{value} {'+' if c > 0 else '-'} {whole_double(abs(c))}"
     if q == 1:

@@ -53,9 +53,8 @@ def _check(check: Check) -> Brackets:
 
 
 def tabulated(form: Stream | None) -> Brackets | None:
-    """Return the CRC for which the wire layer gets a table.
-
-    Returns None for any other checksum.
+    """Return the CRC for which the wire layer gets a table; None for any other
+    checksum.
     """
     check = form and form.check
     return _crc(check) if check and check.kind == CRC else None

@@ -76,9 +76,8 @@ def root(document: str) -> Kind:
 
 
 def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Resolve references of a sub-schema.
-
-    Return the name of the definition and its sub-schema.
+    """Resolve references of a sub-schema; return the name of the definition and its
+    sub-schema.
     """
     while "$ref" in rule:
         name = schema.referred(rule)

@@ -260,9 +260,8 @@ def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
 
 
 def _header_comment(text: str, event: Event) -> list[str]:
-    """Return the comment after the ``|`` or ``>`` of a block scalar.
-
-    Returns an empty list if there is none.
+    """Return the comment after the ``|`` or ``>`` of a block scalar; an empty list if
+    there is none.
     """
     at = event.start_mark.index
     header = text[at : _line_end(text, at)]

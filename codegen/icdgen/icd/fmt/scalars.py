@@ -60,9 +60,8 @@ def name(text: Text) -> str:
 
 
 def block(text: Text, column: int, indent: int) -> list[str]:
-    """Return the lines of a scalar in block style that begins at ``column``.
-
-    All except the first are indented.
+    """Return the lines of a scalar in block style that begins at ``column``; all except
+    the first are indented.
     """
     if not isinstance(text.value, str):
         return [_number_or_word(text)]

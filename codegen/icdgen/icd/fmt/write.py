@@ -166,9 +166,8 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
 
 
 def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
-    """Return the aligned rows of a table.
-
-    Returns None if the sequence is not a table, or its rows are too long for one line.
+    """Return the aligned rows of a table; None if the sequence is not a table, or its
+    rows are too long for one line.
     """
     items = [item for item in _branches(branch) if item.mapping and item.children]
     if len(items) < len(branch.children):
@@ -235,9 +234,8 @@ def _inline(branch: Branch, kind: Kind) -> bool:
 
 
 def _wrapped(branch: Branch, column: int) -> list[str] | None:
-    """Return a list of short scalars in flow style, wrapped over several lines.
-
-    Returns None for any other branch.
+    """Return a list of short scalars in flow style, wrapped over several lines; None
+    for any other branch.
     """
     if branch.mapping or branch.commented() or _branches(branch):
         return None

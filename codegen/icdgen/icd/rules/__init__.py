@@ -16,30 +16,30 @@ from typing import TYPE_CHECKING
 from icdgen.diagnostics import Finding, in_order
 from icdgen.icd.errata import Applied
 from icdgen.icd.model import Icd
-from icdgen.icd.rules import (
-    checksums,  # noqa: F401
-    composites,  # noqa: F401
-    conditional,  # noqa: F401
-    derived,  # noqa: F401
-    duplicates,  # noqa: F401
-    envelopes,  # noqa: F401
-    errata,  # noqa: F401
-    formulas,  # noqa: F401
-    identifiers,  # noqa: F401
-    ids,  # noqa: F401
-    layout,  # noqa: F401
-    limits,  # noqa: F401
-    loggable,  # noqa: F401
-    protocol,  # noqa: F401
-    protocol_effects,  # noqa: F401
-    protocol_limits,  # noqa: F401
-    protocol_meaning,  # noqa: F401
-    protocol_names,  # noqa: F401
-    protocol_sizes,  # noqa: F401
-    references,  # noqa: F401
-    structs,  # noqa: F401
-    values,  # noqa: F401
-    variable_length,  # noqa: F401
+from icdgen.icd.rules import (  # noqa: F401
+    checksums,
+    composites,
+    conditional,
+    derived,
+    duplicates,
+    envelopes,
+    errata,
+    formulas,
+    identifiers,
+    ids,
+    layout,
+    limits,
+    loggable,
+    protocol,
+    protocol_effects,
+    protocol_limits,
+    protocol_meaning,
+    protocol_names,
+    protocol_sizes,
+    references,
+    structs,
+    values,
+    variable_length,
 )
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, Rule, elsewhere

@@ -67,9 +67,8 @@ def _fault(
 
 
 def _extra_bytes(ctx: Context, node: Node) -> int:
-    """Return the bytes that a checksum adds to telecommands of a node.
-
-    Returns 0 without a checksum.
+    """Return the bytes that a checksum adds to telecommands of a node; 0 without a
+    checksum.
     """
     given = ctx.fact(node, "crc8", "telecommand")
     extra: int = 0 if given is None else given.get("extra_bytes", 1)

@@ -53,17 +53,15 @@ def is_overlay(node: LayoutNode) -> bool:
 
 
 def own_fact(node: Node, *path: str) -> Any:
-    """Return the value at a path of the own protocol section of a node.
-
-    Returns None if it is absent.
+    """Return the value at a path of the own protocol section of a node; None if it is
+    absent.
     """
     return at_path(node.source.get("protocol"), path)
 
 
 def section_of(node: Node, *path: str) -> Map | None:
-    """Return the mapping at a path of the own protocol section of a node.
-
-    Returns None if it is absent.
+    """Return the mapping at a path of the own protocol section of a node; None if it is
+    absent.
     """
     section = own_fact(node, *path)
     return section if isinstance(section, Map) else None
@@ -218,9 +216,8 @@ class Context:
         return merged
 
     def fact(self, node: Node, *path: str) -> Any:
-        """Return the protocol fact in effect for a node at a path.
-
-        Returns None if it is absent.
+        """Return the protocol fact in effect for a node at a path; None if it is
+        absent.
         """
         return at_path(self.protocol_of(node), path)
 

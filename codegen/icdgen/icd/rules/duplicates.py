@@ -55,9 +55,8 @@ def brings_together(ctx: Context, node: Node, first: Node, second: Node) -> bool
 
 
 def together(node: Node, second: Node) -> str:
-    """Return the end of a message about a clash of two included nodes.
-
-    Returns empty if ``node`` itself declares the second item.
+    """Return the end of a message about a clash of two included nodes; empty if
+    ``node`` itself declares the second item.
     """
     return "" if second is node else f", and `{node.name}` includes both"
 

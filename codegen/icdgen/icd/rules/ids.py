@@ -56,9 +56,8 @@ def _uses_in_scope(ctx: Context, node: Node) -> Iterator[Use]:
 
 
 def _is_id(value: object) -> bool:
-    """Return whether a value is a valid id.
-
-    An entry of `missing` may violate the schema.
+    """Return whether a value is a valid id; an entry of `missing` may violate the
+    schema.
     """
     if isinstance(value, list):
         most = wire_ids.size(wire_ids.MOST_BITS)

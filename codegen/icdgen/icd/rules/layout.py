@@ -193,9 +193,8 @@ def _bits_of(mask: int) -> str:
 
 
 def _mask(begin: int, bits: int, bit_order: str) -> int:
-    """Return a mask of the bits of a field in the frame.
-
-    Bit w of byte b is bit 8 * b + w.
+    """Return a mask of the bits of a field in the frame; bit w of byte b is bit 8 * b +
+    w.
     """
     # Whole bytes have the same mask in both bit orders.
     if bit_order == "lsb0" or begin % 8 == 0 == bits % 8:

@@ -56,8 +56,7 @@ def i2c_address_forms_agree(ctx: Context) -> Iterator[Fault]:
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
-    """Yield the faults of an address whose 8-bit, 7-bit and binary forms differ.
-
+    """Yield the faults of an address whose 8-bit, 7-bit and binary forms differ;
     ``bit`` is its lowest bit.
     """
     eight, seven, binary = (
@@ -103,9 +102,8 @@ def _is_byte(value: object) -> TypeGuard[int]:
 
 
 def _binary(text: str) -> int | None:
-    """Return the value of a binary number such as ``0b1010 0001``.
-
-    Returns None if the text is not one.
+    """Return the value of a binary number such as ``0b1010 0001``; None if the text is
+    not one.
     """
     digits = text.removeprefix("0b").replace(" ", "")
     return int(digits, 2) if digits and not digits.strip("01") else None
@@ -132,9 +130,8 @@ def checksum_parameters_give_the_check_value(ctx: Context) -> Iterator[Fault]:
 
 
 def _check_value(section: Map) -> int | None:
-    """Return the checksum of `CHECKED` with the parameters of a section.
-
-    Returns None if they are incomplete or out of range.
+    """Return the checksum of `CHECKED` with the parameters of a section; None if they
+    are incomplete or out of range.
     """
     kind = section.get("kind", checksum.CRC)
     values = [

@@ -17,9 +17,8 @@ CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 
 
 def numbers(section: Map | None, *keys: str) -> tuple[int, ...] | None:
-    """Return the numbers of several keys.
-
-    Returns None if one of them is absent or not a number.
+    """Return the numbers of several keys; None if one of them is absent or not a
+    number.
     """
     values = tuple(at_path(section, [key]) for key in keys)
     return values if all(isinstance(value, int) for value in values) else None

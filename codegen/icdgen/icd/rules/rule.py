@@ -49,9 +49,8 @@ def rule(
     needs_complete: bool = False,
     runs_last: bool = False,
 ) -> Callable[[Check], Check]:
-    """Register the decorated function as the rule ``code``.
-
-    The name of its module is the theme.
+    """Register the decorated function as the rule ``code``; the name of its module is
+    the theme.
     """
 
     def register(check: Check) -> Check:

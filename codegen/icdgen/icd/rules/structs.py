@@ -87,9 +87,8 @@ def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
 def _shortest_path(
     first: str, last: str, uses: dict[str, list[Map]]
 ) -> list[str] | None:
-    """Return the structs from ``first`` to ``last``, each of which contains the next.
-
-    Returns None if there is no path.
+    """Return the structs from ``first`` to ``last``, each of which contains the next;
+    None if there is no path.
     """
     paths, seen = [[first]], {first}
     while paths:

@@ -109,9 +109,8 @@ def special_values_fit(ctx: Context) -> Iterator[Fault]:
 
 
 def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | None:
-    """Return message and help if a value cannot be a special value of a field.
-
-    Returns None if it can.
+    """Return message and help if a value cannot be a special value of a field; None if
+    it can.
     """
     if field.type == "float":
         if isinstance(given, str) and given not in floats.NAMED:
@@ -134,9 +133,8 @@ def _not_special(field: Scalar, given: int | float | str) -> tuple[str, str] | N
 
 
 def _misfit(field: Scalar, value: int | None) -> tuple[str, str] | None:
-    """Return message and help if a raw value is out of range for a field.
-
-    Returns None if it is in range.
+    """Return message and help if a raw value is out of range for a field; None if it is
+    in range.
     """
     if field.type not in NUMBERS:
         what = f"of {quote(field.name)} has no meaning for type `{field.type}`"

@@ -1,6 +1,5 @@
-"""Messages of variable length: counters, positions and links.
-
-Frames that may end early.
+"""Messages of variable length: counters, positions and links; frames that may end
+early.
 """
 
 from __future__ import annotations

@@ -232,9 +232,8 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
 
 
 def _leading(band: Band) -> float:
-    """Return the smallest distance of two lines in a cell.
-
-    Infinite if no cell has two lines.
+    """Return the smallest distance of two lines in a cell; infinite if no cell has two
+    lines.
     """
     columns = [lines(part) for part in band.parts() if part]
     return min(

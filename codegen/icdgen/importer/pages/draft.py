@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from icdgen.importer.document import Box, Cell, SourceRow, SourceTable
 
 SNAP = 3.0  # points: closer edges of cells count as one
-SAME_WIDTH = (
-    8.0  # points: maximum difference of the widths of parts of a table on several pages
-)
+# points: maximum difference of the widths of parts of a table on several pages
+SAME_WIDTH = 8.0
 
 
 @dataclass(slots=True)

@@ -68,11 +68,8 @@ class Page:
     fills: list[Fill] = field(default_factory=list)
     images: int = 0
     unmapped: int = 0  # characters without a meaning
-    unseen: int = (
-        # Words outside the visible page; a reader of the manual does not see them
-        # either.
-        0
-    )
+    # Words outside the visible page; a reader of the manual does not see them either.
+    unseen: int = 0
     turned: int = 0  # words that are not upright
     failed: str = ""  # reason why the page cannot be read
 

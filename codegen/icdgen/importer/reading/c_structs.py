@@ -187,9 +187,8 @@ def _wrong_line(source: CText, c_parser: Any) -> int:
 
 
 class _Reader:
-    """Makes tables of the declarations of a file.
-
-    ``ast`` is pycparser's module of nodes.
+    """Makes tables of the declarations of a file; ``ast`` is pycparser's module of
+    nodes.
     """
 
     def __init__(self, source: CText, ast: Any) -> None:

@@ -29,9 +29,8 @@ _PRAGMA = re.compile(
 
 
 class CText:
-    """A text in C with its comments, constants and packing taken out.
-
-    The lines keep their numbers.
+    """A text in C with its comments, constants and packing taken out; the lines keep
+    their numbers.
     """
 
     def __init__(self, text: str) -> None:

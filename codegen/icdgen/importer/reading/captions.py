@@ -21,9 +21,8 @@ class Caption(NamedTuple):
 
 
 def attach_captions(blocks: Sequence[Block | Caption]) -> list[Block]:
-    """Return the blocks, each caption with its table.
-
-    Returns a caption without a table is a text.
+    """Return the blocks, each caption with its table; a caption without a table is a
+    text.
 
     Captions stand above their tables if as many find a table there as below. A table
     with the number of the table before it continues that one.

@@ -54,9 +54,8 @@ def bits_of_register(lowest: int, size: int, length: int, byte_order: str) -> li
 
 
 def run_of(bits: list[Bit], preferred: Order) -> tuple[int, Order] | None:
-    """Return the number of the first bit and the order in which the bits are one value.
-
-    Returns None if they are in no order.
+    """Return the number of the first bit and the order in which the bits are one value;
+    None if they are in no order.
     """
     for order in (preferred, *ORDERS):
         numbers = [

@@ -93,9 +93,8 @@ class RoleReader:
         given: dict[str, str],
         columns: list[tuple[Column, list[str]]],
     ) -> None:
-        """Add the roles of the columns to ``given``.
-
-        Report columns that give one role different texts.
+        """Add the roles of the columns to ``given``; report columns that give one role
+        different texts.
         """
         sources: dict[str, str] = {}
         for column, names in columns:
@@ -116,9 +115,8 @@ class RoleReader:
             _add(given, taken)
 
     def columns(self, rows: list[DataRow]) -> list[tuple[Column, list[str]]]:
-        """Return the entries of `columns` with their headings.
-
-        Report missing columns and columns without a role.
+        """Return the entries of `columns` with their headings; report missing columns
+        and columns without a role.
         """
         rule, table, titles = self.rule, self.table, self.titles
         entries: list[tuple[Column, list[str]]] = []
@@ -229,9 +227,8 @@ class RoleReader:
     def melted(
         self, row: DataRow, given: dict[str, str], melt: Pattern
     ) -> Iterator[Roles]:
-        """A field for each cell below headings that number bits or bytes.
-
-        A cell over several of them has their range.
+        """A field for each cell below headings that number bits or bytes; a cell over
+        several of them has their range.
         """
         titles = self.titles
         if row.is_short:
@@ -327,9 +324,8 @@ class RoleReader:
         roles: dict[str, str],
         given: dict[str, str],
     ) -> None:
-        """Report roles that a line and another column of its row give.
-
-        Positions of lines lie within that of the row.
+        """Report roles that a line and another column of its row give; positions of
+        lines lie within that of the row.
         """
         for role in (
             role
@@ -349,9 +345,8 @@ class RoleReader:
 
 
 def _add(given: dict[str, str], further: dict[str, str]) -> None:
-    """Add the roles of a further cell of the row.
-
-    Descriptions from several cells are joined.
+    """Add the roles of a further cell of the row; descriptions from several cells are
+    joined.
     """
     texts = [text for roles in (given, further) if (text := roles.get("text"))]
     given.update(further)

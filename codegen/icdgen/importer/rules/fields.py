@@ -58,23 +58,19 @@ class Draft:
     facts: dict[str, Any] = field(
         default_factory=dict
     )  # further keys of the field in the ICD
-    part: tuple[int, int] | None = (
-        None  # bit numbers of the whole field that this piece has
-    )
+    # bit numbers of the whole field that this piece has
+    part: tuple[int, int] | None = None
     order: Order | None = None  # where it is not the node's
-    table: SourceTable | None = (
-        # The table of bits that gives the field; None for the table of its message.
-        None
-    )
+    # The table of bits that gives the field; None for the table of its message.
+    table: SourceTable | None = None
     frame_bits: list[Bit] = field(
         default_factory=list
     )  # from the least significant one, if `at` does not state them
 
     @property
     def size(self) -> int:
-        """Number of bits of the field in the frame.
-
-        0 if the end of the frame determines it.
+        """Number of bits of the field in the frame; 0 if the end of the frame
+        determines it.
         """
         return (
             0
@@ -111,10 +107,8 @@ class FieldReader:
         self.subject = ""  # name of the field, or text of the row, that is being read
 
     def read(self, roles: Roles) -> list[Draft]:
-        """Return the field of a row.
-
-        Several for padding in several places; none, with a finding, if it cannot be
-        read.
+        """Return the field of a row; several for padding in several places; none, with
+        a finding, if it cannot be read.
         """
         for role, last in (("bit", "last_bit"), ("byte", "last_byte")):
             printed = roles.get(role)
@@ -143,9 +137,8 @@ class FieldReader:
         return [draft] if draft is not None else []
 
     def read_field(self, roles: Roles) -> Draft | None:
-        """Return the field.
-
-        Returns None, with a finding, if something that it needs is missing.
+        """Return the field; None, with a finding, if something that it needs is
+        missing.
         """
         name, spot = roles.get("name"), self.table.spot_of(roles.row.source)
         where = f"{self.table.title}, field `{name}`"
@@ -262,9 +255,8 @@ class FieldReader:
     def numbers(
         self, roles: Roles, where: str, spot: SourcePlace
     ) -> dict[str, int] | None:
-        """Return the roles that are whole numbers.
-
-        Returns None, with a finding, if a text is not a number.
+        """Return the roles that are whole numbers; None, with a finding, if a text is
+        not a number.
         """
         numbers = {}
         for role in (
@@ -550,9 +542,8 @@ class FieldReader:
 
 
 def scale_formula(scale: str | None, offset: str | None, bias: str | None) -> str:
-    """Return the formula as an ICD writes it.
-
-    Returns empty if physical and raw value are the same.
+    """Return the formula as an ICD writes it; empty if physical and raw value are the
+    same.
     """
     factor = scale if scale is not None and Decimal(scale) != 1 else ""
     raw = "raw"

@@ -59,9 +59,8 @@ def interpret(
     profile: Profile,
     extra: list[ImportFinding] | None = None,
 ) -> Interpretation:
-    """Apply the rules of ``profile`` to the tables.
-
-    ``extra`` are findings of the reader of the source.
+    """Apply the rules of ``profile`` to the tables; ``extra`` are findings of the
+    reader of the source.
     """
     return _Interpreter(tables, profile).run(extra or [])
 

@@ -154,9 +154,8 @@ class Taken(NamedTuple):
 
     roles: dict[str, str]
     left: str
-    listed: str = (
-        ""  # a list of numbers, such as `0, 2`, that the pattern takes for a range
-    )
+    # a list of numbers, such as `0, 2`, that the pattern takes for a range
+    listed: str = ""
 
 
 def compile_pattern(text: str, place: Place) -> Pattern:
@@ -285,9 +284,8 @@ def whole_number(text: str, base: int = 10) -> int | None:
 
 
 def decimal(text: str) -> str | None:
-    """Return a number as an ICD writes it, with the digits of the source.
-
-    Returns None for another text.
+    """Return a number as an ICD writes it, with the digits of the source; None for
+    another text.
     """
     text = text.replace("−", "-").replace("–", "-").replace(" ", "").lstrip("+")
     if not re.fullmatch(NUMBER, text):

@@ -30,9 +30,8 @@ class Group:
         self.examples.append(example)
 
     def as_import_finding(self) -> ImportFinding:
-        """One finding at the place of the first row.
-
-        `also` has the places of the others.
+        """One finding at the place of the first row; `also` has the places of the
+        others.
         """
         more = len(self.spots) - 1
         if not more:

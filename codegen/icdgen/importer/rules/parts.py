@@ -55,9 +55,8 @@ class Part:
 def known_kind(
     text: str, where: str, spot: SourcePlace, rule: Rule, notes: Notes
 ) -> str:
-    """Return the kind of a message.
-
-    Returns empty, with a finding, if the word of the document is not translated.
+    """Return the kind of a message; empty, with a finding, if the word of the document
+    is not translated.
     """
     if text in KINDS:
         return text

@@ -11,9 +11,8 @@ from icdgen.importer.rules.rule import Rule
 
 
 class PlaceReader:
-    """Places of the fields of one table.
-
-    ``order`` is the node's, ``error`` reports a place that is not clear.
+    """Places of the fields of one table; ``order`` is the node's, ``error`` reports a
+    place that is not clear.
     """
 
     def __init__(
@@ -84,9 +83,8 @@ class PlaceReader:
     def is_range_clear(
         self, numbers: dict[str, int], size: int, where: str, spot: SourcePlace
     ) -> bool:
-        """Check a range from a bit of one byte to a bit of another.
-
-        Report one that can be read in two ways.
+        """Check a range from a bit of one byte to a bit of another; report one that can
+        be read in two ways.
         """
         lacking = [role for role in ("byte", "bit") if role not in numbers]
         outside = [role for role in ("bit", "end_bit") if numbers.get(role, 0) > 7]

@@ -142,9 +142,8 @@ class Rule:
 
     @property
     def heading_titles(self) -> list[str]:
-        """Headings in `head`.
-
-        Empty if it has patterns, or a single heading, which is ambiguous.
+        """Headings in `head`; empty if it has patterns, or a single heading, which is
+        ambiguous.
         """
         titles = (
             [title.strip() for title in re.split(r"\s\|\s", self.head)]

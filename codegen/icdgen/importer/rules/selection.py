@@ -11,9 +11,8 @@ from icdgen.importer.document import SourceTable
 from icdgen.importer.rules.language import normalised
 from icdgen.importer.rules.rule import Rule
 
-SEARCHED = (
-    6  # rows in which the headings are looked for: titles and notes stand above them
-)
+# rows in which the headings are looked for: titles and notes stand above them
+SEARCHED = 6
 NO_HEAD = "none"
 
 

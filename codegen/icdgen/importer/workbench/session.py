@@ -347,9 +347,8 @@ class Session:
             self.disk, self.saved = contents, text
 
     def save(self, overwrite: bool = False) -> dict[str, Any]:
-        """Write the profile and the ICDs.
-
-        Return the files and the findings of `icdgen check`. Raises `UserError`.
+        """Write the profile and the ICDs; return the files and the findings of `icdgen
+        check`. Raises `UserError`.
 
         If another program changed the profile's file, write nothing and return the
         ``conflict``, unless ``overwrite``.
@@ -427,9 +426,8 @@ def _message(part: Part, enumerations: dict[str, str]) -> dict[str, Any]:
 
 
 def _repetition(draft: Draft, drafts: list[Draft]) -> dict[str, Any] | None:
-    """Return the group, the count and the stride in bits of a repeated field.
-
-    Returns None for a single field.
+    """Return the group, the count and the stride in bits of a repeated field; None for
+    a single field.
     """
     roles = draft.roles
     group = roles.get("group")

@@ -32,9 +32,8 @@ class ValidProfile:
 def read_profile(
     text: str, name: str, last_valid: list[RuleKeys | None]
 ) -> ValidProfile:
-    """Return the profile of a text.
-
-    ``last_valid`` replaces those of its rules that have errors.
+    """Return the profile of a text; ``last_valid`` replaces those of its rules that
+    have errors.
 
     A rule with errors that was never valid ignores its tables. Raises `Findings` for
     errors outside the rules.

@@ -105,9 +105,8 @@ class Exchanges(Generic[N]):
     def _messages_in(
         self, events: list[Event], kinds: tuple[NodeMessageClass[N, Message], ...]
     ) -> Iterator[Message]:
-        """Return the unsolicited messages of these classes.
-
-        All messages without ``kinds``.
+        """Return the unsolicited messages of these classes; all messages without
+        ``kinds``.
         """
         for event in events:
             if not isinstance(event, Arrived) or (kinds and event.type not in kinds):

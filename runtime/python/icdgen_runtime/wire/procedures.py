@@ -64,9 +64,8 @@ class Procedure:
 
     @property
     def deadline(self) -> Optional[float]:
-        """Time of the next call of `next`, in milliseconds.
-
-        None while waiting for an outcome.
+        """Time of the next call of `next`, in milliseconds; None while waiting for an
+        outcome.
         """
         return self._action.until if isinstance(self._action, Wait) else None
 
