@@ -192,7 +192,9 @@ class Builder:
         """Return the layout of a struct, with the nodes behind a variable-length array
         as in the longest element.
         """
-        fixed, length = self.fixed_nodes(item), item["length"]
+        is_variable = variable_structs.is_variable_struct(item)
+        behind = variable_structs.sequence_of_struct(item) if is_variable else ()
+        fixed, length = self.fixed_nodes(item, behind), item["length"]
         nodes: list[FixedNode] = []
         for row in self.sequence_of_struct(item):
             size: Size | None = row.get("count")
@@ -207,9 +209,8 @@ class Builder:
         return Layout(item["name"], length, (*fixed, *nodes), owner=self.name)
 
     def sequence_of_struct(self, item: Map) -> list[Map]:
-        """Return the variable-length arrays of a struct and the fields behind them.
-
-        None if one has an error.
+        """Return the variable-length arrays of a struct and the fields behind them;
+        none if one has an error.
         """
         rows, structs = variable_structs.sequence_of_struct(item), self.scope.structs
         lengths = {name: struct.length for name, struct in structs.items()}
@@ -273,22 +274,21 @@ class Builder:
                 layout = replace(layout, derived=(*layout.derived, node))
         return layout
 
-    def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
+    def fixed_nodes(
+        self, owner: Map, behind: Iterable[Map] = ()
+    ) -> tuple[FixedNode, ...]:
         """Return the nodes at fixed positions of a message or struct.
 
-        Returns a split field has one node per part.
+        A split field has one node per part. Fields `behind` a variable-length array of a
+        struct are left out.
         """
         nodes: list[FixedNode] = []
-        # These rows of a struct are nodes behind the others.
-        rows = variable_structs.sequence_of_struct(owner) if "kind" not in owner else ()
-        sequence = (
-            set(map(id, rows)) if any(map(variable_length.is_variable, rows)) else ()
-        )
+        left_out = set(map(id, behind))
         for item in self.items("fields", owner):
             is_broken = any(
                 id(item.get(key)) in self.broken for key in ("when", "count", "size")
             )
-            if is_broken or variable_length.is_variable(item) or id(item) in sequence:
+            if is_broken or variable_length.is_variable(item) or id(item) in left_out:
                 continue
             if "when" in item and item.keys().isdisjoint(("struct", "count")):
                 present_if = conditions.conditions_of(owner, item, self.scope.enums)
@@ -307,9 +307,8 @@ class Builder:
         return tuple(nodes)
 
     def parts_of_split_field(self, owner: Map, item: Map) -> Iterator[FixedNode]:
-        """Yield the parts of a split field at their positions in the frame.
-
-        The field itself if it cannot be split.
+        """Yield the parts of a split field at their positions in the frame; the field
+        itself if it cannot be split.
         """
         head = self.tree["node"]
         declared = orders(item, orders(owner))
@@ -332,10 +331,8 @@ class Builder:
             yield _overlaid(scalar, part)
 
     def variable_nodes(self, message: Map) -> tuple[VariableNode, ...]:
-        """Return the nodes of variable length.
-
-        Returns an empty tuple if one has an error, because their positions are
-        dependent.
+        """Return the nodes of variable length; an empty tuple if one has an error,
+        because their positions are dependent.
         """
         items = variable_length.variable_fields(message)
         lengths = {name: struct.length for name, struct in self.scope.structs.items()}
@@ -377,10 +374,8 @@ class Builder:
         return tuple(nodes)
 
     def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
-        """Return the node of a line.
-
-        Returns None if it refers to an unknown struct, or to one of variable length
-        without a counter.
+        """Return the node of a line; None if it refers to an unknown struct, or to one
+        of variable length without a counter.
 
         With a size, the node is an array, or bytes or text of variable length.
         """
@@ -508,9 +503,8 @@ def _id(item: Map, key: str) -> int | None:
 
 
 def orders(item: Map, outer: tuple[str, str] = ("", "")) -> tuple[str, str]:
-    """Return the byte order and bit order that a mapping declares.
-
-    `outer` if it declares none.
+    """Return the byte order and bit order that a mapping declares; `outer` if it
+    declares none.
     """
     return item.get("byte_order", outer[0]), item.get("bit_order", outer[1])
 

@@ -93,9 +93,8 @@ def element_bits(item: Map, structs: Lengths) -> int:
 
 
 def counter_of(message: Map, item: Map) -> Map | None:
-    """Return the field that counts the elements.
-
-    Returns None if it is unknown, or if the end of the frame gives their number.
+    """Return the field that counts the elements; None if it is unknown, or if the end
+    of the frame gives their number.
     """
     name = counting(item).name
     if name == REST:
@@ -132,6 +131,13 @@ def _is_sized(item: Map) -> bool:
     return "size" in item or isinstance(item.get("struct"), str)
 
 
+def fault_without_most(item: Map) -> Fault:
+    """Return the fault of a variable-length array without `up_to`."""
+    text = f"`{item['name']}` has no fixed count and no `up_to`"
+    help = "add `up_to:`, the greatest number of elements: buffers have that size"
+    return Fault.at(item, "count", text, help)
+
+
 def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
     """Yield the faults of the number of elements of a variable-length field: its
     counter, `plus` and `up_to`.
@@ -160,15 +166,9 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Fault]:
             item, key, text, help, "" if isinstance(item[key], dict) else fix
         )
         return
-    if "up_to" not in item and key == "count":
-        text = f"{name} has no fixed {key} and no `up_to`"
-        yield Fault.at(
-            item,
-            key,
-            text,
-            "add `up_to:`, the greatest number of elements: buffers have that size",
-        )
     if "up_to" not in item:
+        if key == "count":
+            yield fault_without_most(item)
         return
     if item["up_to"] > MOST_ELEMENTS and key == "count":
         text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
@@ -227,9 +227,8 @@ def _can_count(field: Map, message: Map) -> bool:
 
 
 def reason_against(counter: Map, message: Map) -> str:
-    """Return why a field cannot count elements, as the end of a sentence.
-
-    Returns empty if it can.
+    """Return why a field cannot count elements, as the end of a sentence; empty if it
+    can.
     """
     reasons = reasons_against(counter, COUNTER)
     if reasons:

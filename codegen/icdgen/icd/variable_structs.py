@@ -19,6 +19,7 @@ from icdgen.icd.variable_length import (
     count_key,
     counting,
     element_bits,
+    fault_without_most,
     is_variable,
     placed_fields,
     reason_against,
@@ -102,13 +103,7 @@ def faults_in_struct(
                 item, key, text, "name a field of the message that counts the elements"
             )
         elif is_variable(item) and "up_to" not in item:
-            text = f"{name} has no fixed {key} and no `up_to`"
-            yield Fault.at(
-                item,
-                key,
-                text,
-                "add `up_to:`, the greatest number of elements: buffers have that size",
-            )
+            yield fault_without_most(item)
         elif is_variable(item) and item["up_to"] > MOST_ELEMENTS:
             text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
             yield Fault.at(item, "up_to", text, f"write up to {MOST_ELEMENTS:,}")

@@ -1,12 +1,10 @@
-"""References between tables: lists and messages, fields and enumerations.
-
-Checks of complete messages.
+"""References between tables: lists and messages, fields and enumerations; checks of
+complete messages.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections import Counter
 from typing import Any
 
 from icdgen.icd.wire_ids import DEFAULT_BITS
@@ -121,9 +119,8 @@ def _meant(
     field: ReadField,
     import_findings: list[ImportFinding],
 ) -> ReadEnum | None:
-    """Return the enumeration to which a field refers.
-
-    Report a reference that cannot be resolved.
+    """Return the enumeration to which a field refers; report a reference that cannot be
+    resolved.
     """
     described = field.described
     where = f"{message.table.title}, field `{field.name}`"
@@ -183,13 +180,13 @@ def _by_title(
     if not wanted:
         return None
     near = [*node.enums, *everything]
-    tables = Counter(id(enum.table) for enum in everything)
     equal = (enum for enum in near if wanted == squeezed(enum.name))
     # The caption of a table with several enumerations is the title of none.
     captioned = (
         enum
         for enum in near
-        if wanted == squeezed(enum.table.caption) and tables[id(enum.table)] == 1
+        if wanted == squeezed(enum.table.caption)
+        and sum(each.table is enum.table for each in everything) == 1
     )
     # A cell can break off a title. A caption that goes on can also be about another
     # enumeration.
@@ -224,9 +221,8 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
 def complete(
     node: NodeParts, head: dict[str, Any], import_findings: list[ImportFinding]
 ) -> None:
-    """Report what messages lack and bits without a field.
-
-    Drop messages that an ICD cannot represent.
+    """Report what messages lack and bits without a field; drop messages that an ICD
+    cannot represent.
 
     ``head`` is the section `node` of the ICD, which has the size of ids.
     """
