@@ -169,8 +169,10 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             inner_names = Names(draw, {field["name"] for field in struct["fields"]})
             named = [own_names.one(name) for name in ("count", "inner count", "groups")]
             inner = [inner_names.one("behind") for _ in range(draw(st.integers(1, 4)))]
-            ends, struct = draw(nested_end(length, named, struct, inner, _field(enums)))
-            fields, message["length"] = [*fields, *ends], length + 2
+            ends, struct = draw(
+                nested_end(message["length"], named, struct, inner, _field(enums))
+            )
+            fields, message["length"] = [*fields, *ends], message["length"] + 2
             variable.append(struct)
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
