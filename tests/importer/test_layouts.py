@@ -116,6 +116,21 @@ def test_the_rest_of_a_name_that_reads_like_headings_begins_no_table(tmp_path):
     )
 
 
+def test_the_rest_of_a_name_with_a_word_between_headings_begins_no_table(tmp_path):
+    field = {"at": 0, "bits": 1, "name": "Raw Temperature I2C Mode of Value"}
+    message = {
+        "name": "Panels",
+        "kind": "telecommand",
+        "id": 1,
+        "length": 1,
+        "group": "Power",
+        "fields": [{**field, "type": "bool"}],
+    }
+    tree = {"icdgen": 1, "node": {"name": "device"}, "messages": [message]}
+    manual = content.manual({"device": tree}, {"device": "Device"})
+    assert back(manual, "booktabs", tmp_path / "manual.pdf") == []
+
+
 def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_path):
     manual = content.manual(content.shipped("common"), TITLES)
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")

@@ -78,8 +78,22 @@ def _text(cell: list[Word]) -> str:
 
 
 def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
-    groups = headings.segmented([w.text for w in line.words], profile)
-    return [[line.words[i] for i in group] for group in groups] if groups else None
+    """Return the cells of a line of headings whose gaps may be narrow, or None.
+
+    An unknown word without a gap beside a known heading, as in ``Mode of Value``,
+    makes the line text.
+    """
+    segments = headings.segmented([w.text for w in line.words], profile)
+    if not segments:
+        return None
+    cells = [[line.words[i] for i in segment.words] for segment in segments]
+    for (left, right), (before, after) in zip(
+        itertools.pairwise(segments), itertools.pairwise(cells), strict=True
+    ):
+        is_one_run = len(runs(Line([before[-1], after[0]]), 0.45)) == 1
+        if left.is_known != right.is_known and is_one_run:
+            return None
+    return cells
 
 
 def _clustered(block: list[Line]) -> list[list[Word]]:

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 from icdgen.importer.pages.draft import Header
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, number
+
+
+class Segment(NamedTuple):
+    """Consecutive words of a line, and whether they are a known heading."""
+
+    words: list[int]  # indices
+    is_known: bool
 
 
 def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | None:
@@ -66,32 +74,35 @@ def _roles(
     return given
 
 
-def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
-    """Return groups of words that are known headings, regardless of gaps, or None.
+def segmented(words: list[str], profile: Profile) -> list[Segment] | None:
+    """Return the headings that the words form regardless of gaps, or None.
 
-    Groups contain indices into ``words``.
+    A word that belongs to no known heading is a segment of its own.
     """
-    best: tuple[int, list[list[int]]] = (0, [])
+    best: tuple[int, list[Segment]] = (0, [])
     flat = [folded(word) for word in words]
     for kind, titles in profile.known_headings.items():
-        groups, index, hits = [], 0, 0
+        segments: list[Segment] = []
+        index, hits = 0, 0
         while index < len(words):
             for length in range(min(5, len(words) - index), 0, -1):
                 chunk = tuple(
                     part for text in flat[index : index + length] for part in text
                 )
                 if chunk in titles:
-                    groups.append(list(range(index, index + length)))
+                    segments.append(Segment(list(range(index, index + length)), True))
                     index, hits = index + length, hits + 1
                     break
             else:
-                groups.append([index])
+                segments.append(Segment([index], False))
                 index += 1
         header = match(
-            [" ".join(words[i] for i in group) for group in groups], profile, loose=True
+            [" ".join(words[i] for i in segment.words) for segment in segments],
+            profile,
+            loose=True,
         )
         if header is not None and header.kind == kind and hits > best[0]:
-            best = (hits, groups)
+            best = (hits, segments)
     return best[1] or None
 
 
