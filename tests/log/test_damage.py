@@ -170,6 +170,20 @@ def test_inserted_bytes_lose_their_neighbourhood_and_invent_no_row(
     assert len(rows) >= COUNT - 5
 
 
+@pytest.mark.parametrize(
+    ("kind", "number", "size"),
+    [("noise", 4, 98), ("zeros", 29, 263), ("counter", 57, 195)],
+)
+def test_zeros_behind_the_first_byte_of_a_time_are_no_clock_that_was_set(
+    icd, path, kind, number, size
+):
+    data, entries = log_of(icd, kind, steady())
+    at = len(data) - ENTRY * (COUNT - number) + 1  # the time becomes a few seconds
+    rows, found = read(icd, path, data[:at] + bytes(size) + data[at:])
+    assert found.damages and not found.jumps
+    assert rows == entries[: number - 1] + entries[number + 1 :]
+
+
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(
     kind=st.sampled_from(NAMES),

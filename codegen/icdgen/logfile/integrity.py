@@ -421,6 +421,8 @@ class LogSurvey:
                 )
             ):
                 return False
+            if after == 0 < before:
+                return False  # erased memory
         return True
 
     def _rises(self, at: int, limit: float) -> bool:
