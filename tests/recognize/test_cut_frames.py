@@ -5,7 +5,7 @@ bytes of its header as values.
 from __future__ import annotations
 
 import random
-from time import process_time
+import sys
 
 import pytest
 
@@ -286,18 +286,25 @@ def test_a_request_that_the_icd_has_no_message_for_is_a_packet_and_no_text(tmp_p
     assert reply.message.name == "Basic" and reply.data.hex() == "0e10"
 
 
-def test_a_long_recording_with_much_damage_is_read_in_a_time_that_grows_with_its_length(
+def test_a_long_recording_with_much_damage_costs_work_that_grows_with_its_length(
     motor,
 ):
-    def seconds(count: int) -> float:
-        begin = process_time()
-        found = recognize(
-            motor, bytes.fromhex((SPEED + "a55a090009" + POWER[:-2] + "ff") * count)
-        )
-        assert len(found) == count and len(found[0].left_out) == 2 * count
-        return process_time() - begin
+    def calls(count: int) -> int:
+        """Number of calls of functions while a recording is read."""
+        number = 0
 
-    seconds(10)
-    assert seconds(4000) < 20 * max(
-        seconds(500), 0.02
-    )  # 64 times where it is quadratic
+        def profile(frame, event, argument) -> None:
+            nonlocal number
+            number += event.endswith("call")  # of Python and of C
+
+        data = bytes.fromhex((SPEED + "a55a090009" + POWER[:-2] + "ff") * count)
+        sys.setprofile(profile)
+        try:
+            found = recognize(motor, data)
+        finally:
+            sys.setprofile(None)
+        assert len(found) == count and len(found[0].left_out) == 2 * count
+        return number
+
+    calls(1)  # what is computed once for an ICD
+    assert calls(800) < 8.5 * calls(100)  # 64 times where it is quadratic
