@@ -42,6 +42,11 @@ class StructArray(NamedTuple):
         """Bytes of an element."""
         return self.element_struct.model.length
 
+    @property
+    def length(self) -> int:
+        """Number of bytes of the frame."""
+        return self.field.count * self.step
+
 
 def struct_arrays_in(
     composite: Composite[Any], prefix: str = ""

@@ -1,5 +1,5 @@
-"""Members that code handles together: flags that share a byte, rows of words, and
-elements of arrays.
+"""Members that code handles together: flags that share a byte, rows of words, elements
+of arrays, and arrays of structs.
 
 A language states the smallest group for which it has code. Which members form a group
 is the same in all languages.
@@ -11,7 +11,13 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from icdgen.describe.arrays import ArrayLoop, loop_from, loop_of
+from icdgen.describe.arrays import (
+    ArrayLoop,
+    StructArray,
+    loop_from,
+    loop_of,
+    struct_arrays_in,
+)
 from icdgen.describe.description import Composite, FieldDescription, Into
 
 Fields = tuple[FieldDescription, ...]
@@ -65,7 +71,7 @@ class LoopElements(NamedTuple):
     loop: ArrayLoop
 
 
-Group = Flags | Row | LoopElements | FieldDescription
+Group = Flags | Row | LoopElements | StructArray | FieldDescription
 
 
 def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
@@ -81,10 +87,13 @@ def grouped_fields(composite: Composite[Any]) -> Iterator[FieldDescription]:
             yield from member.scalars
 
 
-def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
-    """Return the `grouped_fields` in their order, with groups in place of their fields.
+def groups(
+    composite: Composite[Any], thresholds: Thresholds, prefix: str = ""
+) -> list[Group]:
+    """Return the `grouped_fields` in their order, with groups in place of their fields;
+    then the arrays of structs, except the last variable part.
 
-    An array of bytes is one field.
+    An array of bytes is one field. Names of arrays of structs start with ``prefix``.
     """
     fields = tuple(grouped_fields(composite))
     positions = [_position(field) for field in fields]
@@ -106,7 +115,9 @@ def groups(composite: Composite[Any], thresholds: Thresholds) -> list[Group]:
         )
         result.append(group or fields[index])
         index += len(group.fields) if group else 1
-    return result
+    last = composite.last_part.field if composite.last_part is not None else None
+    arrays = struct_arrays_in(composite, prefix)
+    return [*result, *(array for array in arrays if array.field is not last)]
 
 
 def _loop_elements(first: FieldDescription) -> LoopElements | None:

@@ -14,8 +14,7 @@ import jinja2
 
 from icdgen import codec
 from icdgen.backends.c import physical
-from icdgen.backends.c.names import stem
-from icdgen.backends.c.parts import part_name
+from icdgen.backends.c.names import part_name, stem
 from icdgen.backends.c.text import literal
 from icdgen.describe import (
     Description,

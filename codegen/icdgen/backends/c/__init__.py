@@ -4,7 +4,7 @@ wire layer, and links.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,6 @@ from icdgen.backends.c import (
     parts,
     types,
 )
-from icdgen.backends.c.decoding import THRESHOLDS, Groups, Structs
 from icdgen.backends.c.runtime import assembled
 from icdgen.backends.c.short_names import with_short_names
 from icdgen.backends.c.statement import call, head, like
@@ -30,10 +29,10 @@ from icdgen.backends.c.text import FILE, comment, described, literal, noted, pro
 from icdgen.backends.origin import origin
 from icdgen.backends.packages import Packages
 from icdgen.describe import MessageDescription, NodeDescription, describe
-from icdgen.describe.arrays import StructArray, all_struct_arrays, struct_arrays_in
-from icdgen.describe.comments import sentence, words
-from icdgen.describe.description import Composite, VariablePartDescription
-from icdgen.describe.groups import groups
+from icdgen.describe.arrays import all_struct_arrays
+from icdgen.describe.comments import presence_comment, sentence, words
+from icdgen.describe.contained import contained_messages
+from icdgen.describe.description import Composite
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.describe.symbols import symbols
 from icdgen.icd.model import Icd
@@ -42,14 +41,6 @@ from icdgen.icd.prefixed import with_prefix
 if TYPE_CHECKING:
     from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
-
-_SPELLING = (
-    byte_count, call, comment, described, head, length_text, like, literal, prose, names.client_function, names.constant,
-    names.enumerator, names.enumerator_of, names.getter, names.selector, names.setter, C_NAMES.symbol, sentence,
-    words,
-)  # fmt: skip
-_FUNCTIONS = {function.__name__: function for function in _SPELLING}
-"""Functions with which templates spell names and text."""
 
 
 class CBackend:
@@ -108,13 +99,11 @@ class CBackend:
                 values = {"node": node, "enums": enums, "within": constants.within}
                 yield folder / "enums.h", render("enums.h.j2", **values, **shared)
             for struct in node.structs:
-                yield folder / f"{struct.name}.h", render(
-                    "struct.h.j2", m=struct, **_composite(struct), **shared
-                )
+                header = render("struct.h.j2", m=struct, **shared)
+                yield folder / f"{struct.name}.h", header
             for message in node.messages:
-                yield folder / f"{message.name}.h", render(
-                    "message.h.j2", m=message, **_message(message), **shared
-                )
+                header = render("message.h.j2", m=message, **shared)
+                yield folder / f"{message.name}.h", header
             if node.name in links:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
@@ -133,135 +122,26 @@ class CBackend:
         return iter(symbols(describe(icd), C_NAMES))
 
 
-def _composite(
-    composite: Composite[Any], more_headers: Iterable[str] = ()
-) -> dict[str, object]:
-    """Return the values for a struct, and for a message, which includes
-    ``more_headers``.
-    """
+def file_comment(composite: Composite[Any]) -> str:
+    """Return the comment at the start of the header of a message or struct."""
+    about = composite.comment
+    return comment([FILE, about.head, *about.details, *noted(about)])
+
+
+def includes(composite: Composite[Any]) -> list[str]:
+    """Return the headers that the header of a message or struct includes."""
     folders = sorted({enum.node.name for enum in composite.enums})
-    used = [(folder, "enums") for folder in folders] + [
-        (struct.node.name, struct.name) for struct in composite.structs
-    ]
+    used = [(folder, "enums") for folder in folders]
+    used += [(struct.node.name, struct.name) for struct in composite.structs]
+    if isinstance(composite, MessageDescription):
+        parts = (part.message for part in contained_messages(composite))
+        used += [(message.node.name, message.name) for message in parts]
     headers = (
         f"{name}.h" if folder == composite.node.name else f"../{folder}/{name}.h"
         for folder, name in used
     )
-    about = composite.comment
-    return {
-        "about": comment([FILE, about.head, *about.details, *noted(about)]),
-        "includes": [
-            "../icdgen_wide.h" if composite.has_wide_steps else "../icdgen.h",
-            *dict.fromkeys((*headers, *more_headers)),
-        ],
-        "constants": constants.of_fields(composite),
-        "initial": members.initial(composite),
-        "declaration": types.declaration,
-        "text_accessors": accessors.of_kind(composite, "text"),
-        "integer_accessors": accessors.integer_accessors(composite),
-        "double_accessors": accessors.double_accessors(composite),
-        "known": constants.table(composite),
-    }
-
-
-def _message(message: MessageDescription) -> dict[str, object]:
-    fields = [
-        *groups(message, THRESHOLDS),
-        *_arrays(
-            message,
-            (
-                array
-                for array in struct_arrays_in(message)
-                if not array.field.is_in_last_part
-            ),
-        ),
-    ]
-    return {
-        **_composite(message, parts.headers(message)),
-        "empty": decoding.EMPTY,
-        "decode": decoding.statements(message, fields),
-        "repeated": [_repeated(message, array) for array in all_struct_arrays(message)],
-        "element": None,
-        "spread": [],
-        "counter_tests": [],
-        "misfits": members.misfits(message, is_last_part=False),
-        "misfits_of_end": members.misfits(message, is_last_part=True),
-        "excess": members.excess(message),
-        "excess_type": bits.excess_type(message),
-        "encode": encoding.statements(message, fields),
-        "conditional": conditional.conditional(message),
-        **(
-            _of_variable_length(message, message.last_part) if message.last_part else {}
-        ),
-        "overlays": [accessors.overlay(field) for field in message.overlays],
-        "parts": parts.parts(message),
-    }
-
-
-def _arrays(message: MessageDescription, arrays: Iterable[StructArray]) -> Groups:
-    return [
-        Structs(
-            array,
-            names.reading(message, array.name),
-            names.writing(message, array.name),
-        )
-        for array in arrays
-    ]
-
-
-def _repeated(message: MessageDescription, array: StructArray) -> dict[str, object]:
-    """Return the functions that read and write an element of an array of structs."""
-    fields = [
-        *groups(array.element_struct, THRESHOLDS),
-        *_arrays(message, struct_arrays_in(array.element_struct, f"{array.name}_")),
-    ]
-    return {
-        "field": array.field,
-        "type": C_NAMES.symbol(array.element_struct, "t"),
-        "reading": names.reading(message, array.name),
-        "writing": names.writing(message, array.name),
-        "read": decoding.statements(array.element_struct, fields),
-        "write": encoding.statements(array.element_struct, fields),
-    }
-
-
-def _of_variable_length(
-    message: MessageDescription, last: VariablePartDescription
-) -> dict[str, object]:
-    """Return the values for messages whose frames differ in length."""
-    of_element = None
-    if last.element_struct is not None:
-        reading, writing = names.reading(message, last.field.name), names.writing(
-            message, last.field.name
-        )
-        of_element = {
-            "type": C_NAMES.symbol(last.element_struct, "t"),
-            "reading": reading,
-            "walking": (
-                names.walking(message, last.field.name)
-                if not message.spread_parts
-                else ""
-            ),
-            "there": decoding.there(last),
-            "place": decoding.place(last.place),
-            "decode": decoding.of_elements(last, reading),
-            "encode": [
-                decoding.for_each(
-                    last.field.member, decoding.elements(last), writing, last.place
-                )
-            ],
-        }
-    return {
-        "element": of_element,
-        "miscount": decoding.miscount(last),
-        "spread": decoding.of_spread_parts(message),
-        "counter_tests": decoding.counter_tests(message),
-        "size": encoding.size(message),
-        "misfit_length": decoding.misfit_length(message),
-        "miscounted": None if last.inner else decoding.miscounted(last),
-        "elements": decoding.elements(last),
-        "counted_text": encoding.counted_text(last),
-    }
+    support = "../icdgen_wide.h" if composite.has_wide_steps else "../icdgen.h"
+    return [support, *dict.fromkeys(headers)]
 
 
 def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
@@ -294,7 +174,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
         "about": comment(
             [FILE, f"{words(node.model.title)}: client with one function per message."]
         ),
-        "includes": ["link.h", *headers],
+        "headers": ["link.h", *headers],
         "telecommands": [
             (message, message.telecommand_id_name) for message in node.telecommands
         ],
@@ -335,5 +215,25 @@ def _node(node: NodeDescription) -> dict[str, object]:
                 sentence(node.model.summary),
             ]
         ),
-        "includes": ["icdgen.h", *headers],
+        "headers": ["icdgen.h", *headers],
     }
+
+
+_FUNCTIONS = {
+    function.__name__: function
+    for function in (
+        accessors.double_accessors, accessors.integer_accessors, accessors.of_kind, accessors.overlay_comment,
+        all_struct_arrays, bits.excess_type, byte_count, call, comment, conditional.absent_value,
+        conditional.presence_test, conditional.write_optional, constants.field_constants, constants.field_table,
+        contained_messages, decoding.chunk_bytes, decoding.counter_tests, decoding.decode_statements,
+        decoding.element_bytes, decoding.elements, decoding.miscount, decoding.miscounted, decoding.misfit_length,
+        decoding.number, decoding.part_bytes, decoding.place, decoding.read_statements, decoding.there, described,
+        encoding.counted_text, encoding.encode_statements, encoding.size, encoding.write_statements, file_comment,
+        head, includes, length_text, like, literal, members.excess, members.initial_statements, members.misfits,
+        names.client_function, names.constant, names.enumerator, names.enumerator_of, names.getter, names.has,
+        names.part_name, names.reading, names.selector, names.setter, names.walking, names.writing, parts.part_about,
+        parts.part_statements, presence_comment, prose, sentence, C_NAMES.symbol, types.declaration, types.type_of,
+        words,
+    )
+}  # fmt: skip
+"""Functions with which templates spell names and text."""

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from icdgen.backends.c import decoding, physical
+from icdgen.backends.c import physical
 from icdgen.backends.c.names import RESERVED, getter
 from icdgen.backends.c.statement import call, either
 from icdgen.backends.c.text import WIDTH, described
-from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription
 from icdgen.describe.accessors import Accessor, Kind, accessors_of
@@ -139,25 +138,12 @@ def _as_double(field: FieldDescription) -> str:
 _FROM_FRAME = "Read from the frame that the message makes: 0 if it makes none, as a raw value does not fit its field."
 
 
-def overlay(field: FieldDescription) -> dict[str, str]:
-    """Return the getter of an overlay field.
-
-    Its ``statement`` reads ``value`` from ``buffer``.
-    """
-    about = field.comment._replace(
-        details=(
-            (*field.comment.details, _FROM_FRAME)
-            if field.message.is_narrow
-            else field.comment.details
-        )
-    )
-    statement = decoding.number(field, "value")
-    return {
-        "name": field.name,
-        "type": type_of(field),
-        "about": described(about),
-        "statement": statement,
-    }
+def overlay_comment(field: FieldDescription) -> str:
+    """Return the comment of the getter of an overlay field."""
+    about = field.comment
+    if field.message.is_narrow:
+        about = about._replace(details=(*about.details, _FROM_FRAME))
+    return described(about)
 
 
 def _raw(field: FieldDescription) -> str:

@@ -1,36 +1,23 @@
-"""Optional fields: the function that returns whether a field is present, and the code
-that depends on it.
+"""Optional fields: the test whether a field is present, and the code that depends on
+it.
 """
 
 from __future__ import annotations
 
-from icdgen.backends.c import bits, constants, decoding
-from icdgen.backends.c.names import enumerator, has
+from icdgen.backends.c import bits, constants
+from icdgen.backends.c.names import enumerator
 from icdgen.backends.c.statement import assigned_byte, either
 from icdgen.backends.c.types import mask
-from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.comments import presence_comment
+from icdgen.describe import FieldDescription
 from icdgen.describe.description import Need
 
 
-def conditional(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for the template per optional field: the value if it is absent,
-    and the code if it is present.
-    """
-    return [
-        {
-            "name": has(message, field.name),
-            "about": presence_comment(field.model, message.model),
-            "test": either(list(map(_test, field.needs)), " && "),
-            "absent": f"message->{field.name} = {_absent(field)};",
-            "decode": decoding.number(field, f"message->{field.member}"),
-            "encode": _written(field),
-        }
-        for field in message.optional_members
-    ]
+def presence_test(field: FieldDescription) -> str:
+    """Return the condition under which an optional field is present."""
+    return either(list(map(_test, field.needs)), " && ")
 
 
-def _absent(field: FieldDescription) -> str:
+def absent_value(field: FieldDescription) -> str:
     """Return the value of an absent field: its constant, so that the message is valid
     once the field is present; else 0.
     """
@@ -60,7 +47,7 @@ def _literal(field: FieldDescription, value: int) -> str:
     return f"{value}u" if value < 1 << 16 else mask(value, field.storage.bits)
 
 
-def _written(field: FieldDescription) -> list[str]:
+def write_optional(field: FieldDescription) -> list[str]:
     """Return the statements that write a field into a frame in which its bits are 0."""
     if field.is_word:
         return [bits.store(field)]

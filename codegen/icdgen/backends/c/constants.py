@@ -21,7 +21,7 @@ _MAX_ENUMERATOR = 32767
 """Largest `int` that C guarantees."""
 
 
-def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:
+def field_constants(message: Composite[Any]) -> list[tuple[Constant, str]]:
     """Return the constants of the fields of a message, and their values."""
     return [
         (constant, _value(constant, field))
@@ -117,7 +117,7 @@ class Fields(NamedTuple):
     rows: list[str]
 
 
-def table(composite: Composite[Any]) -> Fields:
+def field_table(composite: Composite[Any]) -> Fields:
     """Return the rows of a message or struct: one per member, in the order of the ICD."""
     table = Fields([], [])
     for field in composite.members:

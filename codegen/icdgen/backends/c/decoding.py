@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.names import constant
+from icdgen.backends.c.names import constant, reading
 from icdgen.backends.c.statement import call, either, failed_length_test, loop
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import WIDTH
@@ -15,7 +15,14 @@ from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.arrays import ArrayLoop, StructArray
 from icdgen.describe.description import Chunk, Composite, VariablePartDescription
-from icdgen.describe.groups import Flags, Group, LoopElements, Row, Thresholds
+from icdgen.describe.groups import (
+    Flags,
+    Group,
+    LoopElements,
+    Row,
+    Thresholds,
+    groups,
+)
 from icdgen.describe.lengths import ElementBytes
 
 THRESHOLDS = Thresholds(flags=(8, 4), row=8)
@@ -23,22 +30,6 @@ THRESHOLDS = Thresholds(flags=(8, 4), row=8)
 
 EMPTY = "empty"
 """Member of the struct of a message without fields, because C has no empty structs."""
-
-
-class Structs(NamedTuple):
-    """Array of structs, which a loop reads and writes."""
-
-    array: StructArray
-    reading: str  # function that reads an element
-    writing: str  # function that writes an element
-
-    @property
-    def length(self) -> int:
-        """Number of bytes of the frame."""
-        return self.array.field.count * self.array.step
-
-
-Groups = list[Group | Structs]
 
 
 def elements_of_iteration(group: LoopElements) -> tuple[FieldDescription, ...]:
@@ -59,20 +50,46 @@ def macro_of(group: Flags | Row) -> str:
     return f"{len(group.fields)}_FLAGS{'_FALLING' if group.is_falling else ''}"
 
 
-def statements(message: Composite[Any], groups: Groups) -> list[str]:
-    """Return a statement per field or group, in the order of the groups."""
+def decode_statements(message: MessageDescription) -> list[str]:
+    """Return the statements of a decode function: one per field or group, then the
+    elements of the last variable part.
+    """
     if not message.members:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    lines = [
-        _field(item) if isinstance(item, FieldDescription) else _group(item, message)
-        for item in groups
-    ]
-    if message.last_part is not None and message.last_part.is_rest:
-        counter = message.last_part.counter
-        lines.append(
-            f"message->{counter.name} = {cast(_count(message.last_part), counter.storage.bits)};"
-        )
+    lines = _statements(message, message, groups(message, THRESHOLDS))
+    last = message.last_part
+    if last is not None and last.is_rest:
+        count = cast(_count(last), last.counter.storage.bits)
+        lines.append(f"message->{last.counter.name} = {count};")
+    if last is not None and last.element_struct is not None:
+        name, function = last.field.member, reading(message, last.field.name)
+        lines.append(f"(void)memset(message->{name}, 0, sizeof message->{name});")
+        lines.append(for_each(name, there(last), function, last.place))
     return lines
+
+
+def read_statements(message: MessageDescription, array: StructArray) -> list[str]:
+    """Return the statements that read an element of an array of structs."""
+    struct = array.element_struct
+    return _statements(struct, message, groups(struct, THRESHOLDS, f"{array.name}_"))
+
+
+def _statements(
+    composite: Composite[Any], message: MessageDescription, groups: list[Group]
+) -> list[str]:
+    """Return a statement per field or group of a message, or of a struct in it."""
+    return [
+        (
+            _field(group)
+            if isinstance(group, FieldDescription)
+            else (
+                of_array(group, reading(message, group.name))
+                if isinstance(group, StructArray)
+                else _group(group, composite)
+            )
+        )
+        for group in groups
+    ]
 
 
 def _count(part: VariablePartDescription) -> str:
@@ -112,77 +129,19 @@ def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
     )
 
 
-def of_spread_parts(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for parts at other places than in the longest frame: how they
-    are located, decoded and encoded.
+def element_bytes(part: VariablePartDescription) -> str:
+    """Return the bytes of an element with variable-length arrays."""
+    return " + ".join(chunk_bytes(part, chunk) for chunk in part.chunks)
+
+
+def chunk_bytes(part: VariablePartDescription, chunk: Chunk) -> str:
+    """Return the bytes of a chunk of an element.
+
+    The variables ``inner_1``, ``inner_2`` ... have the bytes of variable-length arrays.
     """
-    return [
-        {
-            **_of_counter(part),
-            "begin": part.model.begin,
-            "place": place(part.place),
-            "step": part.model.step,
-            "is_last": part is message.last_part,
-            "there": (
-                elements(part, "value")
-                if part.inner
-                else in_bytes(elements(part, "value"), part.model.step)
-            ),
-            "given": (
-                elements(part)
-                if part.inner
-                else in_bytes(elements(part), part.model.step)
-            ),
-            "inner": [
-                _of_inner_part(inner, f"inner_{number}")
-                for number, inner in enumerate(part.inner, 1)
-            ],
-            "chunks": (
-                [(chunk.begin, _bytes_of_chunk(part, chunk)) for chunk in part.chunks]
-                if part.inner
-                else []
-            ),
-            "element": " + ".join(
-                _bytes_of_chunk(part, chunk) for chunk in part.chunks
-            ),
-        }
-        for part in message.spread_parts
-    ]
-
-
-def _of_counter(part: VariablePartDescription) -> dict[str, object]:
-    """Return the values for the counter of a part: how it is read from a frame, and
-    tested.
-    """
-    return {
-        "type": type_of(part.counter),
-        "reading": number(part.counter, "value"),
-        "misfit": miscount(part, "value"),
-    }
-
-
-def _of_inner_part(inner: VariablePartDescription, name: str) -> dict[str, object]:
-    """Return the values for an array in elements.
-
-    The variable ``name`` has its bytes in each element.
-    """
-    step = inner.model.step
-    return {
-        **_of_counter(inner),
-        "name": name,
-        "there": in_bytes(elements(inner, "value"), step),
-        "given": in_bytes(elements(inner), step),
-    }
-
-
-def _bytes_of_chunk(part: VariablePartDescription, chunk: Chunk) -> str:
-    """Return the sum of the bytes of a chunk of an element."""
     terms = [f"{chunk.fixed}u"] if chunk.fixed or chunk.inner is None else []
-    terms += (
-        [f"inner_{part.inner.index(chunk.inner) + 1}"]
-        if chunk.inner is not None
-        else []
-    )
+    if chunk.inner is not None:
+        terms.append(f"inner_{part.inner.index(chunk.inner) + 1}")
     return " + ".join(terms)
 
 
@@ -195,15 +154,6 @@ def counter_tests(message: MessageDescription) -> list[tuple[str, FieldDescripti
 def in_bytes(count: str, step: int) -> str:
     """Return the bytes of elements of ``step`` bytes."""
     return count if step == 1 else f"{count} * {step}u"
-
-
-def of_elements(part: VariablePartDescription, reading: str) -> list[str]:
-    """Return the statements that read the structs of the last variable part from
-    ``buffer``.
-    """
-    name = part.field.member
-    loop_over = for_each(name, there(part), reading, part.place)
-    return [f"(void)memset(message->{name}, 0, sizeof message->{name});", loop_over]
 
 
 def for_each(name: str, count: str, function: str, bytes: ElementBytes) -> str:
@@ -253,6 +203,11 @@ def elements(part: VariablePartDescription, counter: str = "") -> str:
     return f"({count} {'+' if part.model.fewest else '-'} {abs(part.model.plus)}u)"
 
 
+def part_bytes(part: VariablePartDescription, counter: str = "") -> str:
+    """Return the number of bytes of a variable part in a message."""
+    return in_bytes(elements(part, counter), part.model.step)
+
+
 def miscount(part: VariablePartDescription, counter: str = "") -> str:
     """Return the condition for a count that the variable part cannot have; empty if it
     can have all.
@@ -281,15 +236,13 @@ def loop_over_bytes(array_loop: ArrayLoop, const: str, lines: Iterable[str]) -> 
     return f"{loop('element', f'{array_loop.elements}u', array_loop.per_iteration)}\n{body}{STEP}}}"
 
 
-def _group(group: Flags | Row | LoopElements | Structs, message: Composite[Any]) -> str:
+def _group(group: Flags | Row | LoopElements, message: Composite[Any]) -> str:
     if isinstance(group, LoopElements):
         lines = (
             number(element, f"message->{element.member}", "part")
             for element in elements_of_iteration(group)
         )
         return loop_over_bytes(group.loop, "const ", lines)
-    if isinstance(group, Structs):
-        return of_array(group.array, group.reading)
     members = [field.member for field in group.fields]
     target = C_NAMES.symbol(message, "t"), "message"
     if isinstance(group, Flags):

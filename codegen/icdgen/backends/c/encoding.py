@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.decoding import (
-    Groups,
-    Structs,
+    THRESHOLDS,
     elements,
     elements_of_iteration,
+    for_each,
     in_bytes,
     loop_over_bytes,
     macro_of,
     of_array,
 )
+from icdgen.backends.c.names import writing
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.arrays import StructArray
 from icdgen.describe.description import Composite, VariablePartDescription
-from icdgen.describe.groups import Flags, FrameBytes, LoopElements, Row
+from icdgen.describe.groups import (
+    Flags,
+    FrameBytes,
+    Group,
+    LoopElements,
+    Row,
+    groups,
+)
 
 
 def size(message: MessageDescription) -> list[str]:
@@ -70,30 +80,45 @@ def counted_text(last: VariablePartDescription) -> str:
     return f"strlen(text) + {more}u" if more else "strlen(text)"
 
 
-def statements(message: Composite[Any], groups: Groups) -> list[str]:
-    """Return the statements that write every byte of the frame once, except structs of
-    the last variable part.
+def encode_statements(message: MessageDescription) -> list[str]:
+    """Return the statements that write every byte of the frame once; the elements of
+    the last variable part come last.
     """
-    if message.last_part is not None and message.last_part.element_struct is not None:
-        return _Frame(message, groups, message.last_part.model.begin).in_order()
-    frame = _Frame(message, groups, message.model.length)
+    fields, last = groups(message, THRESHOLDS), message.last_part
+    if last is not None and last.element_struct is not None:
+        function = writing(message, last.field.name)
+        return [
+            *_Frame(message, message, fields, last.model.begin).in_order(),
+            for_each(last.field.member, elements(last), function, last.place),
+        ]
     unused = [] if message.members else ["(void)message;"]
     if not message.members and not message.model.length:
         unused.append("(void)buffer;")
-    return unused + frame.in_order()
+    return unused + _Frame(message, message, fields, message.model.length).in_order()
+
+
+def write_statements(message: MessageDescription, array: StructArray) -> list[str]:
+    """Return the statements that write an element of an array of structs."""
+    struct = array.element_struct
+    fields = groups(struct, THRESHOLDS, f"{array.name}_")
+    return _Frame(struct, message, fields, struct.model.length).in_order()
 
 
 class _Frame:
-    """Statements for the bytes of a frame, and variables that these statements need."""
+    """Statements for the bytes of a message, or of a struct in it, and variables that
+    these statements need.
+    """
 
     def __init__(
         self,
-        message: Composite[Any],
-        groups: Groups,
+        composite: Composite[Any],
+        message: MessageDescription,
+        groups: Iterable[Group],
         length: int,
         frame: str = "buffer",
     ) -> None:
-        self.message, self.frame, self.bytes = message, frame, FrameBytes(length)
+        self.composite, self.message = composite, message
+        self.frame, self.bytes = frame, FrameBytes(length)
         self.joined: dict[int, list[str]] = {}  # byte -> variables of its terms
         for item in groups:
             if isinstance(item, FieldDescription):
@@ -116,23 +141,20 @@ class _Frame:
             for piece in field.pieces:
                 self.bytes.add_part(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _add_group(self, group: Flags | Row | LoopElements | Structs) -> None:
+    def _add_group(self, group: Flags | Row | LoopElements | StructArray) -> None:
         if isinstance(group, LoopElements):
             loop = group.loop
-            lines = _Frame(
-                self.message, list(elements_of_iteration(group)), loop.step, "part"
-            ).in_order()
-            self.bytes.add_whole(
-                loop.begin, loop.length, loop_over_bytes(loop, "", lines)
-            )
+            fields = elements_of_iteration(group)
+            part = _Frame(self.composite, self.message, fields, loop.step, "part")
+            lines = loop_over_bytes(loop, "", part.in_order())
+            self.bytes.add_whole(loop.begin, loop.length, lines)
             return
-        if isinstance(group, Structs):
-            self.bytes.add_whole(
-                group.array.begin, group.length, of_array(group.array, group.writing)
-            )
+        if isinstance(group, StructArray):
+            loop_over = of_array(group, writing(self.message, group.name))
+            self.bytes.add_whole(group.begin, group.length, loop_over)
             return
         names = [field.member for field in group.fields]
-        byte, source = group.byte, (C_NAMES.symbol(self.message, "t"), "message")
+        byte, source = group.byte, (C_NAMES.symbol(self.composite, "t"), "message")
         if isinstance(group, Row):
             arguments = (
                 *source,

@@ -58,7 +58,7 @@ def _statements(
     return [loop(index, count), *(f"{STEP}{line}" for line in lines), "}"]
 
 
-def initial(message: Composite[Any]) -> list[str]:
+def initial_statements(message: Composite[Any]) -> list[str]:
     """Return the statements that set constants, and counters to their smallest value."""
     # `memset` has cleared the message, so only values other than 0 need a statement.
     counters = [field for field in message.members if field.model.smallest_raw]

@@ -4,53 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.backends.c.names import part_name
 from icdgen.backends.c.statement import call
-from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import comment
 from icdgen.describe import MessageDescription
 from icdgen.describe.comments import part_comment
-from icdgen.describe.contained import (
-    ContainedDescription,
-    CopiedMember,
-    contained_messages,
-)
+from icdgen.describe.contained import ContainedDescription, CopiedMember
 
 
-def parts(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the functions of a composite message.
-
-    ``copies`` are the statements for each place of the contained message.
-    """
-    return [_part(message, contained) for contained in contained_messages(message)]
-
-
-def _part(message: MessageDescription, part: ContainedDescription) -> dict[str, object]:
-    paragraphs, positions = [
-        part_comment(part.message.model, part.positions)
-    ], part.positions
-    if len(positions) > 1:
+def part_about(part: ContainedDescription) -> str:
+    """Return the comment of the function that returns a contained message."""
+    paragraphs = [part_comment(part.message.model, part.positions)]
+    if len(part.positions) > 1:
         paragraphs.append(
-            f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(positions) - 1}."
+            f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(part.positions) - 1}."
         )
-    copies = [
-        [line for copied in part.copies(message, begin) for line in _statements(copied)]
-        for begin in positions
-    ]
-    name, type = part_name(part.message), C_NAMES.symbol(part.message, "t")
-    return {"name": name, "type": type, "about": comment(paragraphs), "copies": copies}
+    return comment(paragraphs)
 
 
-def headers(message: MessageDescription) -> list[str]:
-    """Return the headers of the contained messages."""
-    headers = []
-    for contained in contained_messages(message):
-        header = f"{contained.message.name}.h"
-        is_same_node = contained.message.node is message.node
-        headers.append(
-            header if is_same_node else f"../{contained.message.node.name}/{header}"
-        )
-    return headers
+def part_statements(
+    message: MessageDescription, part: ContainedDescription, begin: int
+) -> list[str]:
+    """Return the statements that copy a contained message at bit ``begin``."""
+    copies = part.copies(message, begin)
+    return [line for copied in copies for line in _statements(copied)]
 
 
 def _statements(copied: CopiedMember) -> Iterator[str]:
