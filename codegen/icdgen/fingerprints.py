@@ -40,7 +40,7 @@ def of_path(path: str) -> str:
 
 def _of_file(path: str, size: int) -> str:
     """Return the SHA-256 of a file of ``size`` bytes."""
-    # Every start reads a thousand files, so this uses the calls of the operating
+    # Every start reads hundreds of files, so this uses the calls of the operating
     # system, and not one more than necessary.
     digest = sha256()
     handle = os.open(path, _READ)
@@ -84,17 +84,29 @@ def _digest() -> str:
         os.path.join(root, "runtime"),
     ):
         for path in sorted(_files(top, data)):
-            digest.update(
-                f"\0{path}\0{of_path(path)}".encode("utf-8", "surrogateescape")
-            )
+            # The runtimes have modules, too, but their text becomes output.
+            is_module = top is package and path.endswith(".py")
+            fingerprint = _of_module(path) if is_module else of_path(path)
+            digest.update(f"\0{path}\0{fingerprint}".encode("utf-8", "surrogateescape"))
     for place in sys.path:
-        try:
-            status = os.stat(os.path.join(place, "jinja2", "__init__.py"))
-        except OSError:
-            continue
-        digest.update(f"{status.st_size} {status.st_mtime_ns}".encode())
-        break
+        fingerprint = _of_module(os.path.join(place, "jinja2", "__init__.py"))
+        if fingerprint != ABSENT:
+            digest.update(fingerprint.encode())
+            break
     return digest.hexdigest()
+
+
+def _of_module(path: str) -> str:
+    """Return size and time of change of a module, `ABSENT` if there is none.
+
+    Python decides by these whether the compiled code of a module is current, so its
+    content would not detect more.
+    """
+    try:
+        status = os.stat(path)
+    except OSError:  # also a lock of an editor: a link to nothing
+        return ABSENT
+    return f"{status.st_size} {status.st_mtime_ns}"
 
 
 def _files(top: str, without: str) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from icdgen import cache, fingerprints
@@ -93,6 +95,21 @@ def test_every_file_that_output_is_made_of_is_part_of_the_tool(
         monkeypatch.setattr(fingerprints, "_cached", [])
         seen.append(fingerprints.of_tool())
     assert seen[0] == seen[2] != seen[1]
+
+
+def test_a_changed_module_of_icdgen_is_detected_as_python_does(tmp_path, monkeypatch):
+    package = tmp_path / "codegen" / "icdgen"
+    monkeypatch.setattr(fingerprints, "__file__", str(package / "fingerprints.py"))
+    package.mkdir(parents=True)
+    module = package / "module.py"
+    module.write_text("one")
+    (package / ".#lock.py").symlink_to("nobody@nowhere")
+    digests = []
+    for text, time in (("one", 1), ("two", 2), ("long", 2)):
+        module.write_text(text)
+        os.utime(module, ns=(time, time))
+        digests.append(fingerprints._digest())
+    assert len({*digests}) == 3
 
 
 def test_what_python_leaves_behind_is_not_part_of_the_tool(tmp_path, monkeypatch):
