@@ -5,6 +5,7 @@ Tables for a pipe are not wrapped, cut or coloured.
 
 from __future__ import annotations
 
+import io
 import os
 import unicodedata
 from collections.abc import Iterable, Sequence
@@ -123,8 +124,6 @@ def _wrapped(
     width: int,
 ) -> str:
     """Return a table with wrapped cells."""
-    import io
-
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
 
-from icdgen import config, shipped
+from icdgen import config, reports, shipped
 from icdgen.diagnostics import Finding
 from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
@@ -226,8 +226,6 @@ def print_findings(
     findings: list[Finding], texts: dict[str, str], form: str, err: bool = False
 ) -> None:
     """Print findings in one of ``reports.FORMATS``."""
-    from icdgen import reports
-
     # Commands with their own output print findings to standard error.
     stream = sys.stderr if err else sys.stdout
     colour = form == "text" and in_colour(stream)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from icdgen import shipped
 from icdgen.commands.common import chosen, icd_option, right_or_exit, say
 
 if TYPE_CHECKING:
@@ -41,7 +42,6 @@ def init(name: str, origin: str | None, icds: tuple[Path, ...]) -> None:
 
 
 def _style(origin: str, icds: tuple[Path, ...]) -> Style:
-    from icdgen import shipped
     from icdgen.loading import load
     from icdgen.starter import style
     from icdgen.values.errors import NotFound

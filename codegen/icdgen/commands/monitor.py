@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from icdgen.commands.common import SECONDS, format_option, icd_option, load_or_exit, say
-from icdgen.link.options import session_options
+from icdgen.link.options import identity_problem, open_session, session_options
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.session import BusSession
@@ -61,7 +61,6 @@ def monitor(
     response in the last round.
     """
     from icdgen.link.live import Monitor
-    from icdgen.link.options import identity_problem, open_session
     from icdgen.link.ports import PortError
     from icdgen.link.screen import Screen
     from icdgen.values.find import find_named

@@ -11,7 +11,8 @@ import click
 
 from icdgen.commands.common import format_option, icd_option, load_or_exit, say
 from icdgen.errors import UserError
-from icdgen.link.options import session_options
+from icdgen.link.options import open_session, session_options
+from icdgen.protocol import facts
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Refused, Timeout
@@ -57,8 +58,6 @@ def send(
 
     from icdgen import tables
     from icdgen.link.line_statistics import LineStatistics
-    from icdgen.link.options import open_session
-    from icdgen.protocol import facts
     from icdgen.values.encode import encode
     from icdgen.values.find import find_frame
     from icdgen.values.text import to_text

@@ -14,6 +14,7 @@ import socket
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
@@ -332,8 +333,6 @@ def _is_in_use(error: Exception) -> bool:
 
 
 def _library(name: str, package: str) -> Any:
-    from importlib import import_module
-
     try:
         return import_module(name)
     except ImportError:

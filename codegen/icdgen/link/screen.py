@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import threading
 import time
@@ -185,6 +186,4 @@ def _keys(text: str) -> Iterator[str]:
     """Split the input of a terminal into characters and escape sequences such as ``ESC
     [ 5 ~``.
     """
-    import re
-
     yield from re.findall(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO[A-Z]|.", text, re.DOTALL)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 
 from icdgen import codec
+from icdgen.icd import floats
 from icdgen.logfile.columns import Column
 from icdgen.logfile.source import Source, time_text
 
@@ -100,8 +101,6 @@ def _enum(column: Column) -> Callable[[bytes], Value]:
 
 
 def _float(column: Column) -> Callable[[bytes], Value]:
-    from icdgen.icd import floats
-
     assert column.field
     raw, bits, curve = _raw(column), column.field.bits, column.curve
     form, integer_form = ("<f", "<I") if bits == 32 else ("<d", "<Q")

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from icdgen import codec
 from icdgen.icd.model import Icd
 from icdgen.protocol import (
     can,
@@ -288,8 +289,6 @@ def index_encode(facts: Facts, request: Request) -> dict[str, Any]:
 
 
 def identify(facts: Facts, request: Request) -> dict[str, Any]:
-    from icdgen import codec
-
     data = octets(request)
     step = need(facts.identification, "identification")
     try:

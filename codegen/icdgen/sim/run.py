@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -27,6 +28,7 @@ from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
 from icdgen.values import numbers
 from icdgen.values.chosen import values_of
+from icdgen.values.entry import from_physical
 from icdgen.values.find import find_node, is_part
 
 Transport = tuple[Any, ...]  # name of a function of `serve`, and its arguments
@@ -180,8 +182,6 @@ async def _listen(server: serve.Server, report: Callable[[str], None]) -> None:
             loop.call_soon_threadsafe(lines.put_nowait, line)
         loop.call_soon_threadsafe(lines.put_nowait, None)
 
-    import threading
-
     threading.Thread(target=read, daemon=True).start()
     while (line := await lines.get()) is not None:
         try:
@@ -229,8 +229,6 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
 
 def _type(icd: Icd, node_facts: facts.Facts, text: str) -> int | None:
     """Return a file type from its number or name. Raise `icdgen.errors.UserError`."""
-    from icdgen.values.entry import from_physical
-
     load = (
         node_facts.files.download.load
         if node_facts.files and node_facts.files.download

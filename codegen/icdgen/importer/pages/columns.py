@@ -9,7 +9,7 @@ from typing import NamedTuple
 from icdgen.importer.pages import headings
 from icdgen.importer.pages.draft import Header
 from icdgen.importer.pages.extract import Word
-from icdgen.importer.pages.lines import Line, runs, words_of
+from icdgen.importer.pages.lines import Line, lines, runs, words_of
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, join
 
@@ -72,8 +72,6 @@ def _extent(cell: list[Word]) -> tuple[float, float]:
 
 
 def _text(cell: list[Word]) -> str:
-    from icdgen.importer.pages.lines import lines
-
     return join([line.text for line in lines(cell)])
 
 
