@@ -114,29 +114,24 @@ class Arithmetic:
         """The integer accessors; None if the values are not whole thousandths or
         millionths, or a step may overflow.
         """
-        return _integers(self.steps, self.storage)
-
-
-@lru_cache(maxsize=4096)
-def _integers(steps: Steps, storage: Storage) -> IntegerAccess | None:
-    scale = integer_scale(steps)
-    bits = None if scale is None else integer_bits(scale, storage)
-    if scale is None or bits is None:
-        return None
-    ends = Storage(bits, True)
-    least, most = max(scale.least, ends.min), min(scale.most, ends.max)
-    setter_bits = (
-        32
-        if bits == 32 and within(32, least - scale.offset, most - scale.offset)
-        else 64
-    )
-    return IntegerAccess(
-        scale,
-        bits,
-        setter_bits,
-        least if least > ends.min else None,
-        most if most < ends.max else None,
-    )
+        scale = integer_scale(self.steps)
+        bits = None if scale is None else integer_bits(scale, self.storage)
+        if scale is None or bits is None:
+            return None
+        ends = Storage(bits, True)
+        least, most = max(scale.least, ends.min), min(scale.most, ends.max)
+        setter_bits = (
+            32
+            if bits == 32 and within(32, least - scale.offset, most - scale.offset)
+            else 64
+        )
+        return IntegerAccess(
+            scale,
+            bits,
+            setter_bits,
+            least if least > ends.min else None,
+            most if most < ends.max else None,
+        )
 
 
 @lru_cache(maxsize=4096)

@@ -68,7 +68,6 @@ def _integer_scale(per: int, factor: int, offset: int, steps: Steps) -> IntegerS
     return IntegerScale(per, factor, offset, low[0], high[0], least, most)
 
 
-@lru_cache(maxsize=4096)
 def integer_bits(scale: IntegerScale, storage: Storage) -> int | None:
     """Return the bits of the integer that can store the values of all values of the
     storage, 32 or 64; None if none can.

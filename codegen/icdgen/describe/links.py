@@ -218,7 +218,7 @@ class LinkDescription:
         )
         return [field for field in fields if form and field.model.name == form.field]
 
-    @cached_property
+    @property
     def polled(self) -> StepDescription | None:
         """Frame with the result of the last telecommand.
 

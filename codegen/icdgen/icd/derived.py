@@ -12,7 +12,6 @@ import math
 import re
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
 from icdgen.icd.expression import Arithmetic, FormulaError, Token, evaluate
@@ -115,12 +114,7 @@ def parse(text: str, names: Collection[str]) -> Derivation:
 
     Examples: ``Lon + Lon HP*1e-2``, ``W*10^W_SF``.
     """
-    return _parse_cached(text, frozenset(names))
-
-
-@lru_cache(maxsize=1024)
-def _parse_cached(text: str, names: frozenset[str]) -> Derivation:
-    tree = evaluate(text, _Trees(names))
+    tree = evaluate(text, _Trees(frozenset(names)))
     if isinstance(tree, Fraction):
         raise FormulaError("it does not depend on a field")
     return _in_steps(tree)

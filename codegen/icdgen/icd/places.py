@@ -222,7 +222,6 @@ def scalars_in(layout: Layout) -> tuple[NodePlace, ...]:
     return tuple(scalar for place in places_in(layout) for scalar in place.scalars())
 
 
-@cached_by_owner
 def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:
     """Return the scalars of the longest frame with a raw value: all except overlay
     fields and derived values.
