@@ -13,7 +13,7 @@ import jinja2
 
 from icdgen.backends.rust.accessors import accessors
 from icdgen.backends.rust.names import field_name
-from icdgen.backends.rust.parts import parts
+from icdgen.backends.rust.parts import parts_of
 from icdgen.backends.rust.text import string
 from icdgen.describe import (
     EnumDescription,
@@ -110,7 +110,7 @@ def _lines(message: MessageDescription) -> Iterator[str]:
         if field.is_text and not field.model.is_read_only:
             yield f'one.set_{field.physical_name}("").unwrap();'
             yield f'assert_eq!(one.{field.physical_name}(), Some(""));'
-    for part in parts(message):
+    for part in parts_of(message):
         kind = part.type.replace("super::", f"icd::{message.node.name}::").replace(
             "crate::", "icd::"
         )

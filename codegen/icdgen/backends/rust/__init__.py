@@ -43,10 +43,8 @@ class RustBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List the files of the crate."""
-        from icdgen.backends.rust import (
-            messages,
-            nodes,
-        )  # imported late: rules on names do not need them
+        # Imported late: rules on names do not need them.
+        from icdgen.backends.rust import nodes
         from icdgen.backends.rust.examples import client_example
         from icdgen.describe.links import links_of
 
@@ -88,14 +86,10 @@ class RustBackend:
                     "enums.rs.j2", enums=node.enums, **shared
                 )
             for struct in node.structs:
-                text = render(
-                    "struct.rs.j2", m=struct, **messages.of_composite(struct), **shared
-                )
+                text = render("struct.rs.j2", m=struct, **shared)
                 yield folder / f"{struct.name}.rs", text
             for message in node.messages:
-                text = render(
-                    "message.rs.j2", m=message, **messages.values(message), **shared
-                )
+                text = render("message.rs.j2", m=message, **shared)
                 yield folder / f"{message.name}.rs", text
         if links:
             yield from _wire(links, render, common)
@@ -107,30 +101,32 @@ class RustBackend:
 
 def _functions() -> dict[str, object]:
     """Return the functions with which templates spell names and text."""
-    from icdgen.backends.rust import text, types
-    from icdgen.backends.rust.accessors import (
+    from icdgen.backends.rust import (
         accessors,
-        curve_of,
-        field_row,
-        scale_of,
-        texts,
+        conditional,
+        elements,
+        examples,
+        messages,
+        parts,
+        physical,
+        text,
+        types,
     )
-    from icdgen.backends.rust.examples import (
-        direction_example,
-        enum_example,
-        message_example,
-    )
-    from icdgen.backends.rust.messages import imports
-    from icdgen.backends.rust.physical import big_parts, derived_statements
-    from icdgen.describe.comments import sentence, words
+    from icdgen.describe.comments import presence_comment, sentence, words
     from icdgen.describe.numbers import byte_count, count_text
 
     functions = (
-        accessors, big_parts, byte_count, count_text, curve_of, derived_statements, direction_example, enum_example,
-        field_row, imports, message_example, names.constant_name, names.field_name, names.scale_name, names.setter,
-        RUST_NAMES.symbol, types.message_path, types.open_type, types.raw_type, scale_of, sentence, text.arm,
-        text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,
-        texts, words,
+        accessors.accessors, accessors.curve_of, accessors.field_row, accessors.scale_of, accessors.texts, byte_count,
+        conditional.presence_test, conditional.read_optional, conditional.write_optional, count_text,
+        elements.array_functions, examples.direction_example, examples.enum_example, examples.message_example,
+        messages.bytes_of, messages.counted_text, messages.counter_value, messages.default, messages.derives,
+        messages.element_bytes, messages.field_constants, messages.fits, messages.flag_bytes, messages.imports,
+        messages.literal, messages.overlay_value, messages.part_bytes, messages.part_count, messages.times,
+        messages.uses_enums, messages.write_statements, names.constant_name, names.field_name, names.has,
+        names.scale_name, names.setter, parts.parts_of, physical.big_parts, physical.derived_statements,
+        physical.has_constant, presence_comment, RUST_NAMES.symbol, sentence, text.arm, text.assigned, text.code,
+        text.described, text.doc, text.integer, text.prose, text.signature, text.string, types.message_path,
+        types.open_type, types.raw_type, words,
     )  # fmt: skip
     return {function.__name__: function for function in functions}
 

@@ -1,5 +1,5 @@
-"""Optional fields: the method that returns whether a field is present, and the code
-that depends on it.
+"""Optional fields: the test whether a field is present, and the code that depends on
+it.
 
 Absent is `None`.
 """
@@ -8,34 +8,29 @@ from __future__ import annotations
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust import bits
-from icdgen.backends.rust.names import field_name, has
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import assigned, string
-from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.comments import presence_comment
+from icdgen.describe import FieldDescription
 from icdgen.describe.description import Need
 
 
-def conditional(message: MessageDescription) -> list[dict[str, object]]:
-    """Return the values for the template per optional field: ``decode`` sets the
-    member, ``encode`` writes it into ``bytes``.
-    """
+def presence_test(field: FieldDescription) -> str:
+    """Return the condition under which an optional field is present."""
+    return " && ".join(map(_test, field.needs))
+
+
+def write_optional(field: FieldDescription) -> list[str]:
+    """Return the statements that write an optional field into ``bytes``."""
+    member = f"self.{field_name(field)}"
     return [
-        {
-            "name": has(field),
-            "about": presence_comment(field.model, message.model),
-            "test": " && ".join(map(_test, field.needs)),
-            "decode": _read(field),
-            "encode": [
-                f"let {bits.RAW} = there({string(field.model.name)}, self.{field_name(field)})?;",
-                *(bits.fitting(field) if field.is_narrow else ()),
-                *bits.writing(field),
-            ],
-        }
-        for field in message.optional_members
+        f"let {bits.RAW} = there({string(field.model.name)}, {member})?;",
+        *(bits.fitting(field) if field.is_narrow else ()),
+        *bits.writing(field),
     ]
 
 
-def _read(field: FieldDescription) -> str:
+def read_optional(field: FieldDescription) -> str:
+    """Return the statement that sets the member of an optional field."""
     value = f"Some({bits.reading(field, set())})"
     line = f"{STEP * 3}message.{field_name(field)} = {value};"
     return (

@@ -20,7 +20,7 @@ DEPTH = 2
 """Steps of indentation of the body of a function."""
 
 
-def functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
+def array_functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
     """List the functions of a message, for an element of each array, or for a group of
     elements.
     """

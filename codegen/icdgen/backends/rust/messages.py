@@ -1,13 +1,12 @@
-"""Values for the templates of messages and structs, in addition to the description."""
+"""Expressions and statements for the templates of messages and structs."""
 
 from __future__ import annotations
 
 import re
 from typing import Any
 
-from icdgen.backends.rust import arrays, bits, conditional, elements, parts
+from icdgen.backends.rust import arrays, bits, elements
 from icdgen.backends.rust.names import field_name
-from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import double, integer
 from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, MessageDescription
@@ -30,108 +29,61 @@ DERIVES_DEFAULT = 32
 """Largest array for which the standard library implements `Default`."""
 
 
-def values(message: MessageDescription) -> dict[str, object]:
-    """Return the values for the template of a message."""
-    fields, tables, last = (
-        message.members,
-        bytes_of_flags(message, bits.FLAGS_FROM),
-        message.last_part,
-    )
-    readings = [
+def flag_bytes(message: MessageDescription) -> list[int]:
+    """Return the bytes whose flags are read from a table."""
+    return sorted(bytes_of_flags(message, bits.FLAGS_FROM))
+
+
+def literal(message: MessageDescription) -> str:
+    """Return the struct expression of a message with the values in ``bytes``."""
+    tables = bytes_of_flags(message, bits.FLAGS_FROM)
+    values = [
         "None" if field.model.conditions else bits.reading(field, tables)
-        for field in fields
+        for field in message.members
     ]
-    overlays = [
-        (field, bits.reading(field, set(), depth=2)) for field in message.overlays
-    ]
-    conditions = conditional.conditional(message)
-    writings = [
+    return elements.literal(message.members, values)
+
+
+def write_statements(message: MessageDescription) -> list[str]:
+    """Return the statements that write all members but optional ones."""
+    return [
         line
         for member in message.walk(Into.STRUCTS)
         if not member.model.conditions
         for line in bits.writing(member)
     ]
-    return {
-        **of_composite(message),
-        "refused": message.is_narrow or bool(conditions),
-        "conditional": conditions,
-        "last": last,
-        "earlier": list(map(_earlier_part, message.earlier_parts)),
-        "groups": any(part.inner for part in message.variable_parts)
-        and list(map(_spread_part, message.spread_parts)),
-        **(_of_variable_length(message, last) if last else {}),
-        "tables": sorted(tables),
-        "literal": elements.literal(fields, readings),
-        "overlays": overlays,
-        "writings": writings,
-        "repeated": list(elements.functions(message)),
-        "parts": parts.parts(message),
-    }
 
 
-def _of_variable_length(
-    message: MessageDescription, last: VariablePartDescription
-) -> dict[str, object]:
-    """Return the values for messages whose frames differ in length."""
-    return {
-        "bytes_of_end": _times(
-            last.model.step,
-            f"count + {last.model.fewest}" if last.model.fewest else "count",
-        ),
-        "bytes_of_elements": _times(last.model.step, "count"),
-        "length_of_frame": _length(last.bytes_beyond_fewest),
-        "length_of_elements": _length(last.place),
-        "counted_text": _counted_text(last),
-        "variable_parts": [(part, _number(part)) for part in message.variable_parts],
-    }
+def overlay_value(field: FieldDescription) -> str:
+    """Return the expression of an overlay field."""
+    return bits.reading(field, set(), depth=2)
 
 
-def _earlier_part(
-    part: VariablePartDescription,
-) -> tuple[VariablePartDescription, str, str, str]:
-    """Return a variable part, the expression of its counter, and its bytes: for a valid
-    count, and for any count.
+def counter_value(part: VariablePartDescription) -> str:
+    """Return the expression of the counter of a variable part in a frame."""
+    return bits.reading(part.counter, set())
+
+
+def part_bytes(part: VariablePartDescription, is_limited: bool = False) -> str:
+    """Return the number of bytes of a variable part in a message; of elements if they
+    have variable-length arrays.
+
+    ``is_limited``: for any value of the counter, valid or not.
     """
-    count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
-    valid, limited = _times(part.model.step, count), _times(
-        part.model.step, f"{count}.min({part.model.most})"
-    )
-    return part, bits.reading(part.counter, set(), depth=3), valid, limited
+    model, step = part.model, 1 if part.inner else part.model.step
+    count = f"number(self.{field_name(part.counter)}, {model.low}, {model.fewest})"
+    return times(step, f"{count}.min({model.most})" if is_limited else count)
 
 
-def _spread_part(part: VariablePartDescription) -> dict[str, object]:
-    """Return the values for a part of a message in which elements have variable-length
-    arrays.
-    """
-    step = 1 if part.inner else part.model.step
-    inner = [(inner, *_counted_bytes(inner, inner.model.step)) for inner in part.inner]
-    reading, valid, limited = _counted_bytes(part, step)
-    fixed = part.model.step - sum(
-        inner.model.most * inner.model.step for inner in part.inner
-    )
-    return {
-        "part": part,
-        "step": step,
-        "reading": reading,
-        "valid": valid,
-        "limited": limited,
-        "inner": inner,
-        "element": " + ".join(
-            (*([str(fixed)] if fixed else []), *(limited for *_, limited in inner))
-        ),
-    }
+def element_bytes(part: VariablePartDescription) -> str:
+    """Return the bytes of an element with variable-length arrays."""
+    fixed = sum(chunk.fixed for chunk in part.chunks)
+    arrays = (part_bytes(inner, is_limited=True) for inner in part.inner)
+    return " + ".join((*([str(fixed)] if fixed else []), *arrays))
 
 
-def _counted_bytes(part: VariablePartDescription, step: int) -> tuple[str, str, str]:
-    """Return the expression of the counter in a frame, and the bytes of a message for a
-    valid count, and for any count.
-    """
-    _, reading, _, _ = _earlier_part(part)
-    count = f"number(self.{field_name(part.counter)}, {part.model.low}, {part.model.fewest})"
-    return reading, _times(step, count), _times(step, f"{count}.min({part.model.most})")
-
-
-def _times(step: int, count: str) -> str:
+def times(step: int, count: str) -> str:
+    """Return the bytes of elements of ``step`` bytes."""
     if step == 1:
         return count
     return f"{step} * ({count})" if " + " in count else f"{step} * {count}"
@@ -148,45 +100,39 @@ def imports(body: str) -> str:
     return f"{{{', '.join(names)}}}" if len(names) > 1 else names[0]
 
 
-def of_composite(composite: Composite[Any]) -> dict[str, object]:
-    """Return the values for a message or struct."""
+def derives(composite: Composite[Any]) -> str:
+    """Return the traits that the struct derives."""
+    traits = ["Clone", "Copy", "Debug", "PartialEq"]
+    if all(map(_is_default, composite.members)):
+        traits.insert(3, "Default")
+    # Floats have no total equality.
+    return ", ".join(traits + ([] if composite.has_floats else ["Eq", "Hash"]))
+
+
+def default(composite: Composite[Any]) -> str:
+    """Return the struct expression of the initial values; empty if `Default` is derived."""
     fields = composite.members
-    has_default = all(map(_is_default, fields))
-    # Floats have no total equality, so messages with floats derive neither `Eq` nor
-    # `Hash`.
-    traits = [
-        "Clone",
-        "Copy",
-        "Debug",
-        *(["Default"] if has_default else []),
-        "PartialEq",
+    if all(map(_is_default, fields)):
+        return ""
+    return elements.literal(fields, [_initial(field) for field in fields])
+
+
+def fits(composite: Composite[Any]) -> list[str]:
+    """Return the statements that return an error if a raw value does not fit."""
+    return [
+        line
+        for field in composite.members
+        if field.needs_range_check and not field.model.conditions
+        for line in bits.fitting(field)
     ]
-    narrow = [field for field in fields if field.needs_range_check]
-    return {
-        "constants": _constants(composite),
-        "fits": [
-            line
-            for field in narrow
-            if not field.model.conditions
-            for line in bits.fitting(field)
-        ],
-        "scales": [
-            field for field in composite.declared_members if has_constant(field)
-        ],
-        "curves": [
-            field for field in composite.declared_members if field.curve is not None
-        ],
-        "default": (
-            None
-            if has_default
-            else elements.literal(fields, [_initial(field) for field in fields])
-        ),
-        "derives": ", ".join(traits + ([] if composite.has_floats else ["Eq", "Hash"])),
-        "uses_enums": any(enum.node is composite.node for enum in composite.enums),
-    }
 
 
-def _constants(composite: Composite[Any]) -> list[tuple[Constant, str, str]]:
+def uses_enums(composite: Composite[Any]) -> bool:
+    """Return whether a member has an enumeration of the same node."""
+    return any(enum.node is composite.node for enum in composite.enums)
+
+
+def field_constants(composite: Composite[Any]) -> list[tuple[Constant, str, str]]:
     """Return the constants of fields with their types and values."""
     return [
         (constant, *_constant(field, constant))
@@ -209,13 +155,13 @@ def _constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
     return "f64", double(constant.double)
 
 
-def _length(bytes: ElementBytes) -> str:
+def bytes_of(elements: ElementBytes) -> str:
     """Return the number of bytes for ``count`` elements."""
-    elements_bytes = _times(bytes.step, "count")
-    return f"{bytes.before} + {elements_bytes}" if bytes.before else elements_bytes
+    counted = times(elements.step, "count")
+    return f"{elements.before} + {counted}" if elements.before else counted
 
 
-def _counted_text(last: VariablePartDescription) -> str:
+def counted_text(last: VariablePartDescription) -> str:
     """Return the value of the counter for a ``text``."""
     more = last.counter_of_text
     if more < 0:
@@ -223,14 +169,10 @@ def _counted_text(last: VariablePartDescription) -> str:
     return f"(text.len() + {more})" if more else "text.len()"
 
 
-def _number(last: VariablePartDescription) -> str:
+def part_count(part: VariablePartDescription) -> str:
     """Return the number of elements of a variable part."""
-    counter = f"self.{field_name(last.counter)}"
-    return (
-        f"number({counter}, {last.model.low}, {last.model.fewest})"
-        if last.model.plus
-        else counter
-    )
+    counter, model = f"self.{field_name(part.counter)}", part.model
+    return f"number({counter}, {model.low}, {model.fewest})" if model.plus else counter
 
 
 def _is_default(field: FieldDescription) -> bool:

@@ -30,7 +30,7 @@ class Part(NamedTuple):
     message: str
 
 
-def parts(message: MessageDescription) -> list[Part]:
+def parts_of(message: MessageDescription) -> list[Part]:
     """Return the conversions of a composite message."""
     conversions = []
     for contained in contained_messages(message):
