@@ -1,6 +1,9 @@
 /*
- * Sends two telecommands, reads two messages, and prints errors. In another terminal: icdgen sim --node cubeacp --tcp 4000
- * cc -std=c99 -D_POSIX_C_SOURCE=200809L -Igenerated/c examples/control.c -o control && ./control 4000
+ * Sends two telecommands, reads two messages, and prints errors. In another terminal:
+ * icdgen sim --node cubeacp --tcp 4000
+ *
+ * cc -std=c99 -D_POSIX_C_SOURCE=200809L -Igenerated/c examples/control.c -o control
+ * ./control 4000
  */
 #include "cubeacp.h"
 #include "port.h"
@@ -8,16 +11,22 @@
 static cubeacp_client_t acp;
 static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
 
-/* Waits for the outcome of a request that was started with the status `started`. Exits unless the request succeeds. */
+/*
+ * Waits for the outcome of a request that was started with the status `started`. Exits unless the
+ * request succeeds.
+ */
 static icd_event_t done(int port, icd_status_t started)
 {
     icd_event_t end;
-    if (started != ICD_OK) { /* ICD_ERROR_RANGE: a value does not fit its field; ICD_ERROR_BUSY: a request is pending */
+    /* ICD_ERROR_RANGE: a value does not fit its field. ICD_ERROR_BUSY: a request is pending. */
+    if (started != ICD_OK) {
         fprintf(stderr, "not sent, status %d\n", (int)started);
         exit(EXIT_FAILURE);
     }
-    end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, repeats requests of telemetry */
-    if (end.kind == ICD_EVENT_REFUSED) {                    /* end.reason: its meaning, such as ICD_REASON_LENGTH */
+    /* Sends, waits, and repeats requests of telemetry. */
+    end = port_ask(port, &acp.client, frame, sizeof frame);
+    /* The meaning of the code is end.reason, such as ICD_REASON_LENGTH. */
+    if (end.kind == ICD_EVENT_REFUSED) {
         fprintf(stderr, "refused, code %u\n", (unsigned)end.code);
         exit(EXIT_FAILURE);
     }
@@ -52,13 +61,15 @@ int main(int argc, char **argv)
 
     end = done(port, cubeacp_request_estimated_attitude_angles(&acp, port_now()));
     if (cubeacp_receive_estimated_attitude_angles(&angles, &end) == ICD_OK) {
-        printf("roll %.2f deg\n", cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(&angles));
+        const double roll = cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(&angles);
+        printf("roll %.2f deg\n", roll);
     }
 
     end = done(port, cubeacp_request_current_adcs_state(&acp, port_now()));
     if (cubeacp_receive_current_adcs_state(&state, &end) == ICD_OK) {
-        const cubeacp_estim_mode_select_t mode = state.attitude_estimation_mode; /* also a value without a name */
-        const char *const name = cubeacp_estim_mode_select_name(mode);           /* NULL for such a value */
+        /* The mode can be a value that the ICD does not name. Its name is NULL then. */
+        const cubeacp_estim_mode_select_t mode = state.attitude_estimation_mode;
+        const char *const name = cubeacp_estim_mode_select_name(mode);
         if (mode == CUBEACP_ESTIM_MODE_SELECT_NO_ATTITUDE_ESTIMATION) {
             printf("nothing is estimated\n");
         } else if (name != NULL) {

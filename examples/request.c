@@ -1,16 +1,21 @@
-/* Asks a node on a TCP port, such as `icdgen sim --node cubeacp --tcp 4000`, for its attitude: request [PORT] */
+/*
+ * Asks a node on a TCP port, such as `icdgen sim --node cubeacp --tcp 4000`, for its attitude:
+ * request [PORT]
+ */
 #include "cubeacp.h"
 #include "port.h"
 
 int main(int argc, char **argv)
 {
-    static cubeacp_client_t acp; /* has a type of its own: the compiler rejects messages of other devices */
+    /* The client has a type of its own: the compiler rejects messages of other devices. */
+    static cubeacp_client_t acp;
     static uint8_t buffer[CUBEACP_CLIENT_BYTES], frame[CUBEACP_LONGEST];
     cubeacp_estimated_attitude_angles_t angles;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
     cubeacp_client_uart(&acp, buffer, sizeof buffer);
     cubeacp_request_estimated_attitude_angles(&acp, port_now());
-    const icd_event_t end = port_ask(port, &acp.client, frame, sizeof frame); /* sends, waits, repeats */
+    /* Sends, waits and repeats. */
+    const icd_event_t end = port_ask(port, &acp.client, frame, sizeof frame);
     if (cubeacp_receive_estimated_attitude_angles(&angles, &end) != ICD_OK) {
         fprintf(stderr, "no telemetry, attempts: %u\n", (unsigned)end.attempts);
         return 1;

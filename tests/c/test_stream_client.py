@@ -82,10 +82,11 @@ int main(void)
 
 def test_the_documented_client_asks_sends_and_reads_what_comes(tmp_path):
     lines = shown("receiver_client_t receiver;")
-    told = [line.replace("...", "++clocks;") for line in lines if "in on_event" in line]
-    done = [line for line in lines if "in on_event" not in line]
-    assert len(told) == 1 and len(done) > 7
-    run(tmp_path, DOCUMENTED % (told[0], "\n    ".join(done)), EXAMPLES / "ubx.yaml")
+    in_event = [line.replace("...", "++clocks;") for line in lines if "{ ... }" in line]
+    in_main = [line for line in lines if "{ ... }" not in line]
+    assert len(in_event) == 1 and len(in_main) > 7
+    program = DOCUMENTED % (in_event[0], "\n    ".join(in_main))
+    run(tmp_path, program, EXAMPLES / "ubx.yaml")
 
 
 SENDING = r"""

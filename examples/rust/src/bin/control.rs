@@ -1,4 +1,5 @@
-//! Sends two telecommands, reads two messages, and prints errors. In another terminal: icdgen sim --node cubeacp --tcp 4000
+//! Sends two telecommands, reads two messages, and prints errors. In another terminal:
+//! icdgen sim --node cubeacp --tcp 4000
 use icd::cubeacp::{
     enums::EstimModeSelect, CommandedAttitudeAngles, CurrentAdcsState, EstimatedAttitudeAngles,
     Node, SetWheelSpeed, LINK, LONGEST,
@@ -18,7 +19,8 @@ fn control(device: &mut Session<Node, TcpStream, LONGEST>) -> Result<(), Failure
     let angles = device.get::<EstimatedAttitudeAngles>()?;
     println!("roll {:.2} deg", angles.estimated_roll_angle_deg());
 
-    let mode = device.get::<CurrentAdcsState>()?.attitude_estimation_mode; // keeps what it does not know
+    // The mode can be a value that the ICD does not name.
+    let mode = device.get::<CurrentAdcsState>()?.attitude_estimation_mode;
     match mode.get() {
         EstimModeSelect::NoAttitudeEstimation => println!("nothing is estimated"),
         EstimModeSelect::Unknown(number) => println!("estimation mode {number} has no name"),

@@ -1,5 +1,7 @@
 //! Switches the loop of a node on and asks for its attitude. In another terminal: icdgen sim --node cubeacp --tcp 4000
-use icd::cubeacp::{enums::AdcsRunMode, EstimatedAttitudeAngles, Node, SetAdcsRunMode, LINK, LONGEST};
+use icd::cubeacp::{
+    enums::AdcsRunMode, EstimatedAttitudeAngles, Node, SetAdcsRunMode, LINK, LONGEST,
+};
 use icd::wire::Session;
 use std::{error::Error, net::TcpStream, time::Duration};
 
