@@ -33,6 +33,20 @@ def icds(page: str) -> list[str]:
     return _EXAMPLE.findall(page)
 
 
+def layout(icd: str) -> str:
+    """Pattern of the text that `icdgen fmt` writes for an ICD of a page: each row of a
+    table on one line. Pages wrap long rows.
+    """
+    joined = re.sub(
+        r"^ +- \{(?:.*,\n +)+",
+        lambda row: re.sub(r"\n +", "\0", row[0]),
+        icd,
+        flags=re.MULTILINE,
+    )
+    # The last column before a break can be padded, as in other rows.
+    return re.escape(joined).replace("\0", " +")
+
+
 def icds_by_heading(page: str) -> dict[str, list[str]]:
     """Complete ICDs that a page shows, by the nearest heading above each."""
     examples: dict[str, list[str]] = {}

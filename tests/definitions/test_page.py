@@ -23,6 +23,11 @@ def blocks(language: str) -> list[str]:
     return documents.blocks(PAGE, language)
 
 
+def ends_as_shown(icd: str, number: int) -> bool:
+    """Whether an ICD ends with the YAML block of this number."""
+    return bool(re.search(documents.layout(blocks("yaml")[number]) + r"\Z", icd))
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
     (tmp_path / "train.dbc").write_text(blocks("dbc")[0])
@@ -48,7 +53,8 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
                 else []
             )
         assert said == expected
-    assert (tmp_path / "icd" / "train.yaml").read_text() == blocks("yaml")[0]
+    written = (tmp_path / "icd" / "train.yaml").read_text()
+    assert re.fullmatch(documents.layout(blocks("yaml")[0]), written)
 
     (tmp_path / "icd" / "errata").mkdir()
     (tmp_path / "icd" / "errata" / "train.yaml").write_text(blocks("yaml")[1])
@@ -83,14 +89,14 @@ def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "probe.xml").write_text(blocks("xml")[0])
     read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
     (tree,) = read.trees.values()
-    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[2])
+    assert ends_as_shown(emit.text({"messages": tree["messages"]}), 2)
 
 
 def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "beacon.ksy").write_text(blocks("ksy")[0])
     read = run.read(tmp_path / "beacon.ksy", kinds.of(tmp_path / "beacon.ksy"))
     (tree,) = read.trees.values()
-    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[3])
+    assert ends_as_shown(emit.text({"messages": tree["messages"]}), 3)
     assert read.definitions.import_findings == []
 
 
@@ -98,7 +104,7 @@ def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
     (tmp_path / "meter.json").write_text(blocks("json")[0])
     read = run.read(tmp_path / "meter.json", kinds.of(tmp_path / "meter.json"))
     (tree,) = read.trees.values()
-    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[4])
+    assert ends_as_shown(emit.text({"messages": tree["messages"]}), 4)
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
