@@ -20,6 +20,11 @@ PAGES = [
     *sorted(ROOT.glob("*.md")),
     *sorted(ROOT.glob("tests/*/README.md")),
 ]
+MANUAL = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *documents.pages()]
+
+
+def _name(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
 
 
 def prose(page: Path) -> str:
@@ -42,9 +47,7 @@ def anchors(page: Path) -> set[str]:
     }
 
 
-@pytest.mark.parametrize(
-    "page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix()
-)
+@pytest.mark.parametrize("page", PAGES, ids=_name)
 def test_every_link_leads_to_a_page_and_heading_that_exists(page):
     dead = []
     for link in links(page):
@@ -57,15 +60,31 @@ def test_every_link_leads_to_a_page_and_heading_that_exists(page):
     assert dead == []
 
 
-def test_a_source_line_has_at_most_100_characters_outside_tables_and_code():
-    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *documents.pages()]
-    long = [
-        f"{page.relative_to(ROOT)}: {line[:60]}"
-        for page in pages
-        for line in prose(page).splitlines()
-        if len(line) > 100 and not line.startswith(("|", "    "))
-    ]
-    assert long == []
+def wrapped_lines(page: Path) -> Iterator[str]:
+    """Lines of a page except rows of Markdown tables and the output of commands, which
+    a page shows as it is printed.
+    """
+    language, command = "", False
+    for line in page.read_text("utf-8").splitlines():
+        if fence := re.match(r"\s*```(\w*)", line):
+            language = "" if language else fence[1] or "text"
+        # A backslash continues the command on the next line.
+        command = line.startswith("$ ") or command
+        is_output = language == "console" and not command
+        command = command and line.endswith("\\")
+        if not is_output and (language or not line.startswith("|")):
+            yield line
+
+
+@pytest.mark.parametrize("page", MANUAL, ids=_name)
+def test_a_source_line_has_at_most_100_characters_except_tables_and_output(page):
+    assert [line for line in wrapped_lines(page) if len(line) > 100] == []
+
+
+@pytest.mark.parametrize("page", MANUAL, ids=_name)
+def test_a_console_block_begins_with_a_command(page):
+    blocks = re.findall(r"^ *```console\n(.*)", page.read_text("utf-8"), re.MULTILINE)
+    assert [line for line in blocks if not line.startswith("$ ")] == []
 
 
 def test_generated_reference_pages_are_current():
