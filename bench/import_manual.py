@@ -1,6 +1,8 @@
 """Measure time and memory of `icdgen import` for a manual, and the share of each stage.
 
-python bench/import_manual.py MANUAL.pdf [--profile NAME] [--jobs N] [--where]
+python bench/import_manual.py MANUAL.pdf [--profile NAME] [--jobs N] [--where] [--explore]
+
+Before it, prints the processor time of pdfminer alone, in one process.
 """
 
 from __future__ import annotations
@@ -38,19 +40,36 @@ def main() -> None:
     parser.add_argument(
         "--where", action="store_true", help="where the time goes, in one process"
     )
+    parser.add_argument(
+        "--explore", action="store_true", help="list the kinds of tables, write no ICD"
+    )
     options = parser.parse_args()
     if options.where:
         measure_stages(options.manual, options.profile)
     else:
-        measure_command(options.manual, options.profile, options.jobs)
+        measure_pdfminer(options.manual)
+        measure_command(options.manual, options.profile, options.jobs, options.explore)
 
 
-def measure_command(manual: Path, profile: str | None, jobs: int) -> None:
+def measure_pdfminer(manual: Path) -> None:
+    """Measure pdfminer alone, which groups the characters of a page to lines."""
+    from pdfminer.high_level import extract_pages
+
+    start = time.process_time()
+    count = sum(1 for _ in extract_pages(manual))
+    seconds = time.process_time() - start
+    print(f"pdfminer alone: {seconds:.1f} s processor, {count} pages")
+
+
+def measure_command(
+    manual: Path, profile: str | None, jobs: int, explore: bool
+) -> None:
     """Measure the command as a user runs it: wall time, processor time, and memory of
     the largest process and of all processes.
     """
     with tempfile.TemporaryDirectory() as folder:
         words = ["--profile", profile] if profile else []
+        target = ["--explore"] if explore else ["--out", folder]
         command = [
             sys.executable,
             "-m",
@@ -58,8 +77,7 @@ def measure_command(manual: Path, profile: str | None, jobs: int) -> None:
             "import",
             str(manual),
             *words,
-            "--out",
-            folder,
+            *target,
             "--jobs",
             str(jobs),
         ]
