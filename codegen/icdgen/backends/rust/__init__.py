@@ -43,9 +43,6 @@ class RustBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List the files of the crate."""
-        # Imported late: rules on names do not need them.
-        from icdgen.backends.rust import nodes
-        from icdgen.backends.rust.examples import client_example
         from icdgen.describe.links import links_of
 
         description = describe(icd)
@@ -64,7 +61,6 @@ class RustBackend:
         of_crate = {
             "has_tails": has_tails,
             "nodes": icd.nodes,
-            "summary": nodes.summary,
             "wired": bool(links),
         }
         yield PurePosixPath("src/lib.rs"), render("lib.rs.j2", **of_crate, **common)
@@ -73,12 +69,8 @@ class RustBackend:
             folder = PurePosixPath("src") / node.name
             digested = {**common, "origin": origin(node.model, with_digest=True)}
             link = links.get(node.name)
-            about = nodes.about(
-                node, client_example(node, link, self.crate) if link else []
-            )
-            functions = {"about": about, "typed": nodes.typed, "guarded": nodes.guarded}
             yield folder / "mod.rs", render(
-                "node.rs.j2", node=node, **functions, **digested
+                "node.rs.j2", node=node, link=link, **digested
             )
             shared = {**common, "origin": origin(node.model)}
             if node.enums:
@@ -107,26 +99,29 @@ def _functions() -> dict[str, object]:
         elements,
         examples,
         messages,
+        nodes,
         parts,
         physical,
         text,
         types,
     )
     from icdgen.describe.comments import presence_comment, sentence, words
+    from icdgen.describe.examples import example
     from icdgen.describe.numbers import byte_count, count_text
 
     functions = (
         accessors.accessors, accessors.curve_of, accessors.field_row, accessors.scale_of, accessors.texts, byte_count,
         conditional.presence_test, conditional.read_optional, conditional.write_optional, count_text,
-        elements.array_functions, examples.direction_example, examples.enum_example, examples.message_example,
-        messages.bytes_of, messages.counted_text, messages.counter_value, messages.default, messages.derives,
-        messages.element_bytes, messages.field_constants, messages.fits, messages.flag_bytes, messages.imports,
-        messages.literal, messages.overlay_value, messages.part_bytes, messages.part_count, messages.times,
-        messages.uses_enums, messages.write_statements, names.constant_name, names.field_name, names.has,
-        names.scale_name, names.setter, parts.parts_of, physical.big_parts, physical.derived_statements,
+        elements.array_functions, example, examples.byte_array, examples.client_message, examples.is_short,
+        examples.read_example, examples.write_example, messages.bytes_of, messages.counted_text,
+        messages.counter_value, messages.default, messages.derives, messages.element_bytes, messages.field_constants,
+        messages.fits, messages.flag_bytes, messages.imports, messages.literal, messages.overlay_value,
+        messages.part_bytes, messages.part_count, messages.times, messages.uses_enums, messages.write_statements,
+        names.constant_name, names.field_name, names.has, names.scale_name, names.setter, nodes.about, nodes.guarded,
+        nodes.summary, nodes.typed, parts.parts_of, physical.big_parts, physical.derived_statements,
         physical.has_constant, presence_comment, RUST_NAMES.symbol, sentence, text.arm, text.assigned, text.code,
-        text.described, text.doc, text.integer, text.prose, text.signature, text.string, types.message_path,
-        types.open_type, types.raw_type, words,
+        text.described, text.doc, text.integer, text.mask, text.prose, text.signature, text.string,
+        types.message_path, types.open_type, types.raw_type, words,
     )  # fmt: skip
     return {function.__name__: function for function in functions}
 

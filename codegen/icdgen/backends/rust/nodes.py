@@ -5,7 +5,7 @@ id.
 from __future__ import annotations
 
 from icdgen.backends.lines import STEP
-from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
+from icdgen.backends.rust.text import WIDTH, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.lengths import length_tests_of_frame
@@ -20,9 +20,9 @@ def summary(node: Node) -> str:
     return doc([item], mark="//!  ").replace("//!  ", "//! -", 1)
 
 
-def about(node: NodeDescription, example: list[str]) -> str:
-    """Return the documentation of the module of a node: title, source, included nodes
-    and an example.
+def about(node: NodeDescription) -> str:
+    """Return the documentation of the module of a node: title, source and included
+    nodes.
     """
     model, owners = node.model, dict.fromkeys(
         message.node.name for message in node.all_messages
@@ -36,8 +36,7 @@ def about(node: NodeDescription, example: list[str]) -> str:
         prose(sentence(f"Source: {printed}")) if printed else "",
         f"It also speaks the messages of {included}." if included else "",
     ]
-    text = doc(paragraphs, mark="//!")
-    return f"{text}\n{code(example, mark='//!')}" if example else text
+    return doc(paragraphs, mark="//!")
 
 
 def typed(value: int) -> str:
