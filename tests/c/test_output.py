@@ -258,5 +258,5 @@ def test_the_name_of_the_node_stands_once(tmp_path):
     assert (
         clash.code == "ICD071"
         and "`PUMP_STATUS_" in clash.message
-        and clash.message.endswith("in c")
+        and clash.message.endswith("in C/C++")
     )

@@ -26,6 +26,7 @@ class PlugIn:
         with self._named("cannot be loaded"):
             backend = point.load()()
             self.name: str = backend.name
+            self.title: str = getattr(backend, "title", backend.name)
             self.templates: Path | None = getattr(backend, "templates", None)
             self.runtime: Path | None = getattr(backend, "runtime", None)
             self.reserved = frozenset(backend.reserved)

@@ -18,6 +18,7 @@ class VectorsBackend:
     """Backend of ``icdgen --lang vectors``."""
 
     name = "vectors"
+    title = "the golden vectors"
     reserved: frozenset[str] = frozenset()
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, str]]:

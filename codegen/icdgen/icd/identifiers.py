@@ -31,7 +31,8 @@ class Identifier:
 class Language(Protocol):
     """A language of generated code."""
 
-    name: str
+    name: str  # for `--lang`
+    title: str  # in messages
     reserved: frozenset[str]  # words that cannot be identifiers
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

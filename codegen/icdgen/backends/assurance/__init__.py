@@ -22,6 +22,7 @@ class AssuranceBackend:
     """
 
     name = "assurance"
+    title = "the verification package"
     reserved: frozenset[str] = frozenset()
     named_in = ("c", "python", "rust")
     needs_lines = True  # line numbers of the ICDs, which a cached model lacks

@@ -47,6 +47,8 @@ class CBackend:
     """Backend of ``icdgen --lang c``."""
 
     name = "c"
+    # C++ can include the headers, so its reserved words cannot be names in C either.
+    title = "C/C++"
     reserved = names.RESERVED
 
     def __init__(self) -> None:

@@ -24,6 +24,7 @@ class CSelftestBackend:
     """
 
     name = "c-selftest"
+    title = "the self-test in C"
     reserved: frozenset[str] = frozenset()
     named_in = ("c",)
 

@@ -29,6 +29,7 @@ class HtmlBackend:
     """
 
     name = "html"
+    title = "the documentation site"
     reserved: frozenset[str] = frozenset()
     named_in = ("c", "python", "rust")
 

@@ -35,6 +35,7 @@ class PythonBackend:
     """
 
     name = "python"
+    title = "Python"
     reserved = names.RESERVED
 
     def __init__(self, package: str = Packages.python) -> None:

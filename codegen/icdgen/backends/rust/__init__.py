@@ -31,6 +31,7 @@ class RustBackend:
     """Backend of ``icdgen --lang rust``."""
 
     name = "rust"
+    title = "Rust"
     reserved = names.RESERVED
 
     def __init__(self, crate: str = Packages.rust) -> None:

@@ -34,6 +34,7 @@ class CsvBackend(_Tables):
     """Backend of ``icdgen --lang csv``."""
 
     name = "csv"
+    title = "CSV"
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, str]]:
         """Yield ``<node>.csv`` for each node with own messages, in order."""
@@ -48,6 +49,7 @@ class XlsxBackend(_Tables):
     """Backend of ``icdgen --lang xlsx``."""
 
     name = "xlsx"
+    title = "XLSX"
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, bytes]]:
         """Yield ``<node>.xlsx`` for each node with own messages, in order.

@@ -21,6 +21,7 @@ class XtceBackend:
     """Backend of ``icdgen --lang xtce``."""
 
     name = "xtce"
+    title = "XTCE"
     reserved: frozenset[str] = frozenset()
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:

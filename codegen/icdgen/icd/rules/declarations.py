@@ -27,7 +27,7 @@ class Declared(NamedTuple):
     There can be hundreds of thousands, so rules select some by text.
     """
 
-    language: str
+    language: str  # title
     reserved: frozenset[str]
     identifiers: list[Identifier]
     texts: Counter[str]  # number of identifiers per text, in all scopes together
@@ -54,7 +54,7 @@ def declared(ctx: Context) -> list[Declared]:
             ]
             texts = Counter(map(_TEXT, identifiers))
             ctx.declared.append(
-                Declared(language.name, language.reserved, identifiers, texts)
+                Declared(language.title, language.reserved, identifiers, texts)
             )
     return ctx.declared
 

@@ -17,9 +17,6 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
 from icdgen.wording import listing, quote
 
-# C++ can include the headers, so its reserved words cannot be names in C either.
-_WITH_CXX = {"c": "C/C++"}
-
 
 def _place(ctx: Context, identifier: Identifier) -> Place:
     """Return the place of the name that an identifier is made from."""
@@ -89,7 +86,7 @@ def names_are_not_reserved(ctx: Context) -> Iterator[Fault]:
     for identifier, _, texts in clashes:
         words = " and ".join(
             f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in "
-            f"{listing(_WITH_CXX.get(language, language) for language in languages)}"
+            f"{listing(languages)}"
             for text, languages in texts.items()
         )
         message = f"{identifier.owner} becomes {words}"
