@@ -29,7 +29,8 @@ def report(tables: list[SourceTable], document: str) -> str:
     counted = f"{count(len(tables), 'table')} of {count(len(groups), 'kind')}"
     lines = [
         f"# {document}: {counted}, a rule for each. A table without a rule is not imported.",
-        "# Give each column a role or a pattern (docs/reference/import-rules.md), or put its heading under `ignore`.",
+        "# Give each column a role or a pattern (docs/reference/import-rules.md),",
+        "# or put its heading under `ignore`.",
         "profile: 1",
         "node: {}  # state the orders of the document, such as {byte_order: big, bit_order: lsb0}",
         "rules:",
