@@ -5,7 +5,7 @@ Each statement computes a local variable by one operation on two operands.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
@@ -32,6 +32,23 @@ class Derived(NamedTuple):
     fields: tuple[tuple[str, FieldDescription], ...]
     statements: tuple[Statement, ...]
     result: str  # the local variable with the derived value
+
+    def expressions(
+        self, number: Callable[[float], str], power: str
+    ) -> Iterator[tuple[str, str]]:
+        """List the variables of the statements with their expressions in a language.
+
+        ``number`` spells a number; ``power`` is the call of a function of two operands.
+        """
+        for name, operator, *operands in self.statements:
+            left, right = (
+                operand if isinstance(operand, str) else number(operand)
+                for operand in operands
+            )
+            is_power = operator == "^"
+            yield name, (
+                power.format(left, right) if is_power else f"{left} {operator} {right}"
+            )
 
 
 def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:

@@ -468,6 +468,13 @@ class Composite(Named[WithFields]):
         return self.walk(Into.ALL_ARRAYS)
 
     @property
+    def constants(self) -> Iterator[tuple[FieldDescription, Constant]]:
+        """Constants of all fields, in the order of the ICD."""
+        for field in self.declared_members:
+            for constant in field.constants:
+                yield field, constant
+
+    @property
     def last_part(self) -> VariablePartDescription | None:
         """Last part of variable length; None for structs and messages of one length."""
         return None

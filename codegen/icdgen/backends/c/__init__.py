@@ -226,7 +226,7 @@ _FUNCTIONS = {
     for function in (
         accessors.double_accessors, accessors.integer_accessors, accessors.of_kind, accessors.overlay_comment,
         all_struct_arrays, bits.excess_type, byte_count, call, comment, conditional.absent_value,
-        conditional.presence_test, conditional.write_optional, constants.field_constants, constants.field_table,
+        conditional.presence_test, conditional.write_optional, constants.constant_value, constants.field_table,
         contained_messages, decoding.chunk_bytes, decoding.counter_tests, decoding.decode_statements,
         decoding.element_bytes, decoding.elements, decoding.miscount, decoding.miscounted, decoding.misfit_length,
         decoding.number, decoding.part_bytes, decoding.place, decoding.read_statements, decoding.there, described,

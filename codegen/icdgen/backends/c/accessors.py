@@ -94,16 +94,7 @@ def _derived(field: FieldDescription) -> AccessorCode:
         _constant(f"const double {name}", _as_double(operand))
         for name, operand in computation.fields
     ]
-    for name, operator, *operands in computation.statements:
-        left, right = (
-            operand if isinstance(operand, str) else repr(operand)
-            for operand in operands
-        )
-        value = (
-            f"icdgen_power({left}, {right})"
-            if operator == "^"
-            else f"{left} {operator} {right}"
-        )
+    for name, value in computation.expressions(repr, "icdgen_power({}, {})"):
         lines.append(_constant(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
     return AccessorCode(

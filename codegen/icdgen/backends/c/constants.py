@@ -21,16 +21,8 @@ _MAX_ENUMERATOR = 32767
 """Largest `int` that C guarantees."""
 
 
-def field_constants(message: Composite[Any]) -> list[tuple[Constant, str]]:
-    """Return the constants of the fields of a message, and their values."""
-    return [
-        (constant, _value(constant, field))
-        for field in message.declared_members
-        for constant in field.constants
-    ]
-
-
-def _value(constant: Constant, field: FieldDescription) -> str:
+def constant_value(field: FieldDescription, constant: Constant) -> str:
+    """Return the value of the macro of a constant of a field."""
     if constant.number:
         return _float(constant, field.model.bits)
     if (

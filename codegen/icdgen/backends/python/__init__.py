@@ -99,15 +99,11 @@ class PythonBackend:
                     "enum.py.j2", enum=enum, **shared
                 )
             for struct in node.structs:
-                path = folder / f"{names.module_name(struct)}.py"
-                yield path, render(
-                    "struct.py.j2", m=struct, **nodes.of_composite(struct), **shared
-                )
+                text = render("struct.py.j2", m=struct, **shared)
+                yield folder / f"{names.module_name(struct)}.py", text
             for message in node.messages:
-                path = folder / f"{names.module_name(message)}.py"
-                yield path, render(
-                    "message.py.j2", m=message, **shared, **nodes.of_message(message)
-                )
+                text = render("message.py.j2", m=message, **shared)
+                yield folder / f"{names.module_name(message)}.py", text
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """List every name that the generated files declare, for the rules on names."""
@@ -119,9 +115,9 @@ def _functions() -> dict[str, object]:
     from icdgen.backends.python import fields, nodes, text
 
     functions = (
-        fields.annotation, fields.accessors, fields.declaration, fields.getter, fields.inner, fields.nested, fields.open_part,
-        fields.physical, fields.view_info, names.accessors_in_python, names.constant_name, PYTHON_NAMES.symbol,
-        nodes.listing, nodes.literals,
-        nodes.mapping, text.docstring, text.documented, text.literal, text.prose,
+        fields.annotation, fields.accessors, fields.constant_value, fields.declaration, fields.getter, fields.inner,
+        fields.nested, fields.open_part, fields.physical, fields.view_info, names.accessors_in_python,
+        names.constant_name, PYTHON_NAMES.symbol, nodes.imports_of, nodes.listing, nodes.literals, nodes.mapping,
+        text.docstring, text.documented, text.literal, text.prose,
     )  # fmt: skip
     return {function.__name__: function for function in functions}

@@ -119,11 +119,11 @@ def _keywords(field: FieldDescription) -> list[str]:
     return items
 
 
-def constant(value: Constant, field: FieldDescription) -> str:
-    """Return the literal of a constant of the field."""
-    return (
-        special_value(value, field.model.bits) if value.number else number(value.value)
-    )
+def constant_value(field: FieldDescription, constant: Constant) -> str:
+    """Return the literal of a constant of a field."""
+    if constant.number:
+        return special_value(constant, field.model.bits)
+    return number(constant.value)
 
 
 def special_value(value: Special | Constant, bits: int) -> str:

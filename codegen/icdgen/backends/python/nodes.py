@@ -9,18 +9,15 @@ from typing import Any
 
 from icdgen.backends.lines import exploded
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import constant
 from icdgen.backends.python.symbols import PYTHON_NAMES
 from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import (
     Description,
     EnumDescription,
-    MessageDescription,
     NodeDescription,
     StructDescription,
 )
 from icdgen.describe.comments import sentence
-from icdgen.describe.contained import contained_messages
 from icdgen.describe.description import Composite
 from icdgen.describe.nodes import MessagesOfId
 from icdgen.icd.model import Message, Node
@@ -145,34 +142,13 @@ def _documentation(node: Node) -> list[str]:
     return [paragraph(text) for text in paragraphs if text]
 
 
-def of_message(message: MessageDescription) -> dict[str, object]:
-    """Return the values for a message, among them the messages that it contains, in the
-    order of the frame.
-    """
-    parts = [
-        (begin, part.message)
-        for part in contained_messages(message)
-        for begin in part.positions
-    ]
-    return {**of_composite(message), "parts": sorted(parts, key=lambda part: part[0])}
-
-
-def of_composite(composite: Composite[Any]) -> dict[str, object]:
-    """Return the imports of enumerations and structs for a message or struct, and the
-    constants of its fields.
-    """
+def imports_of(composite: Composite[Any]) -> list[str]:
+    """Return the imports of enumerations and structs for a message or struct."""
     used_by: tuple[EnumDescription | StructDescription, ...] = (
         *composite.enums,
         *composite.structs,
     )
-    return {
-        "imports": sorted(_import(used, composite) for used in used_by),
-        "constants": [
-            (value, constant(value, field))
-            for field in composite.declared_members
-            for value in field.constants
-        ],
-    }
+    return sorted(_import(used, composite) for used in used_by)
 
 
 def _import(used: EnumDescription | StructDescription, by: Composite[Any]) -> str:

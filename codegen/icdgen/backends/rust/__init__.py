@@ -115,7 +115,7 @@ def _functions() -> dict[str, object]:
         conditional.presence_test, conditional.read_optional, conditional.write_optional, count_text,
         elements.array_functions, example, examples.byte_array, examples.client_message, examples.is_short,
         examples.read_example, examples.write_example, messages.bytes_of, messages.counted_text,
-        messages.counter_value, messages.default, messages.derives, messages.element_bytes, messages.field_constants,
+        messages.counter_value, messages.default, messages.derives, messages.element_bytes, messages.typed_constant,
         messages.fits, messages.flag_bytes, messages.imports, messages.literal, messages.overlay_value,
         messages.part_bytes, messages.part_count, messages.times, messages.uses_enums, messages.write_statements,
         names.constant_name, names.field_name, names.has, names.scale_name, names.setter, nodes.about, nodes.guarded,

@@ -132,16 +132,8 @@ def uses_enums(composite: Composite[Any]) -> bool:
     return any(enum.node is composite.node for enum in composite.enums)
 
 
-def field_constants(composite: Composite[Any]) -> list[tuple[Constant, str, str]]:
-    """Return the constants of fields with their types and values."""
-    return [
-        (constant, *_constant(field, constant))
-        for field in composite.declared_members
-        for constant in field.constants
-    ]
-
-
-def _constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
+def typed_constant(field: FieldDescription, constant: Constant) -> tuple[str, str]:
+    """Return type and value of a constant of a field."""
     if constant.number:
         kind = f"f{field.model.bits}"
         named = {"nan": "NAN", "inf": "INFINITY", "-inf": "NEG_INFINITY"}.get(

@@ -139,16 +139,7 @@ def derived_statements(field: FieldDescription) -> Iterator[str]:
     computation = derived(field, _TAKEN)
     for name, operand in computation.fields:
         yield assigned(f"let {name} =", _as_double(operand), ";", STEP * 2)
-    for name, operator, *operands in computation.statements:
-        left, right = (
-            operand if isinstance(operand, str) else double(operand)
-            for operand in operands
-        )
-        value = (
-            f"power({left}, {right})"
-            if operator == "^"
-            else f"{left} {operator} {right}"
-        )
+    for name, value in computation.expressions(double, "power({}, {})"):
         yield assigned(f"let {name} =", value, ";", STEP * 2)
     yield f"{STEP * 2}quiet({computation.result})"
 
