@@ -63,33 +63,6 @@ def struct_arrays_in(
     )
 
 
-def all_struct_arrays(composite: Composite[Any]) -> Iterator[StructArray]:
-    """List all arrays of structs of a message; arrays in elements of an array come
-    before it.
-    """
-    for field, name in named_arrays(
-        composite, lambda field: field.element_struct is not None
-    ):
-        if field.element_struct is not None:
-            yield StructArray(field, field.element_struct, name)
-
-
-def named_arrays(
-    composite: Composite[Any],
-    is_wanted: Callable[[FieldDescription], bool],
-    prefix: str = "",
-) -> Iterator[tuple[FieldDescription, str]]:
-    """List the arrays for which ``is_wanted`` holds, and their names; arrays in
-    elements of an array come before it.
-    """
-    for field in composite.walk(Into.STRUCTS):
-        if is_wanted(field):
-            name = prefix + field.name
-            if field.element_struct is not None:
-                yield from named_arrays(field.element_struct, is_wanted, f"{name}_")
-            yield field, name
-
-
 class ArrayLoop(NamedTuple):
     """Loop over an array.
 
@@ -157,3 +130,28 @@ def loop_of(field: FieldDescription) -> ArrayLoop | None:
         return None
     loop = loop_from(field, field.count)
     return loop if loop is not None and loop.elements == field.count else None
+
+
+def looped_arrays(
+    composite: Composite[Any], prefix: str = ""
+) -> Iterator[tuple[FieldDescription, str]]:
+    """List the arrays of a message with a `loop_of` all their elements, and their
+    names; arrays in elements of an array come before it.
+
+    Names start with ``prefix``.
+    """
+    for field in composite.walk(Into.STRUCTS):
+        if loop_of(field) is not None:
+            name = prefix + field.name
+            if field.element_struct is not None:
+                yield from looped_arrays(field.element_struct, f"{name}_")
+            yield field, name
+
+
+def all_struct_arrays(composite: Composite[Any]) -> Iterator[StructArray]:
+    """List all arrays of structs of a message; arrays in elements of an array come
+    before it.
+    """
+    for field, name in looped_arrays(composite):
+        if field.element_struct is not None:
+            yield StructArray(field, field.element_struct, name)

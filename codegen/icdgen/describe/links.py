@@ -188,6 +188,24 @@ class LinkDescription:
         return can if can and set(CAN_PARTS) <= set(can.parts) else None
 
     @property
+    def requested_ids(self) -> frozenset[int]:
+        """Ids of telemetry in packets that an empty telecommand requests."""
+        rows = self.facts.stream.telecommands if self.facts.stream else ()
+        return frozenset(
+            row.reply for row in rows if row.least == 0 and row.reply is not None
+        )
+
+    @property
+    def buses(self) -> list[str]:
+        """Buses of the node: ``uart``, ``i2c``, ``can``."""
+        facts = {
+            "uart": self.facts.framing,
+            "i2c": self.facts.i2c_address,
+            "can": self.can,
+        }
+        return [bus for bus, fact in facts.items() if fact is not None]
+
+    @property
     def time(self) -> list[tuple[str, TimePart]]:
         """Parts of a packed time, the year first; empty unless the ICD has all of them."""
         parts = self.facts.time

@@ -4,7 +4,7 @@ wire layer, and links.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
@@ -94,6 +94,7 @@ class CBackend:
             shared = {
                 "origin": origin(node.model),
                 "title": prose(words(node.model.title)),
+                "FILE": FILE,
                 **_FUNCTIONS,
             }
             if node.enums:
@@ -107,16 +108,10 @@ class CBackend:
                 header = render("message.h.j2", m=message, **shared)
                 yield folder / f"{message.name}.h", header
             if node.name in links:
-                link = {**_link(node, links[node.name]), **shared}
-                yield folder / "link.h", render("link.h.j2", **link)
-                yield folder / "link.c", render("link.c.j2", **link)
-                template = "client.h.j2" if node.has_client else "stream_client.h.j2"
-                yield folder / "client.h", render(
-                    template, **_client(node, links[node.name]), **shared
-                )
-            of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
+                yield from _link(node, links[node.name], render, shared)
+            id_type = f"uint{description.id_bits}_t"
             yield PurePosixPath(f"{node.name}.h"), render(
-                "node.h.j2", node=node, **of_node, **shared
+                "node.h.j2", node=node, id_type=id_type, **shared
             )
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
@@ -146,86 +141,35 @@ def includes(composite: Composite[Any]) -> list[str]:
     return [support, *dict.fromkeys(headers)]
 
 
-def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
+def _link(
+    node: NodeDescription,
+    link: LinkDescription,
+    render: Renderer,
+    shared: Mapping[str, object],
+) -> Iterator[tuple[PurePosixPath, str]]:
+    """List the files of the link of a node: its facts, and its client."""
     from icdgen.backends.c import links
 
-    return {
-        "node": node.name,
-        "of_node": node,
-        "about": comment(
-            [
-                FILE,
-                f"{words(node.model.title)}: description of its protocol and sizes of buffers.",
-            ]
-        ),
-        "sizes": links.sizes(link),
-        "tables": links.tables(link),
-    }
+    folder, tables = PurePosixPath(node.name), links.tables(link)
+    values = {"node": node, "link": link, "sizes": links.sizes(link), **shared}
+    yield folder / "link.h", render("link.h.j2", **values)
+    yield folder / "link.c", render("link.c.j2", tables=tables, **values)
+    client = "client.h.j2" if node.has_client else "stream_client.h.j2"
+    yield folder / "client.h", render(client, **values)
 
 
-def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
-    headers = sorted(
-        {
-            *(f"../{name}.h" for name in node.model.includes),
-            *(f"{message.name}.h" for message in node.messages),
-        }
-    )
-    common = {
-        "node": node.name,
-        "of_node": node,
-        "about": comment(
-            [FILE, f"{words(node.model.title)}: client with one function per message."]
-        ),
-        "headers": ["link.h", *headers],
-        "telecommands": [
-            (message, message.telecommand_id_name) for message in node.telecommands
-        ],
-    }
-    form = link.facts.stream
-    if form is None:
-        facts = {
-            "uart": link.facts.framing,
-            "i2c": link.facts.i2c_address,
-            "can": link.can,
-        }
-        buses = [bus for bus, fact in facts.items() if fact is not None]
-        telemetry_ids = [
-            (message, message.telemetry_id_name) for message in node.telemetry
-        ]
-        return {**common, "buses": buses, "telemetry": telemetry_ids}
-    replies = {row.reply for row in form.telecommands if row.least == 0}
-    telemetry = [
-        (under.id in replies, candidate, under.tested[: place + 1])
-        for under in node.ids("telemetry")
-        for place, candidate in enumerate(under.messages)
-    ]
-    return {**common, "sequences": form.sequences, "telemetry": telemetry}
-
-
-def _node(node: NodeDescription) -> dict[str, object]:
-    headers = [f"{name}.h" for name in node.model.includes]
-    headers += [f"{node.name}/enums.h"] if node.enums else []
-    headers += [f"{node.name}/{composite.name}.h" for composite in node.composites]
-    headers += (
-        [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
-    )
-    return {
-        "about": comment(
-            [
-                FILE,
-                f"{words(node.model.title)}: all messages.",
-                sentence(node.model.summary),
-            ]
-        ),
-        "headers": ["icdgen.h", *headers],
-    }
+def client_headers(node: NodeDescription) -> list[str]:
+    """Return the headers that the client of a node includes."""
+    included = (f"../{name}.h" for name in node.model.includes)
+    own = (f"{message.name}.h" for message in node.messages)
+    return ["link.h", *sorted({*included, *own})]
 
 
 _FUNCTIONS = {
     function.__name__: function
     for function in (
         accessors.double_accessors, accessors.integer_accessors, accessors.of_kind, accessors.overlay_comment,
-        all_struct_arrays, bits.excess_type, byte_count, call, comment, conditional.absent_value,
+        all_struct_arrays, bits.excess_type, byte_count, call, client_headers, comment, conditional.absent_value,
         conditional.presence_test, conditional.write_optional, constants.constant_value, constants.field_table,
         contained_messages, decoding.chunk_bytes, decoding.counter_tests, decoding.decode_statements,
         decoding.element_bytes, decoding.elements, decoding.miscount, decoding.miscounted, decoding.misfit_length,

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.backends.rust.arrays import helper_of, reader, writer
-from icdgen.backends.rust.names import field_name, own_name, scale_name
+from icdgen.backends.rust.names import (
+    field_name,
+    own_name,
+    reader,
+    scale_name,
+    writer,
+)
 from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, StructDescription
+from icdgen.describe.arrays import loop_of
 from icdgen.describe.storage import holding
 from icdgen.icd.pieces import Piece
 
@@ -30,7 +36,7 @@ def reading(
     ``tables`` are the bytes with variables ``flags_N``. ``within`` is the prefix of
     functions for elements.
     """
-    helper = helper_of(field)
+    helper = _helper(field)
     if helper:
         return _called(field, helper, within, depth)
     if field.struct is not None:
@@ -61,6 +67,14 @@ def reading(
     lines.append(_finished(field, "value", size))
     body = "".join(f"\n{STEP * (depth + 1)}{line}" for line in lines)
     return f"{{{body}\n{STEP * depth}}}"
+
+
+def _helper(field: FieldDescription) -> str:
+    """Return the helper of the support module that calls a function for each element or
+    iteration of an array; empty without such a function.
+    """
+    loop = loop_of(field)
+    return "" if loop is None else "rounds" if loop.per_iteration > 1 else "each"
 
 
 def _called(field: FieldDescription, helper: str, within: str, depth: int) -> str:
@@ -235,7 +249,7 @@ def writing(
     """
     if field.model.is_count:
         return []
-    helper = helper_of(field)
+    helper = _helper(field)
     if helper:
         values, function = (
             f"&{owner}.{field_name(field)}",

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen.backends.lines import STEP
-from icdgen.backends.rust import arrays, bits
-from icdgen.backends.rust.names import own_name
+from icdgen.backends.rust import bits
+from icdgen.backends.rust.names import own_name, reader, writer
 from icdgen.backends.rust.types import one_type, struct_path
 from icdgen.describe import FieldDescription, StructDescription
-from icdgen.describe.arrays import ArrayLoop, loop_of
+from icdgen.describe.arrays import ArrayLoop, loop_of, looped_arrays
 from icdgen.describe.description import Composite, Into
 from icdgen.describe.groups import bytes_of_flags
 
@@ -24,10 +24,10 @@ def array_functions(composite: Composite[Any]) -> Iterator[dict[str, object]]:
     """List the functions of a message, for an element of each array, or for a group of
     elements.
     """
-    for field, name in arrays.named(composite):
+    for field, name in looped_arrays(composite):
         shared = {
-            "reader": arrays.reader(name),
-            "writer": arrays.writer(name),
+            "reader": reader(name),
+            "writer": writer(name),
             "of": field.model.name,
         }
         loop = loop_of(field)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from icdgen.backends.rust import arrays, bits, elements
-from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust import bits, elements
+from icdgen.backends.rust.names import field_name, reader
 from icdgen.backends.rust.text import double, integer
 from icdgen.backends.rust.types import integer_type, struct_path
 from icdgen.describe import FieldDescription, MessageDescription
@@ -181,7 +181,7 @@ def _initial(field: FieldDescription) -> str:
     if field.is_in_last_part and field.count:
         length = field.struct.model.length if field.struct is not None else 0
         absent = (
-            f"Self::{arrays.reader(field.name)}(&[0; {length}])"
+            f"Self::{reader(field.name)}(&[0; {length}])"
             if length
             else _valued(field, 0)
         )

@@ -104,3 +104,17 @@ def setter(name: str) -> str:
     snake case.
     """
     return f"set_{name}"
+
+
+def reader(name: str) -> str:
+    """Return the name of the function that reads an element or an iteration of an
+    array.
+    """
+    return f"read_{name}"
+
+
+def writer(name: str) -> str:
+    """Return the name of the function that writes an element or an iteration of an
+    array.
+    """
+    return f"write_{name}"

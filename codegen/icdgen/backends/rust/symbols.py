@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.rust import arrays, names
+from icdgen.backends.rust import names
 from icdgen.backends.rust.physical import accessors_in_rust
 from icdgen.describe import (
     Description,
@@ -15,6 +15,7 @@ from icdgen.describe import (
     MessageDescription,
     NodeDescription,
 )
+from icdgen.describe.arrays import looped_arrays
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Symbols
@@ -82,9 +83,9 @@ class RustNames(NamingPolicy):
             yield from _used(methods, _METHODS_OF_VARIABLE_LENGTH)
         if composite.spread_parts:
             yield from _used(methods, ("inner",))
-        for _, name in arrays.named(composite):
-            yield composite.identifier(methods, arrays.reader(name))
-            yield composite.identifier(methods, arrays.writer(name))
+        for _, name in looped_arrays(composite):
+            yield composite.identifier(methods, names.reader(name))
+            yield composite.identifier(methods, names.writer(name))
 
     def fields(
         self, composite: Composite[Any], fields: Iterable[FieldDescription]
