@@ -21,7 +21,11 @@ from icdgen.describe.description import (
     VariablePartDescription,
 )
 from icdgen.describe.enums import EnumDescription
-from icdgen.describe.lengths import LengthTest, length_tests
+from icdgen.describe.lengths import (
+    LengthTest,
+    length_tests,
+    length_tests_of_frame,
+)
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import holding
 from icdgen.icd.identifiers import Identifier
@@ -210,6 +214,15 @@ class MessageOfId(NamedTuple):
     id_name: str
     constant_bytes: tuple[layout.ConstantByte, ...]
 
+    @property
+    def length_tests(self) -> tuple[LengthTest, ...]:
+        """Tests that the lengths of its frames pass."""
+        return length_tests_of_frame(self.message.model.layout.lengths)
+
+    def can_lack(self, constant: layout.ConstantByte) -> bool:
+        """Return whether a frame can end in front of a byte, which then counts as 0."""
+        return constant.byte >= self.message.model.layout.shortest
+
 
 class MessagesOfId(NamedTuple):
     """Messages of one id, in the order in which a frame is compared with them."""
@@ -301,10 +314,15 @@ class NodeDescription:
         return (*self.messages, *self.enums, *self.structs)
 
     @property
+    def included(self) -> tuple[str, ...]:
+        """Names of included nodes."""
+        included = self._description.icd.included(self.model)
+        return tuple(node.name for node in included)
+
+    @property
     def usable(self) -> Iterator[Composite[Any] | EnumDescription]:
         """All messages, enumerations and structs of included nodes, then its own."""
-        included = (node.name for node in self._description.icd.included(self.model))
-        for name in dict.fromkeys((*included, self.name)):
+        for name in dict.fromkeys((*self.included, self.name)):
             yield from self._description.node(name).declared
 
     @cached_property

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.describe.lengths import LengthTest, length_tests_of_frame
+from icdgen.describe.lengths import LengthTest
 from icdgen.describe.nodes import MessageOfId
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
@@ -61,12 +61,11 @@ def like(candidate: MessageOfId, depth: int = 3) -> str:
     Bytes behind the end of a shortened frame count as 0. ``depth`` is the indentation
     of the lines after the first.
     """
-    message = candidate.message
-    tests = length_tests_of_frame(message.model.layout.lengths)
-    terms = [length_test(test, constant(message, "length")) for test in tests]
+    longest = constant(candidate.message, "length")
+    terms = [length_test(test, longest) for test in candidate.length_tests]
     for constant_byte in candidate.constant_bytes:
         byte = f"buffer[{constant_byte.byte}]"
-        if constant_byte.byte >= message.model.layout.shortest:
+        if candidate.can_lack(constant_byte):
             byte = f"((length > {constant_byte.byte}u) ? {byte} : 0u)"
         masked = (
             byte

@@ -81,9 +81,7 @@ class PythonBackend:
             folder = root / node.name
             shared = {**common, "origin": origin(node.model), "node": node}
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
-            yield folder / "__init__.py", render(
-                "node.py.j2", **digested, **nodes.of_node(node)
-            )
+            yield folder / "__init__.py", render("node.py.j2", **digested)
             if node.name in linked:
                 yield folder / "_link.py", render(
                     "link.py.j2",
@@ -91,9 +89,7 @@ class PythonBackend:
                     link=literals.expression(link_call(linked[node.name])),
                 )
             folder /= names.TYPES
-            yield folder / "__init__.py", render(
-                "types.py.j2", **nodes.bases(node, description), **shared
-            )
+            yield folder / "__init__.py", render("types.py.j2", **shared)
             for enum in node.enums:
                 yield folder / f"{names.module_name(enum)}.py", render(
                     "enum.py.j2", enum=enum, **shared
@@ -117,7 +113,8 @@ def _functions() -> dict[str, object]:
     functions = (
         fields.annotation, fields.accessors, fields.constant_value, fields.declaration, fields.getter, fields.inner,
         fields.nested, fields.open_part, fields.physical, fields.view_info, names.accessors_in_python,
-        names.constant_name, PYTHON_NAMES.symbol, nodes.imports_of, nodes.listing, nodes.literals, nodes.mapping,
-        text.docstring, text.documented, text.literal, text.prose,
+        names.constant_name, PYTHON_NAMES.symbol, nodes.by_id, nodes.declared, nodes.enum_classes, nodes.imports_of,
+        nodes.listing, nodes.literals, nodes.mapping, nodes.node_docstring, nodes.public_of_node, text.docstring,
+        text.documented, text.literal, text.prose,
     )  # fmt: skip
     return {function.__name__: function for function in functions}

@@ -12,7 +12,6 @@ from icdgen.backends.python import names
 from icdgen.backends.python.symbols import PYTHON_NAMES
 from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import (
-    Description,
     EnumDescription,
     NodeDescription,
     StructDescription,
@@ -31,31 +30,32 @@ _OF_PACKAGE = (
 )  # fmt: skip
 
 
-def of_node(node: NodeDescription) -> dict[str, object]:
-    """Return the modules and names that can be imported from a node, and its docstring."""
+def declared(node: NodeDescription) -> list[tuple[str, str]]:
+    """Return the names that can be imported from a node, and their modules, in the
+    order of the modules.
+    """
     declared = [
-        (names.home(part, node.name, ".."), PYTHON_NAMES.symbol(part, "class"))
+        (PYTHON_NAMES.symbol(part, "class"), names.home(part, node.name, ".."))
         for part in node.usable
     ]
-    declared += [("._link", "LINK")] if node.is_linked else []
-    return {
-        "doc": docstring(0, _documentation(node.model)),
-        "imports": sorted(
-            f"from {home} import {name} as {name}" for home, name in declared
-        ),
-        "public": sorted(
-            {*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}
-        ),
-        "homes": [(name, home) for home, name in sorted(declared)],
-        "telecommands": _by_id(node, "telecommand"),
-        "enums": [
-            (part.model.name, PYTHON_NAMES.symbol(part, "class")) for part in node.enums
-        ],
-        "telemetry": _by_id(node, "telemetry"),
-    }
+    declared += [("LINK", "._link")] if node.is_linked else []
+    return sorted(declared, key=lambda pair: pair[::-1])
 
 
-def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
+def public_of_node(node: NodeDescription) -> list[str]:
+    """Return the names that can be imported from a node."""
+    own = (name for name, _ in declared(node))
+    return sorted({*_OF_NODE, *_facts(node.model), *own})
+
+
+def enum_classes(node: NodeDescription) -> list[tuple[str, str]]:
+    """Return the names of enumerations in the ICD, and their classes."""
+    return [
+        (enum.model.name, PYTHON_NAMES.symbol(enum, "class")) for enum in node.enums
+    ]
+
+
+def by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
     """Return the ids of a direction, each with a literal: the class of its message, or
     a row for each message that shares it.
     """
@@ -104,15 +104,6 @@ def listing(names: Iterable[str]) -> str:
     return exploded("[", [literal(name) for name in names], "]")
 
 
-def bases(node: NodeDescription, description: Description) -> dict[str, object]:
-    """Return the included nodes of a node, as the bases of its class."""
-    included = [other.name for other in reversed(description.icd.included(node.model))]
-    return {
-        "included": included,
-        "bases": f"({', '.join(f'_{name}' for name in included)})" if included else "",
-    }
-
-
 def mapping(pairs: Sequence[tuple[str, str]]) -> str:
     """Return the literal of a dictionary of names."""
     return literals((literal(key), literal(value)) for key, value in pairs)
@@ -123,7 +114,8 @@ def literals(pairs: Iterable[tuple[str | int, str]]) -> str:
     return exploded("{", [f"{key}: {value}" for key, value in pairs], "}")
 
 
-def _documentation(node: Node) -> list[str]:
+def node_docstring(node: Node) -> str:
+    """Return the docstring of the module of a node."""
     source = dict(node.document)
     cited = [source[key] for key in ("document", "version", "date") if key in source]
     cited[-1:] = [
@@ -139,7 +131,7 @@ def _documentation(node: Node) -> list[str]:
         f"Missing: {message.kind} {message.id}, {sentence(message.name)} {sentence(message.why)}"
         for message in node.missing
     )
-    return [paragraph(text) for text in paragraphs if text]
+    return docstring(0, (paragraph(text) for text in paragraphs if text))
 
 
 def imports_of(composite: Composite[Any]) -> list[str]:

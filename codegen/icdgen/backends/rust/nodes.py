@@ -4,11 +4,13 @@ id.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust.text import WIDTH, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
-from icdgen.describe.lengths import length_tests_of_frame
+from icdgen.describe.lengths import LengthTest
 from icdgen.describe.nodes import MessageOfId
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Node
@@ -48,13 +50,10 @@ def guarded(candidate: MessageOfId, path: str) -> str:
     """Return the pattern of a match arm: the id, with tests of the length and of the
     constant bytes of the message.
     """
-    model = candidate.message.model
-    terms = _lengths(model.layout.lengths, f"{path}::LENGTH")
+    terms = _lengths(candidate.length_tests, f"{path}::LENGTH")
     for constant in candidate.constant_bytes:
         byte = f"bytes[{constant.byte}]"
-        if (
-            constant.byte >= model.layout.shortest
-        ):  # a trailing zero that the frame may lack
+        if candidate.can_lack(constant):
             byte = f"bytes.get({constant.byte}).map_or(0, |byte| *byte)"
         masked = byte if constant.mask == 0xFF else f"{byte} & {mask(constant.mask)}"
         terms.append(f"{masked} == {mask(constant.value)}")
@@ -64,12 +63,12 @@ def guarded(candidate: MessageOfId, path: str) -> str:
     return line if len(line) <= WIDTH - len(" => {") else f"{id}\n{STEP * 4}if {rows}"
 
 
-def _lengths(lengths: range, longest: str) -> list[str]:
+def _lengths(length_tests: Iterable[LengthTest], longest: str) -> list[str]:
     """Return the tests of the length of a frame.
 
     ``longest`` is the constant of the longest.
     """
-    tests = {test.kind: test for test in length_tests_of_frame(lengths)}
+    tests = {test.kind: test for test in length_tests}
     if "equal" in tests:
         return [f"bytes.len() == {longest}"]
     least, multiple = tests.get("at least"), tests.get("multiple")
