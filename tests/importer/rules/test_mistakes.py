@@ -176,6 +176,23 @@ def test_a_mistake_that_shows_in_the_result_is_a_finding(
         assert result.failed
 
 
+@pytest.mark.parametrize(
+    ("node", "message"),
+    [
+        ("{byteorder: big}", "unknown key `byteorder`"),
+        ("{byte_order: middle}", "`byte_order` cannot be the text 'middle'"),
+        ("{id_bits: 900}", "`id_bits` must be at most 32, not 900"),
+    ],
+)
+def test_a_mistake_in_the_facts_of_the_node_is_found_too(tmp_path, node, message):
+    path = tmp_path / "rules.yaml"
+    for text in (f"node: {node}\n", f"nodes: [{{name: a, {node[1:-1]}}}]\n"):
+        path.write_text(f"profile: 1\n{text}{RULES}")
+        with pytest.raises(Findings) as raised:
+            profile.load(path)
+        assert [one.message for one in raised.value.findings] == [message]
+
+
 def test_every_finding_about_a_rule_names_its_line(tmp_path):
     result, _ = read(tmp_path, TABLE, RULES.replace("Factor: scale", "Scale: scale"))
     import_finding = next(
