@@ -563,6 +563,33 @@ def test_a_rule_offers_only_what_its_kind_uses(page):
     assert page.locator("#roles option[value=last_byte]").count() == 0
 
 
+def test_a_click_that_ends_typing_is_not_lost(page, session):
+    from playwright.sync_api import expect
+
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    expect(page.get_by_label("These tables are")).to_be_focused()
+    page.get_by_label("Type of all fields").fill("uint")
+    box = page.locator("#tables button").nth(1).bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    with page.expect_response("**/api/rule"):
+        page.mouse.down()  # the control loses the focus, so that the change is sent
+    page.wait_for_timeout(300)
+    page.mouse.up()
+    page.get_by_role("heading", name="table 2").wait_for()
+    assert yaml.safe_load(session.text)["rules"][0]["each"] == {"type": "uint"}
+
+
+def test_an_enumeration_gets_its_name_from_a_control(page, session):
+    page.get_by_role("button", name="Make a rule for this kind").click()
+    page.get_by_label("These tables are").select_option("bits")
+    page.get_by_label("Enumeration", exact=True).fill("Mode")
+    with page.expect_response("**/api/rule"):
+        page.keyboard.press("Tab")
+    assert yaml.safe_load(session.text)["rules"][0]["message"] == {
+        "enumeration": "Mode"
+    }
+
+
 def test_each_rule_of_a_table_is_edited(page, session):
     from playwright.sync_api import expect
 
@@ -626,7 +653,12 @@ def test_the_result_has_enumerations_counts_and_strides(tmp_path):
             ["Mode", "enum Mode", ""], ["Level", "uint", "6 times, every 2 bytes"],
             ["Current", "uint", "Channel: 20 times, every 4 bytes"], ["State", "uint", "Channel: 20 times, every 4 bytes"],
         ]  # fmt: skip
-        made.get_by_text("Bytes 0 to 31 of 93 are drawn.").wait_for()
+        assert made.locator(".bits").count() == 1
+        made.get_by_text("Bytes 32 to 92").click()
+        made.get_by_label("layout of the bits of bytes 32 to 92").wait_for()
+        assert made.locator(".bits .byte").all_inner_texts() == [
+            str(byte) for byte in range(93)
+        ]
         running.shutdown()
 
 

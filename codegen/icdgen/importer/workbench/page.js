@@ -5,8 +5,9 @@ const byId = (id) => document.getElementById(id);
 const WHAT = ["message", "registers", "list", "index", "enumeration", "lookup", "bits", "loggable", "ignore"];
 const NOT_USED = "not used";
 const SEPARATOR = "||"; // between patterns: in a regular expression it would mean nothing
-const MOST_BYTES = 32; // that are drawn of a message
+const MOST_BYTES = 32; // drawn of a message; the others can be unfolded
 const SOURCES = ["caption", "heading", "before", "row"];
+const OF_MESSAGE = ["name", "id", "kind", "length", "of", "enumeration", ...SOURCES]; // controls for keys of `message`
 let state = null; // what /api/state says
 let table = null; // the table that is shown
 let number = 1;
@@ -29,6 +30,16 @@ async function ask(path) {
   return answer.json();
 }
 
+let pressed = Promise.resolve(); // until the pointer is released
+
+// A button that is drawn anew between press and release would not be clicked.
+document.addEventListener("pointerdown", () => {
+  pressed = new Promise((resolve) => {
+    const released = () => setTimeout(resolve); // after the click
+    for (const name of ["pointerup", "pointercancel"]) document.addEventListener(name, released, { once: true, capture: true });
+  });
+}, { capture: true });
+
 let last = Promise.resolve(); // changes are sent one after the other, in the order in which they were made
 
 function send(path, data) {
@@ -40,6 +51,7 @@ async function sendNow(path, data) {
   const answer = await fetch(path, { method: "POST", headers: { "X-Icdgen": "1" }, body: JSON.stringify(typeof data === "function" ? data() : data) });
   if (!answer.ok) throw new Error(await answer.text());
   const got = await answer.json();
+  await pressed;
   drawRefused(got.refused || []);
   if (got.refused) return null;
   state = got.state;
@@ -225,7 +237,7 @@ function drawRule() {
   fill(input("map"), Object.entries(keys.map || {}).map(([role, words]) => `${role}: ${Object.entries(words).map((pair) => pair.join(" = ")).join(", ")}`).join("; "));
   fill(input("melt"), keys.melt || "");
   fill(input("cells"), shown((keys.columns || {})["*"]));
-  for (const key of ["name", "id", "kind", "length", "of", ...SOURCES]) fill(input(key), shown((keys.message || {})[key]));
+  for (const key of OF_MESSAGE) fill(input(key), shown((keys.message || {})[key]));
   fill(byId("yaml"), state.rules[ruleIndex()].text);
   offer(input, keys.what || "message");
 }
@@ -235,7 +247,7 @@ function offer(input, what) {
   const roles = state.roles_of[what]; // none: the rule ignores its tables
   const reads = ["type", "width", "transpose", "join", "skip", "map", "melt", "cells", "origin", ...SOURCES];
   const isOffered = (name) => (reads.includes(name) ? Boolean(roles) : Boolean(roles) && roles.includes(name === "name" ? "message" : name));
-  for (const name of ["name", "id", "kind", "length", "of", ...reads]) {
+  for (const name of [...OF_MESSAGE, ...reads.filter((name) => !SOURCES.includes(name))]) {
     const control = input(name);
     control.closest("label").hidden = !(isOffered(name) || (control.type === "checkbox" ? control.checked : control.value));
   }
@@ -356,29 +368,36 @@ function repetition(repeated) {
   return `${repeated.group ? `${repeated.group}: ` : ""}${times}${repeated.stride ? `, every ${distance}` : ""}`;
 }
 
+let isUnfolded = false; // whether all bytes of messages are drawn
+
 function drawBits(fields) {
   const times = (one) => (one.repeated?.group && Number(one.repeated.count)) || 1; // the size of an array has all its elements
   const total = Math.ceil(Math.max(...fields.map((one) => one.at + (one.size || 8) + (times(one) > 1 ? (times(one) - 1) * one.repeated.stride : 0))) / 8);
-  const end = Math.min(total, MOST_BYTES);
-  const made = [];
-  for (let byte = 0; byte < end; byte += 1) {
-    made.push(element("span", { className: "byte" }, String(byte)));
-    const isLsb = (state.node.bit_order || "lsb0") === "lsb0";
-    for (let place = 0; place < 8;) {
-      const bit = (at) => byte * 8 + (isLsb ? 7 - at : at);
-      const covers = (one, at) => one.at <= at && (times(one) > 1 ? (at - one.at) % one.repeated.stride < one.size && (at - one.at) / one.repeated.stride < times(one) : at < one.at + one.size);
-      const owner = (at) => fields.findIndex((one) => covers(one, bit(at)));
-      const first = owner(place);
-      let width = 1;
-      while (place + width < 8 && owner(place + width) === first) width += 1;
-      const cell = element("span", { className: first < 0 ? "free" : "", title: first < 0 ? "no field" : fields[first].name }, first < 0 ? "" : fields[first].name);
-      cell.style.gridColumn = `span ${width}`;
-      made.push(cell);
-      place += width;
+  const covers = (one, at) => one.at <= at && (times(one) > 1 ? (at - one.at) % one.repeated.stride < one.size && (at - one.at) / one.repeated.stride < times(one) : at < one.at + one.size);
+  const isLsb = (state.node.bit_order || "lsb0") === "lsb0";
+  const drawn = (begin, end) => {
+    const made = [];
+    for (let byte = begin; byte < end; byte += 1) {
+      made.push(element("span", { className: "byte" }, String(byte)));
+      const owner = (place) => fields.findIndex((one) => covers(one, byte * 8 + (isLsb ? 7 - place : place)));
+      for (let place = 0; place < 8;) {
+        const first = owner(place);
+        let width = 1;
+        while (place + width < 8 && owner(place + width) === first) width += 1;
+        const cell = element("span", { className: first < 0 ? "free" : "", title: first < 0 ? "no field" : fields[first].name }, first < 0 ? "" : fields[first].name);
+        cell.style.gridColumn = `span ${width}`;
+        made.push(cell);
+        place += width;
+      }
     }
-  }
-  const bits = element("div", { className: "bits", role: "img", "aria-label": "layout of the bits" }, ...made);
-  return end < total ? [bits, element("p", {}, `Bytes 0 to ${end - 1} of ${total} are drawn.`)] : [bits];
+    return element("div", { className: "bits", role: "img", "aria-label": `layout of the bits of bytes ${begin} to ${end - 1}` }, ...made);
+  };
+  if (total <= MOST_BYTES) return [drawn(0, total)];
+  const rest = element("details", { open: isUnfolded }, element("summary", {}, `Bytes ${MOST_BYTES} to ${total - 1}`));
+  const unfold = () => { if (rest.childElementCount === 1) rest.append(drawn(MOST_BYTES, total)); };
+  if (isUnfolded) unfold();
+  rest.ontoggle = () => { isUnfolded = rest.open; if (isUnfolded) unfold(); };
+  return [drawn(0, MOST_BYTES), rest];
 }
 
 // --- actions
