@@ -6,12 +6,13 @@ A field consists of pieces, each a run of bits of one byte: see `icdgen.icd.piec
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
-from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.frames import FrameField
 from icdgen.icd.model import Message, Node, Struct
 from icdgen.icd.pieces import Piece, pieces_at
-from icdgen.icd.places import NodePlace
+from icdgen.icd.places import NodePlace, places_in
 from icdgen.icd.variants import Variant
 
 
@@ -81,23 +82,53 @@ class Gap(NamedTuple):
 
 
 def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
-    """Return the runs of bits of the longest frame that no field covers, in order."""
+    """Return the runs of reserved bits, in order; of an array of structs, those of its
+    first element.
+    """
+    fields: list[NodePlace] = []
+    omitted: list[range] = []
+    places = list(places_in(message.layout))
+    # The loop appends the fields of structs to the list that it visits.
+    for place in places:
+        if place.struct is None:
+            fields.append(place)
+        else:
+            first = place.first_element
+            omitted.append(range(first.at + first.bits, place.at + place.width))
+            places += first.inner()
+    return gaps_between(fields, omitted, message.length, node)
+
+
+def gaps_between(
+    fields: Iterable[FrameField | NodePlace],
+    omitted: Iterable[range],
+    length: int,
+    node: Node,
+) -> tuple[Gap, ...]:
+    """Return the runs of bits of a frame of `length` bytes that are neither in a field
+    nor in an omitted range, in order.
+    """
     # One byte per bit of the frame, in the bit order of the node; 1 if no field has the
     # bit.
-    free = bytearray(b"\1" * (message.length * 8))
-    for field in frame_fields(message.layout, node.orders):
-        if not field.has_bits:
+    free = bytearray(b"\1" * (8 * length))
+    for bits in omitted:
+        free[bits.start : bits.stop] = bytes(len(bits))
+    for field in fields:
+        if field.role != "field":
             continue
-        if field.bit_order == node.bit_order:
-            free[field.at : field.at + field.bits] = bytes(field.bits)
+        end = field.at + field.width
+        # Whole bytes are the same bits in either bit order.
+        if field.bit_order in ("", node.bit_order) or field.at % 8 == end % 8 == 0:
+            free[field.at : end] = bytes(field.width)
             continue
-        for piece in pieces(field, node):
-            first = 8 * piece.byte + (
-                piece.shift
-                if node.bit_order == "lsb0"
-                else 8 - piece.shift - piece.bits
-            )
-            free[first : first + piece.bits] = bytes(piece.bits)
+        for at in range(field.at, end, field.bits):
+            for piece in pieces_at(at, field.bits, "little", field.bit_order):
+                first = 8 * piece.byte + (
+                    piece.shift
+                    if node.bit_order == "lsb0"
+                    else 8 - piece.shift - piece.bits
+                )
+                free[first : first + piece.bits] = bytes(piece.bits)
     return tuple(
         Gap(run.start(), len(run.group())) for run in re.finditer(b"\1+", free)
     )

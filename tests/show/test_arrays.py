@@ -65,3 +65,33 @@ def test_what_is_shown_for_programs_is_read_back_with_every_element(tmp_path):
     assert list(map(key, again.nodes[0].messages[0].fields)) == list(
         map(key, icd.nodes[0].messages[0].fields)
     )
+
+
+def test_reserved_bits_of_a_repeated_struct_are_shown_once(tmp_path):
+    text = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+structs:
+  - name: Cell
+    length: 2
+    fields:
+      - {at: 4, bits: 4, name: State, type: uint}
+      - {at: 8, bits: 6, name: Level, type: uint, bit_order: msb0}
+messages:
+  - name: Cells
+    id: 1
+    kind: telemetry
+    length: 10
+    fields:
+      - {at: 8, name: Cells, struct: Cell, count: 4}
+"""
+    (tmp_path / "demo.yaml").write_text(text, encoding="utf-8")
+    node = load([tmp_path]).icd.node("demo")
+    rows = [
+        line.split() for line in field_table(node.messages[0], node).splitlines()[2:]
+    ]
+    assert [row[:2] for row in rows if "reserved" in row] == [
+        ["0", "12"],
+        ["16", "2"],
+        ["72", "8"],
+    ]

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from icdgen.icd.erratum import Erratum
+from icdgen.icd.layout import UNDECLARED, LayoutNode
+from icdgen.icd.layout_nodes import walk
 from icdgen.icd.model import Enum, Member, Message, Struct
-from icdgen.icd.places import NodePlace, places_in, scalars_in
+from icdgen.icd.places import NodePlace
 
 Thing = Message | Struct | NodePlace | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
     """Return the errata of a message, of its structs and of its fields, each once."""
-    return _each_once(
-        (message, *places_in(message.layout), *scalars_in(message.layout))
-    )
+    inner = (visit.node for visit in walk(message.layout, UNDECLARED))
+    return _each_once((message, *message.layout.nodes, *inner))
 
 
 def errata_of_enum(enum: Enum) -> list[Erratum]:
@@ -23,7 +24,7 @@ def errata_of_enum(enum: Enum) -> list[Erratum]:
     return _each_once((enum, *enum.members))
 
 
-def _each_once(things: Iterable[Thing]) -> list[Erratum]:
+def _each_once(things: Iterable[Thing | LayoutNode]) -> list[Erratum]:
     return list(dict.fromkeys(erratum for thing in things for erratum in thing.errata))
 
 

@@ -10,7 +10,9 @@ from typing import NamedTuple
 from icdgen import codec
 from icdgen.describe.description import FieldDescription
 from icdgen.describe.nodes import MessageDescription
-from icdgen.icd.places import raw_fields_in
+from icdgen.icd.layout import UNDECLARED, scalar_of
+from icdgen.icd.layout_nodes import walk
+from icdgen.icd.places import NodePlace, places_in
 
 _NUMBERS = (1234, 123, 12, 1, 0)
 """Raw values of an example. The first that is in the range of the field is used."""
@@ -81,17 +83,19 @@ def example(message: MessageDescription) -> Example:
     """Return the example of a message."""
     field = worth_showing(message)
     shown = _shown(field) if field else None
-    owners = raw_fields_in(message.model.layout)
-    raw: dict[str, int | bytes] = {
-        place.name: place.initial_value
-        for place in owners
-        if place.const is not None or place.smallest_raw
-    }
+    initial = [
+        scalar
+        for place in places_in(message.model.layout)
+        if _has_initial_value(place)
+        for scalar in place.scalars()
+        if not scalar.is_read_only and (scalar.const is not None or scalar.smallest_raw)
+    ]
+    raw: dict[str, int | bytes] = {place.name: place.initial_value for place in initial}
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
     in_arrays = {
         place.name
-        for place in owners
+        for place in initial
         if place.const is not None
         and any(step.element is not None for step in place.steps)
     }
@@ -104,6 +108,14 @@ def example(message: MessageDescription) -> Example:
         codec.frame_with(message.node, message.model, values) for values in (raw, few)
     )
     return Example(shown, frame, brief)
+
+
+def _has_initial_value(place: NodePlace) -> bool:
+    """Return whether a field, or a field of a struct, has an initial value other than 0."""
+    if place.struct is None:
+        return place.const is not None or place.smallest_raw > 0
+    scalars = (scalar_of(visit.node) for visit in walk(place.struct, UNDECLARED))
+    return any(scalar is not None and scalar.const is not None for scalar in scalars)
 
 
 def _shown(field: FieldDescription) -> Shown | None:

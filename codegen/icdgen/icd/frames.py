@@ -142,6 +142,11 @@ class FrameField(OfScalar):
         return alias_of_steps(self.steps)
 
     @property
+    def width(self) -> int:
+        """Width in bits, as `NodePlace.width`."""
+        return self.bits
+
+    @property
     def conditions(self) -> tuple[Condition, ...]:
         """Conditions of an optional field: a frame has the field if all of them are
         met.

@@ -23,7 +23,7 @@ from icdgen.icd.layout import Layout, Orders
 from icdgen.icd.located import Map, unread
 from icdgen.icd.meanings import Limits as Limits
 from icdgen.icd.meanings import Special as Special
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.places import NodePlace, places_in, scalars_in
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -113,7 +113,9 @@ class Message:
     @property
     def field_count(self) -> int:
         """Number of scalars of the longest frame, without counts that have no bits."""
-        return sum(not scalar.is_count for scalar in scalars_in(self.layout))
+        return sum(
+            place.scalar_count for place in places_in(self.layout) if not place.is_count
+        )
 
     @property
     def has_conditions(self) -> bool:

@@ -156,24 +156,27 @@ class NodePlace(OfScalar):
         """Return the orders in effect. `outer` are the defaults of the ICD node."""
         return self.declared_orders.within(outer)
 
+    def element(self, index: int) -> NodePlace:
+        """Return an element of an array, a struct as one place."""
+        return NodePlace(
+            (*self.steps[:-1], PathStep(self.node, index)),
+            self.scalar,
+            self.struct,
+            self.at + index * self.bits,
+            self.bits,
+            self.declared_orders,
+        )
+
+    @property
+    def first_element(self) -> NodePlace:
+        """First element of an array; for any other node the place itself."""
+        return self.element(0) if self.count else self
+
     def elements(self) -> tuple[NodePlace, ...]:
         """Return the elements of an array, a struct as one place; for any other node
         the place itself.
         """
-        if not self.count:
-            return (self,)
-        before, stride = self.steps[:-1], self.bits
-        return tuple(
-            NodePlace(
-                (*before, PathStep(self.node, index)),
-                self.scalar,
-                self.struct,
-                self.at + index * stride,
-                stride,
-                self.declared_orders,
-            )
-            for index in range(self.count)
-        )
+        return tuple(map(self.element, range(self.count))) if self.count else (self,)
 
     def inner(self) -> tuple[NodePlace, ...]:
         """Return the places of the fields of a struct.
@@ -187,6 +190,12 @@ class NodePlace(OfScalar):
             _place(node, self.declared_orders, self.at, self.steps)
             for node in self.struct.fixed
         )
+
+    @property
+    def scalar_count(self) -> int:
+        """Number of places that `scalars` yields."""
+        scalars = 1 if self.struct is None else scalar_count(self.struct)
+        return scalars * (self.count or 1)
 
     def scalars(self) -> Iterator[NodePlace]:
         """Yield all scalars of the node: each array element and each field of a struct
@@ -220,6 +229,12 @@ def scalars_in(layout: Layout) -> tuple[NodePlace, ...]:
     struct separately.
     """
     return tuple(scalar for place in places_in(layout) for scalar in place.scalars())
+
+
+@cached_by_owner
+def scalar_count(layout: Layout) -> int:
+    """Return the number of scalars of the longest frame: of `scalars_in`."""
+    return sum(place.scalar_count for place in places_in(layout))
 
 
 def raw_fields_in(layout: Layout) -> tuple[NodePlace, ...]:

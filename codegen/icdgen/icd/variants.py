@@ -112,14 +112,12 @@ def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
     Trailing zeros that a frame omits count as part of it. `node` is the ICD node that
     declares the message.
     """
-    end = 8 * message.layout.length
-    fields = (
-        field
-        for field in frame_fields(message.layout, node.orders)
-        if field.has_bits and field.at < end
-    )
+    layout = message.layout
+    no_elements = dict.fromkeys(layout.parts_by_size, 0)
     return tuple(
-        field for field in fields if field.const is not None and not field.conditions
+        field
+        for field in frame_fields(layout, node.orders, no_elements)
+        if field.has_bits and field.const is not None and not field.conditions
     )
 
 

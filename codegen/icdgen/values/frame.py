@@ -15,7 +15,7 @@ from icdgen.describe.bounds import bounds
 from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd import floats
-from icdgen.icd.frames import FrameField
+from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import AnyScalar
@@ -264,7 +264,8 @@ def outside(field: AnyScalar, raw: int) -> list[str]:
 def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     """Return a remark for each run of reserved bits that is not 0."""
     reasons = []
-    for gap in layout.gaps(message, node):
+    fields = frame_fields(message.layout, node.orders)
+    for gap in layout.gaps_between(fields, (), message.length, node):
         pieces = pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
         if any(
             data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)

@@ -11,7 +11,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.layout import LayoutNode
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Member, Message, Node, Struct
-from icdgen.icd.places import places_in, scalars_in
+from icdgen.icd.places import NodePlace, places_in, scalars_in
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of
@@ -95,11 +95,13 @@ def field_names_are_unique(ctx: Context) -> Iterator[Fault]:
         is_path = any("[" in name or "." in name for name in names)
         if len(names) == len(nodes) and not owner.layout.sequence and not is_path:
             continue
-        places = places_in(owner.layout)
-        fields = [element for place in places for element in place.elements()]
+        fields: list[NodePlace] = []
+        for place in places_in(owner.layout):
+            # Arrays with different names have no element of the same name.
+            fields += place.elements() if is_path else [place.first_element]
         # If two structs or arrays have the same name, so have all their fields: report
         # only the structs or arrays.
-        if len({field.name for field in fields}) == len(fields):
+        if is_path and len({field.name for field in fields}) == len(fields):
             fields = list(scalars_in(owner.layout))
         reported = set()
         for first, second in _twice(fields, lambda field: field.name):

@@ -8,9 +8,9 @@ from icdgen.icd import curve, exact, formula
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Scalar, struct_layout_of
 from icdgen.icd.layout_nodes import walk
+from icdgen.icd.lines import lines
 from icdgen.icd.located import Map
 from icdgen.icd.model import Message, Node
-from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context, is_overlay
 from icdgen.icd.rules.rule import rule
 from icdgen.wording import count, quote
@@ -151,7 +151,7 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
             field
             for message in node.messages
             if message.kind == kind
-            for field in scalars_in(message.layout)
+            for field in lines(message.layout)
             if "formula" in field.scalar.source
             and "formula_for" not in field.scalar.source
             and _gives(field.scalar) != stated_for

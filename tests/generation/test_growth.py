@@ -1,0 +1,90 @@
+"""The work of a command depends on what is declared, not on how many elements an array
+can have.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from icdgen import backends
+from icdgen.loading import load
+from icdgen.render import Renderer
+from icdgen.show.machine import to_json
+from icdgen.show.people import to_text
+
+ICD = """\
+icdgen: 1
+node: {{name: demo, title: Demo, byte_order: little, bit_order: lsb0}}
+structs:
+  - name: Signal
+    length: 2
+    fields:
+      - {{at: 0, bits: 12, name: Level, type: int, unit: C, formula: raw*0.5}}
+  - name: Satellite
+    length: 12
+    fields:
+      - {{at: 0, bits: 3, name: System, type: uint}}
+      - {{at: 8, name: Signals, struct: Signal, count: 5}}
+messages:
+  - name: Satellites
+    id: 1
+    kind: {kind}
+    length: 3
+    fields:
+      - {{at: 0, bits: 16, name: Number, type: uint}}
+      - {{at: 24, name: Satellites, struct: Satellite, count: Number, up_to: {most}}}
+"""
+
+
+def calls(work: Callable[[], object]) -> int:
+    """How many functions are called, which is the same in every run."""
+    number = 0
+
+    def count(_frame, event: str, _argument) -> None:
+        nonlocal number
+        number += event in ("call", "c_call")
+
+    sys.setprofile(count)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return number
+
+
+def show(path: Path) -> None:
+    icd = load([path], languages=[]).icd
+    to_json(icd)
+    to_text(icd)
+    to_text(icd, ["demo", "Satellites"])
+
+
+def generate(lang: str, path: Path) -> None:
+    backend = backends.get(lang)
+    list(backend.files(load([path], languages=[lang]).icd, Renderer(lang)))
+
+
+COMMANDS = {
+    "show": show,
+    "check": lambda path: load([path]),
+    **{
+        lang: lambda path, lang=lang: generate(lang, path)
+        for lang in ("c", "python", "rust")
+    },
+}
+
+
+@pytest.mark.parametrize("kind", ["telemetry", "telecommand"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_an_array_of_more_elements_takes_no_more_work(command, kind, tmp_path):
+    numbers = []
+    for most in (16, 64, 1024):
+        path = tmp_path / f"up_to_{most}.yaml"
+        path.write_text(ICD.format(most=most, kind=kind), encoding="utf-8")
+        COMMANDS[command](path)  # fill the caches that all runs share
+        numbers.append(calls(lambda path=path: COMMANDS[command](path)))
+    assert numbers[-1] < 1.02 * numbers[-2], numbers
