@@ -15,6 +15,44 @@ const icdgenCodec = (() => {
     }
   }
 
+  /**
+   * The plan with all elements of arrays as fields. Of an array that the page shows once, each field has the number of the field
+   * of the first element that stands for it as `leader`, and as `section` the element of the outermost such array.
+   */
+  function expanded(plan) {
+    const fields = [];
+    const add = (items, owner) => {
+      for (const item of items) {
+        if (item.array === undefined) fields.push(placed(item, owner));
+        else addArray(item, owner);
+      }
+    };
+    const addArray = ({ array, count, step, fields: items, initial = 0, isShownOnce }, owner) => {
+      const first = fields.length;
+      for (let index = 0; index < count; index += 1) {
+        const [begin, prefix] = [fields.length, `${owner.prefix}${array}[${index}]`];
+        const isStruct = (items[0].name ?? items[0].array) !== undefined;
+        const section = owner.section ?? (isShownOnce ? (isStruct ? prefix : owner.prefix + array) : undefined);
+        const stored = owner.stored || index < initial;
+        add(items, { prefix: isStruct ? `${prefix}.` : prefix, bytes: owner.bytes + index * step, section, stored });
+        if (!isShownOnce) continue;
+        for (let at = begin; at < fields.length; at += 1) fields[at].leader = fields[first + at - begin].leader ?? first + at - begin + 1;
+      }
+    };
+    add(plan.fields, { prefix: "", bytes: 0 });
+    return { ...plan, fields };
+  }
+
+  /** A field of an element that begins so many bytes behind the first one. */
+  function placed(item, { prefix, bytes, section, stored }) {
+    const field = { ...item, name: prefix + (item.name ?? "") };
+    if (item.first !== undefined) field.first = item.first + bytes;
+    if (item.pieces) field.pieces = item.pieces.map(([byte, ...bits]) => [byte + bytes, ...bits]);
+    if (section !== undefined) field.section = section;
+    if (stored) field.inner = true;
+    return field;
+  }
+
   /** Raw value of each field, in their order, null of what is not there; elements that are not in the frame are 0. Throws a CodecError unless the frame has a length of the message. */
   function decode(message, frame) {
     const { tail } = message;
@@ -402,7 +440,7 @@ const icdgenCodec = (() => {
   }
 
   return {
-    CodecError, plusOf, decode, encode, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
+    CodecError, expanded, plusOf, decode, encode, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
     rawFromText, floatValue, floatBits, memberName,
   };
 })();

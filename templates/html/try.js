@@ -1,9 +1,10 @@
 "use strict";
 /* Try it: bytes in, values out, and the other way round. Works on the plan that stands in the page. */
 (() => {
-  const plan = JSON.parse(document.getElementById("plan").textContent);
-  const { fields, drawings, wire, sections } = plan;
   const codec = icdgenCodec;
+  const plan = codec.expanded(JSON.parse(document.getElementById("plan").textContent));
+  const { fields, drawings, wire } = plan;
+  const sections = plan.sections ?? sectionsOfElements();
   const frames = icdgenFrames;
   const values = icdgenValues;
   const FEW_FLAGS = 6; // of so many flags on end a grid is made
@@ -33,6 +34,24 @@
   );
   const folds = sections.map(makeSection);
   panel.append(...folds);
+
+  /** A section for each element of the arrays that the page shows once, and for the fields between them. */
+  function sectionsOfElements() {
+    const groups = [];
+    fields.forEach(({ section = "" }, index) => {
+      if (groups.at(-1)?.section !== section) groups.push({ section, keys: [] });
+      groups.at(-1).keys.push(index + 1);
+    });
+    return groups.map(({ section, keys }) => {
+      const own = keys.map((key) => fields[key - 1]);
+      const bytes = own.flatMap(({ first, bits, pieces = [] }) => (first === undefined ? pieces.map(([byte]) => byte) : [first, first + bits / 8 - 1]));
+      const [from, to] = [Math.min(...bytes), Math.max(...bytes)];
+      const place = !bytes.length ? [] : from === to ? [`byte ${from}`] : [`bytes ${from} to ${to}`];
+      const other = bytes.length ? "Fields" : own[0].implied ? "Count" : "Derived values";
+      const about = [...place, `${keys.length.toLocaleString("en")} field${keys.length === 1 ? "" : "s"}`];
+      return { title: [section || other, ...about].join(", "), keys, open: !section };
+    });
+  }
 
   /** Folded, if there are several sections; what a fold holds is made when it is opened first. */
   function makeSection({ title, keys, open }) {
@@ -64,7 +83,7 @@
 
   /** The number by which drawing and table know a field: that of the first element for all elements. */
   function tieOf(key) {
-    return plan.leaders?.[key - 1] ?? key;
+    return fields[key - 1].leader ?? key;
   }
 
   function rowOf(key) {
@@ -207,7 +226,7 @@
 
   /** Of arrays the elements that are in the frame have a fold, and one more, with which the frame can be made longer. */
   function fold(frame) {
-    if (!plan.leaders) return;
+    if (plan.sections) return;
     let before = true;
     sections.forEach(({ keys }, number) => {
       const there = keys.some((key) => shownOf(fields[key - 1], raw[key - 1], frame) !== null);

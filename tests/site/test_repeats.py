@@ -11,11 +11,13 @@ from pathlib import Path
 import pytest
 
 from icdgen.backends.html import fields, sections
+from icdgen.backends.html.plan import message_plan
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import schema
 from icdgen.loading import load
 from icdgen.site import make, write
 from tests.conftest import ROOT
+from tests.describe.test_display import in_page
 from tests.site.test_browser import opened
 
 DEVICES = ROOT / "examples" / "devices"
@@ -69,28 +71,36 @@ def test_each_field_stands_in_the_tables_once_and_can_be_decoded(icds):
         relations = Relations(icd)
         for node in icd.nodes:
             for message in node.messages:
-                repeats = relations.links.repeats(message)
-                rows = fields.rows(message, node, relations.links)
-                parts = sections.bands(relations, message) or sections.shares(message)
-                cells = [cell for part in parts for cell in fields.between(rows, part)]
+                shown = relations.links.repeats(message).fields
+                rows = fields.rows(message, relations.links)
+                parts = sections.bands(relations, message) or sections.shares(
+                    message, relations.links.repeats(message)
+                )
                 keys = [
                     one.key
+                    for cells in fields.split(rows, parts)
                     for cell in cells
                     for one in getattr(cell, "flags", [cell])
                     if one.key
                 ]
-                every = range(1, len(message.fields) + 1)
                 assert sorted(keys) == [
-                    k
-                    for k in every
-                    if repeats.is_shown(k) and not message.fields[k - 1].is_count
+                    field.key for field in shown if not field.place.is_count
                 ], message.name
-                if repeats.arrays:
-                    assert [
-                        key
-                        for one in sections.panels(message, repeats)
-                        for key in one.keys
-                    ] == list(every)
+                for field in shown:
+                    assert message.fields[field.key - 1].name == field.place.name
+
+
+def test_the_page_lists_the_fields_of_all_elements_itself(icds):
+    plans, names = [], []
+    for icd in icds:
+        for node in icd.nodes:
+            for message in node.messages:
+                plans.append(message_plan(message, node))
+                names.append([field.name for field in message.fields])
+    listed = "((plans) => plans.map((plan) => codec.expanded(plan).fields.map((field) => field.name)))"
+    assert in_page(listed, plans) == names
+    nav_sat = next(plan for plan in plans if plan["name"] == "NAV-SAT")
+    assert len(nav_sat["fields"]) == 4
 
 
 def test_what_repeats_has_one_section_with_how_often_it_is_there(icds):

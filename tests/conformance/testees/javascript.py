@@ -64,33 +64,13 @@ def _plans(icd: Icd) -> dict[str, object]:
     declaring = {node.name: node for node in icd.nodes}
     plans = []
     for message in _messages(icd):
-        plan: dict = message_plan(message, declaring[message.node])
-        for field, row in zip(message.fields, plan["fields"], strict=True):
-            row |= {"enum": enum_plan(field.enum)} if field.enum else {}
-        order = sorted(
-            range(len(plan["fields"])),
-            key=lambda place: "view" in plan["fields"][place],
-        )  # views come last
-        for row in plan["fields"]:
-            row |= (
-                {
-                    "when": [
-                        [order.index(place), values] for place, values in row["when"]
-                    ]
-                }
-                if "when" in row
-                else {}
-            )
-            if "derived" in row:
-                row["derived"][0] = [order.index(place) for place in row["derived"][0]]
-        inner = plan.get("inner", ())
-        for one in (
-            *inner,
-            *(nested for part in inner for nested in part.get("nested", ())),
-        ):
-            one["counter"] = order.index(one["counter"])
-        plan["fields"] = [plan["fields"][place] for place in order]
-        plans.append(plan | {"ids": list(message.ids)})
+        plan = message_plan(message, declaring[message.node])
+        enums = {
+            field.enum.name: enum_plan(field.enum)
+            for field in message.fields
+            if field.enum
+        }
+        plans.append(plan | {"enums": enums, "ids": list(message.ids)})
     return {"messages": plans, "nodes": nodes}
 
 

@@ -7,17 +7,18 @@ bytes read like their hexadecimal digits.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby, zip_longest
+from itertools import groupby, islice, zip_longest
 
 from icdgen import layout
-from icdgen.backends.html.labels import Label, fit
+from icdgen.backends.html.labels import Box, Label, fit
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message, Node
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.places import NodePlace
 
 WIDTH, LEFT, TOP = 1000, 64, 24
 # Maximum rows of one field; of longer fields, the first and the last row are drawn
@@ -36,7 +37,7 @@ class Shape:
     title: str
     anchor: str = ""
     # x, y, width, height
-    rects: list[tuple[int, int, int, int]] = field(default_factory=list)
+    rects: list[Box] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
 
 
@@ -96,74 +97,71 @@ class _Canvas:
     def __init__(
         self, message: Message, node: Node, links: Links, first: int, end: int
     ) -> None:
-        self.message, self.node, self.first, self.length = (
-            message,
-            node,
-            first,
-            end - first,
-        )
-        self.repeats = links.repeats(message)
-        inside = [
-            place
-            for place in scalars_in(message.layout)
-            if place.at < 8 * end and place.at + place.bits > 8 * first
+        self.node, self.first, self.length = node, first, end - first
+        repeats = links.repeats(message)
+        self.gaps = [gap for gap in repeats.gaps if first <= gap.at // 8 < end]
+        self.fields = [
+            field
+            for field in repeats.fields
+            if field.place.at < 8 * end
+            and field.place.at + field.place.bits > 8 * first
         ]
-        self.across = bytes_a_row(self.length, inside)
+        self.across = bytes_a_row(self.length, [field.place for field in self.fields])
         self.cell = (WIDTH - LEFT) / (8 * self.across)
+        self.labels = self._labels()
         self.shapes = [
             Shape(
-                key,
-                place.type,
-                f"{clip(self._label(key), 200)}: {bit_range(place.at, place.bits)}",
-                anchor,
+                field.key,
+                field.place.type,
+                f"{clip(self.labels[field.key], 200)}: {bit_range(field.place.at, field.place.bits)}",
+                links.anchor(message, field.place.name),
             )
-            for key, (place, anchor) in enumerate(
-                zip(scalars_in(message.layout), links.anchors(message), strict=True), 1
-            )
+            for field in self.fields
         ]
-        self.owner = self._owners()[8 * first : 8 * end]
+        self.owner = self._owners()
         self.grid, self.rows = self._grid()
         # Higher rows leave room for names in two lines.
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
         self.row = (46 if narrow else 34) if self.across < 4 else 30
 
-    def _label(self, key: int) -> str:
-        """Return the name of a field; for an optional field, also the names of its
-        alternatives.
+    def _labels(self) -> dict[int, str]:
+        """Return the name of each field by its key; for an optional field, also the
+        names of its alternatives.
         """
-        field, name = scalars_in(self.message.layout)[key - 1], self.repeats.short(key)
-        if not field.conditions:
-            return name
-        own_mask = layout.mask(field, self.node)
-        alternatives = [
-            place.name
-            for place in scalars_in(self.message.layout)
-            if place.conditions and layout.mask(place, self.node) & own_mask
-        ]
-        return " / ".join(
-            [name, *(other for other in alternatives if other != field.name)][:4]
-        )
+        labels = {field.key: field.short for field in self.fields}
+        optional = [field for field in self.fields if field.place.conditions]
+        masks = [layout.mask(field.place, self.node) for field in optional]
+        for shown, own_mask in zip(optional, masks, strict=True):
+            alternatives = (
+                other.place.name
+                for other, mask in zip(optional, masks, strict=True)
+                if mask & own_mask and other is not shown
+            )
+            labels[shown.key] = " / ".join([shown.short, *islice(alternatives, 3)])
+        return labels
 
     def _owners(self) -> list[int]:
         """Return the key of the field of each bit, in the order of drawing; 0 for
         reserved bits.
         """
-        owner = [0] * (8 * self.message.length)
-        for shape, place in zip(
-            self.shapes, scalars_in(self.message.layout), strict=True
-        ):
+        begin, end = 8 * self.first, 8 * (self.first + self.length)
+        owner = [0] * (end - begin)
+        for shown in self.fields:
+            place = shown.place
             # Overlays share their bits with other fields; a counter of the rest has
             # none.
             if place.is_read_only or place.is_count:
                 continue
             if place.is_bytes:
-                owner[place.at : place.at + place.bits] = [shape.key] * place.bits
+                bits = range(max(place.at, begin), min(place.at + place.bits, end))
+                owner[bits.start - begin : bits.stop - begin] = [shown.key] * len(bits)
                 continue
             for piece in layout.pieces(place, self.node):
                 right = 8 * piece.byte + 8 - piece.shift
                 for bit in range(right - piece.bits, right):
                     # The first one of alternative fields
-                    owner[bit] = owner[bit] or shape.key
+                    if begin <= bit < end and not owner[bit - begin]:
+                        owner[bit - begin] = shown.key
         return owner
 
     def _grid(self) -> tuple[list[tuple[int, list[int]]], list[int]]:
@@ -186,9 +184,10 @@ class _Canvas:
         return grid, [first for first, _ in grid]
 
     def drawing(self) -> Drawing:
+        rects = self._rects()
         for shape in self.shapes:
-            shape.rects = self._rects(shape.key)
-            shape.labels = fit(shape.rects, self._label(shape.key), shape.key)
+            shape.rects = rects[shape.key]
+            shape.labels = fit(shape.rects, self.labels[shape.key], shape.key)
         msb0 = self.node.bit_order == "msb0"
         # Column numbers follow the bit numbering of the ICD.
         columns = [
@@ -198,17 +197,12 @@ class _Canvas:
             )
             for column in range(8 * min(self.across, self.length))
         ]
-        gaps = [
-            gap
-            for gap in layout.gaps(self.message, self.node)
-            if 8 * self.first <= gap.at < 8 * (self.first + self.length)
-        ]
         reserved = Shape(
             0,
             "reserved",
-            "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]),
+            "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in self.gaps[:20]),
         )
-        reserved.rects = self._rects(0)
+        reserved.rects = rects[0]
         rows = [
             (self._y(i), str(self.first + at), str(8 * (self.first + at)))
             for i, at in enumerate(self.rows)
@@ -237,35 +231,28 @@ class _Canvas:
     def _x(self, column: int) -> int:
         return round(LEFT + column * self.cell)
 
-    def _rects(self, key: int) -> list[tuple[int, int, int, int]]:
-        """Return the rectangles of one owner.
+    def _rects(self) -> dict[int, list[Box]]:
+        """Return the rectangles of each owner.
 
-        Adjacent rows of equal extent form one rectangle.
+        Adjacent rows of equal extent form one rectangle, so that they show one name
+        instead of one per row.
         """
-        rectangles: list[list[int]] = []
+        rectangles: dict[int, list[Box]] = defaultdict(list)
+        # Index of the last rectangle of an owner with the same extent
+        lowest: dict[tuple[int, int, int], int] = {}
         for index, (_, owners) in enumerate(self.grid):
+            top = self._y(index)
             for owner, start, end in _runs(owners):
-                if owner != key:
-                    continue
-                x, y, width = (
-                    self._x(start),
-                    self._y(index),
-                    self._x(end) - self._x(start),
-                )
-                # Joined rectangles show one name instead of one per row.
-                above = next(
-                    (
-                        r
-                        for r in rectangles
-                        if r[0] == x and r[2] == width and r[1] + r[3] == y
-                    ),
-                    None,
-                )
-                if above:
-                    above[3] += self.row
+                x, width = self._x(start), self._x(end) - self._x(start)
+                boxes = rectangles[owner]
+                above = lowest.get((owner, x, width))
+                if above is not None and boxes[above][1] + boxes[above][3] == top:
+                    _, y, _, height = boxes[above]
+                    boxes[above] = (x, y, width, height + self.row)
                 else:
-                    rectangles.append([x, y, width, self.row])
-        return [(r[0], r[1], r[2], r[3]) for r in rectangles]
+                    lowest[owner, x, width] = len(boxes)
+                    boxes.append((x, top, width, self.row))
+        return rectangles
 
     def _lines(self) -> str:
         """Return the boundaries between different owners, and the outline, as an SVG

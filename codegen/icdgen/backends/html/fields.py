@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
+from icdgen.backends.html.repeats import ShownField
 from icdgen.backends.html.sections import Section
-from icdgen.icd.model import Message, Node
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.model import Message
+from icdgen.icd.places import NodePlace
 from icdgen.show.fields import remarks
 
 
@@ -59,43 +60,51 @@ def columns_of(rows: list[FieldRow]) -> list[str]:
     return [name for name in _COLUMNS if any(getattr(row, name) for row in rows)]
 
 
-def rows(message: Message, node: Node, links: Links) -> list[FieldRow]:
+def rows(message: Message, links: Links) -> list[FieldRow]:
     """Return fields and reserved bits in the order of the frame.
 
     Arrays represented by one element have the rows of that element.
     """
-    repeats, anchors = links.repeats(message), links.anchors(message)
+    repeats = links.repeats(message)
     field_rows = [
-        _row(key, field, message, links, anchors[key - 1])
-        for key, field in enumerate(scalars_in(message.layout), 1)
-        if not field.is_count and repeats.is_shown(key)
+        _row(field, message, links)
+        for field in repeats.fields
+        if not field.place.is_count
     ]
-    # Reserved bits of omitted elements are omitted too.
-    for gap in layout.gaps(message, node):
-        field_rows += [
-            FieldRow(0, at, bits) for at, bits in repeats.shown_parts(gap.at, gap.bits)
-        ]
+    field_rows += [FieldRow(0, gap.at, gap.bits) for gap in repeats.gaps]
     return sorted(field_rows, key=lambda row: row.at)
 
 
-def between(field_rows: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]:
-    """Return the rows of a section, with consecutive flags as grids."""
-    inside = [
-        row
-        for row in field_rows
-        if row.key in section.keys
-        or (not row.key and section.first * 8 <= row.at < section.end * 8)
-    ]
-    section_rows: list[FieldRow | FlagRow] = []
-    for is_flag, group in groupby(inside, key=lambda row: row.is_flag):
+def split(
+    field_rows: list[FieldRow], sections: list[Section]
+) -> list[list[FieldRow | FlagRow]]:
+    """Return the rows of each section, with consecutive flags as grids."""
+    index_of_key = {row.key: index for index, row in enumerate(field_rows)}
+    reserved = [(row.at, index) for index, row in enumerate(field_rows) if not row.key]
+    rows_by_section = []
+    for section in sections:
+        begin = bisect_left(reserved, (8 * section.first, 0))
+        end = bisect_left(reserved, (8 * section.end, 0))
+        indices = [index for _, index in reserved[begin:end]]
+        indices += (index_of_key[key] for key in section.keys if key in index_of_key)
+        rows_by_section.append(
+            _with_grids([field_rows[index] for index in sorted(indices)])
+        )
+    return rows_by_section
+
+
+def _with_grids(field_rows: list[FieldRow]) -> list[FieldRow | FlagRow]:
+    """Return rows with consecutive flags as grids."""
+    rows_and_grids: list[FieldRow | FlagRow] = []
+    for is_flag, group in groupby(field_rows, key=lambda row: row.is_flag):
         run = list(group)
-        section_rows += [FlagRow(run)] if is_flag and len(run) >= _MANY_FLAGS else run
-    return section_rows
+        is_grid = is_flag and len(run) >= _MANY_FLAGS
+        rows_and_grids += [FlagRow(run)] if is_grid else run
+    return rows_and_grids
 
 
-def _row(
-    key: int, field: NodePlace, message: Message, links: Links, anchor: str
-) -> FieldRow:
+def _row(shown: ShownField, message: Message, links: Links) -> FieldRow:
+    field = shown.place
     # the formula describes a derived value completely
     field_remarks = (
         ()
@@ -103,12 +112,12 @@ def _row(
         else remarks(field, texts.number, message if message.has_conditions else None)
     )
     return FieldRow(
-        key=key,
+        key=shown.key,
         at=field.at,
         bits=field.bits,
         field=field,
-        name=links.repeats(message).short(key),
-        anchor=anchor,
+        name=shown.short,
+        anchor=links.anchor(message, field.name),
         type=texts.type_name(field),
         enum_url=links.enum(field.enum) if field.enum else "",
         raw=texts.raw_range(field),

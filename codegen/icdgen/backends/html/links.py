@@ -14,7 +14,7 @@ from zlib import crc32
 from icdgen.backends.html.repeats import Repeats
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Enum, Icd, Message, Node
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.places import NodePlace
 from icdgen.icd.units import Unit
 from icdgen.naming import snake, words
 
@@ -50,14 +50,14 @@ class Links:
         self._pages: dict[tuple[str, str, str], str] = {}
         self._anchors: dict[int, dict[str, str]] = {}
         self._repeats = {
-            id(message): Repeats(message)
+            id(message): Repeats(message, node)
             for node in icd.nodes
             for message in node.messages
         }
         for node in icd.nodes:
             for message in node.messages:
                 self._anchors[id(message)] = _anchors_of_fields(
-                    message, self.repeats(message), node.vocabulary
+                    self.repeats(message), node.vocabulary
                 )
             self._anchors.update(
                 (id(enum), _anchors_of_members(enum, node.vocabulary))
@@ -106,12 +106,6 @@ class Links:
         """
         return self._anchors[id(owner)][name]
 
-    def anchors(self, message: Message) -> list[str]:
-        """Return the anchors of the fields of a message, in order."""
-        return [
-            self.anchor(message, field.name) for field in scalars_in(message.layout)
-        ]
-
     def field(self, message: Message, field: NodePlace) -> str:
         """Return the link to a field: ``demo/estimated_roll.html#field-roll_angle``."""
         return f"{self.message(message)}#{self.anchor(message, field.name)}"
@@ -129,27 +123,15 @@ class Links:
         return f"{UNITS}#unit-{unit.identifier}"
 
 
-def _anchors_of_fields(
-    message: Message, repeats: Repeats, vocabulary: tuple[str, ...]
-) -> dict[str, str]:
-    """Return the anchors by name of the field.
-
-    If the page shows one element of an array, fields of other elements share its
-    anchors.
-    """
+def _anchors_of_fields(repeats: Repeats, vocabulary: tuple[str, ...]) -> dict[str, str]:
+    """Return the anchors of the shown fields by name of the place."""
     taken: set[str] = set()
-    anchors: dict[str, str] = {}
-    for field, leader, name in zip(
-        scalars_in(message.layout), repeats.leaders, repeats.names, strict=True
-    ):
-        first = scalars_in(message.layout)[leader - 1]
-        if first is field:
-            anchors[field.name] = _free(
-                "field-" + slug(field.identifier or name, vocabulary), taken
-            )
-        else:
-            anchors[field.name] = anchors[first.name]
-    return anchors
+    return {
+        field.place.name: _free(
+            "field-" + slug(field.place.identifier or field.name, vocabulary), taken
+        )
+        for field in repeats.fields
+    }
 
 
 def _anchors_of_members(enum: Enum, vocabulary: tuple[str, ...]) -> dict[str, str]:

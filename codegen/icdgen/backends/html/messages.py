@@ -15,8 +15,8 @@ from icdgen.describe.errata import errata_of_message
 from icdgen.describe.numbers import count_text, length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
+from icdgen.icd.lines import lines
 from icdgen.icd.model import Message, Node
-from icdgen.icd.places import scalars_in
 from icdgen.wording import count
 
 if TYPE_CHECKING:
@@ -30,15 +30,15 @@ def values(
     described, in_c = describe(relations.icd).message(message), relations.in_c(message)
     repeats = relations.links.repeats(message)
     parts = sections.bands(relations, message)
-    shares = parts or sections.shares(message)
+    shares = parts or sections.shares(message, repeats)
     # A message with sections has a drawing for each of them.
     pictures = [
         drawing.draw(message, node, relations.links, part.first, part.end)
         for part in parts
     ] or [drawing.draw(message, node, relations.links)]
     drawings = [picture for picture in pictures if picture is not None]
-    panels = sections.panels(message, repeats) if repeats.arrays else shares
-    rows = fields.rows(message, node, relations.links)
+    rows = fields.rows(message, relations.links)
+    rows_by_share = fields.split(rows, shares)
     shown = examples(message, node)
     is_received = message.telemetry_id is not None
     # A telecommand shows its initial values.
@@ -58,11 +58,8 @@ def values(
         "keyed": any(picture.keyed for picture in drawings),
         "rows": rows,
         "columns": fields.columns_of(rows),
-        "bands": [
-            (part, fields.between(rows, part), picture)
-            for part, picture in zip(parts, pictures, strict=False)
-        ],
-        "shares": [(share, fields.between(rows, share)) for share in shares],
+        "bands": list(zip(parts, rows_by_share, pictures, strict=False)),
+        "shares": list(zip(shares, rows_by_share, strict=True)),
         "buses": wire.buses(message, relations.wire(message), data),
         "example_data": is_received and bool(data),
         "examples": shown,
@@ -71,7 +68,7 @@ def values(
         "contains": relations.contains[message.node, message.name],
         "contained_in": relations.contained_in[message.node, message.name],
         "errata": errata_of_message(message),
-        "plan": texts.script_json(_plan(relations, node, message, drawings, panels)),
+        "plan": texts.script_json(_plan(relations, node, message, drawings, shares)),
     }
 
 
@@ -174,24 +171,25 @@ def _plan(
     node: Node,
     message: Message,
     drawings: list[drawing.Drawing],
-    panels: list[sections.Section],
+    shares: list[sections.Section],
 ) -> dict[str, object]:
+    repeats = relations.links.repeats(message)
     enums = {
         field.enum.name: plan.enum_plan(field.enum)
-        for field in scalars_in(message.layout)
+        for field in lines(message.layout)
         if field.enum is not None
     }
-    repeats = relations.links.repeats(message)
+    sections_of_fields = [
+        {"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open}
+        for s in shares
+        if s.keys
+    ]
     return {
-        **plan.message_plan(message, node),
+        **plan.message_plan(message, node, repeats.names),
         "enums": enums,
         "drawings": [picture.plan for picture in drawings],
-        "sections": [
-            {"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open}
-            for s in panels
-            if s.keys
-        ],
-        "leaders": repeats.leaders if repeats.arrays else None,
+        # Of represented arrays, the decoder makes a section for each element.
+        **({} if repeats.arrays else {"sections": sections_of_fields}),
         "wire": {
             **wire.page_facts(message, relations.wire(message)),
             "id_bytes": wire_ids.size(node.id_bits),

@@ -5,8 +5,8 @@ from __future__ import annotations
 from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
+from icdgen.icd.lines import lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.places import scalars_in
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
 _KINDS = {
@@ -48,7 +48,7 @@ def home(relations: Relations) -> dict[str, object]:
             m
             for m in messages
             if m.telemetry_id is not None
-            and any(f.has_formula for f in scalars_in(m.layout))
+            and any(f.has_formula for f in lines(m.layout))
         ),
         None,
     )

@@ -15,7 +15,7 @@ from icdgen.describe import MessageDescription, describe
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.places import NodePlace
 from icdgen.icd.prefixed import with_prefix
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
@@ -148,9 +148,8 @@ class Relations:
         """Return names and fields that the page of a message shows; of some arrays,
         only the first element.
         """
-        repeats = self.links.repeats(message)
-        named = zip(repeats.names, scalars_in(message.layout), strict=True)
-        return [pair for key, pair in enumerate(named, 1) if repeats.is_shown(key)]
+        fields = self.links.repeats(message).fields
+        return [(field.name, field.place) for field in fields]
 
     def wire(self, message: Message) -> Wire:
         """Return the description of the transmission of a message."""

@@ -5,21 +5,13 @@ arrays and long arrays.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import TypeAlias
 
-from icdgen.icd.frames import PathStep, name_of_steps
-from icdgen.icd.model import Message
-from icdgen.icd.places import NodePlace, places_in, scalars_in
+from icdgen.icd.model import Message, Node
+from icdgen.icd.places import NodePlace, places_in
+from icdgen.layout import gaps_between
 
 _LONG = 16  # longer arrays of numbers are represented by one element
-
-_Array: TypeAlias = "tuple[tuple[int, int | None], ...]"
-"""Path to an array: identity of each node, and index of the element in each enclosing
-array.
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,141 +33,130 @@ class Repeat:
         return self.first + self.step * self.count
 
 
+@dataclass(frozen=True, slots=True)
+class ShownField:
+    """Field that the page of a message shows: of a represented array, a field of its
+    first element.
+    """
+
+    key: int  # number among all scalars of the longest frame, from 1
+    place: NodePlace
+    name: str  # ``satellites[].elev``
+    short: str  # name within its represented array: ``elev``
+
+
 class Repeats:
-    """Arrays of a message, and the fields that its page shows."""
+    """Arrays of a message, and the fields and reserved bits that its page shows."""
 
-    def __init__(self, message: Message) -> None:
-        self._repeats: dict[_Array, Repeat] = {}
-        scalars = scalars_in(message.layout)
-        if not message.contains:  # a composite message has a section for each part
-            self._add_arrays(message, scalars)
-        self.arrays = sorted(
-            self._repeats.values(), key=lambda repeat: (repeat.first, -repeat.end)
-        )
-        firsts = [self._first(scalar.steps) for scalar in scalars]
-        keys = {scalar.name: key for key, scalar in enumerate(scalars, 1)}
-        # Key of the field of the first element that stands for each field, in the order
-        # of the fields.
-        self.leaders = [keys[name_of_steps(steps)] for steps in firsts]
-        self.names = [self._label(steps).removesuffix("[]") for steps in firsts]
-        # Name of the struct of the outermost array that each field is in, or of an
-        # array without structs; else empty.
-        self.elements = [self._element(scalar.steps) for scalar in scalars]
-
-    def is_shown(self, key: int) -> bool:
-        """Return whether the page shows the field itself."""
-        return self.leaders[key - 1] == key
-
-    def shown_parts(self, at: int, bits: int) -> list[tuple[int, int]]:
-        """Return first bit and length of each part of a run of bits, without omitted
-        elements.
-        """
-        ends = [
-            8 * end
-            for array in self.arrays
-            for end in (array.first + array.step, array.end)
-        ]
-        cuts = [
-            at,
-            *sorted(end for end in set(ends) if at < end < at + bits),
-            at + bits,
-        ]
-        return [
-            (start, end - start)
-            for start, end in pairwise(cuts)
-            if not self._is_skipped(start)
-        ]
-
-    def _is_skipped(self, bit: int) -> bool:
-        return any(
-            8 * (array.first + array.step) <= bit < 8 * array.end
-            for array in self.arrays
-        )
-
-    def short(self, key: int) -> str:
-        """Return the name of a field within its array: ``elev`` of
-        ``satellites[].elev``.
-        """
-        name = self.names[key - 1]
-        return name.rpartition("[].")[2] if self.elements[key - 1] else name
-
-    def _add_arrays(self, message: Message, scalars: tuple[NodePlace, ...]) -> None:
-        """Find the arrays that are represented by one element."""
-        starts = sorted(scalar.at for scalar in scalars)
-        for place in _arrays(places_in(message.layout)):
-            node = place.node
-            variable = next(
-                (part for part in message.layout.counted_parts if part.node is node),
-                None,
-            )
-            # Short arrays of numbers are clearer with all elements.
-            if place.count < 2 or not (
-                variable or place.struct is not None or place.count > _LONG
-            ):
-                continue
-            begin, end = place.at, place.at + place.width
-            inside = bisect_left(starts, end) - bisect_left(starts, begin)
-            # If other fields share the place (alternatives, overlays), every element is
-            # shown.
-            if begin % 8 == place.bits % 8 == 0 and inside == sum(
-                1 for _ in place.scalars()
-            ):
-                times = (
-                    f"{variable.fewest} to {variable.most}"
-                    if variable
-                    else str(place.count)
-                )
-                label = ".".join(
-                    filter(None, (self._label(place.steps[:-1]), node.name))
-                )
-                self._repeats[_array(place.steps, len(place.steps) - 1)] = Repeat(
-                    label, begin // 8, place.bits // 8, place.count, times
-                )
-
-    def _first(self, steps: tuple[PathStep, ...]) -> tuple[PathStep, ...]:
-        """Return the corresponding place in the first element of each represented
-        array.
-        """
-        for depth, step in enumerate(steps):
-            if step.element and _array(steps, depth) in self._repeats:
-                steps = (*steps[:depth], PathStep(step.node, 0), *steps[depth + 1 :])
-        return steps
-
-    def _label(self, steps: tuple[PathStep, ...]) -> str:
-        """Return the label of a place: ``satellites[].elev``."""
-        return ".".join(
+    def __init__(self, message: Message, node: Node) -> None:
+        # In the order of the longest frame
+        self.fields: list[ShownField] = []
+        self.arrays: list[Repeat] = []
+        # Names of the represented arrays, in the first element of their owners:
+        # ``satellites[0].signals``
+        self.names: set[str] = set()
+        # A composite message has a section for each part instead.
+        self._can_represent = not message.contains
+        self._parts = {id(part.node): part for part in message.layout.counted_parts}
+        self._add(places_in(message.layout), 1, "", "", False)
+        self.arrays.sort(key=lambda repeat: (repeat.first, -repeat.end))
+        self.gaps = gaps_between(
+            (field.place for field in self.fields),
             (
-                f"{step.node.name}[]"
-                if _array(steps, depth) in self._repeats
-                else name_of_steps((step,))
-            )
-            for depth, step in enumerate(steps)
+                range(8 * (array.first + array.step), 8 * array.end)
+                for array in self.arrays
+            ),
+            message.length,
+            node,
+        )
+        self._starts = sorted((shown.place.at, shown.key) for shown in self.fields)
+
+    def keys_between(self, first: int, end: int) -> list[int]:
+        """Return the numbers of the shown fields that start at the bits from ``first``
+        to before ``end``, in order.
+        """
+        inside = slice(
+            bisect_left(self._starts, (first, 0)), bisect_left(self._starts, (end, 0))
+        )
+        return sorted(key for _, key in self._starts[inside])
+
+    def _add(
+        self,
+        places: tuple[NodePlace, ...],
+        key: int,
+        owner: str,
+        outer: str,
+        is_overlapped: bool,
+    ) -> None:
+        """Add the fields of the places of one layout, the first of which is ``key``.
+
+        ``owner``: start of their labels, and ``outer`` the part of it up to the
+        innermost represented array. ``is_overlapped``: other fields have bits of it.
+        """
+        overlapped = _overlapped(places)
+        for place in places:
+            shares_bits = is_overlapped or id(place) in overlapped
+            is_represented = not shares_bits and self._can_be_represented(place)
+            if is_represented:
+                self._add_array(place, owner + place.node.name)
+            elements = (place.first_element,) if is_represented else place.elements()
+            size = place.scalar_count // (place.count or 1)
+            for index, element in enumerate(elements):
+                text = element.steps[-1].text(place.node.name)
+                label = owner + (f"{place.node.name}[]" if is_represented else text)
+                first_key = key + index * size
+                if element.struct is not None:
+                    inner_owner = f"{label}."
+                    self._add(
+                        element.inner(),
+                        first_key,
+                        inner_owner,
+                        inner_owner if is_represented else outer,
+                        shares_bits,
+                    )
+                else:
+                    name = label.removesuffix("[]")
+                    short = name.removeprefix(outer)
+                    self.fields.append(ShownField(first_key, element, name, short))
+            key += place.scalar_count
+
+    def _can_be_represented(self, place: NodePlace) -> bool:
+        """Return whether one element represents a place: a repeated struct, a
+        variable-length array or a long array, of whole bytes.
+        """
+        # Short arrays of numbers are clearer with all elements.
+        is_repeated = (
+            id(place.node) in self._parts
+            or place.struct is not None
+            or place.count > _LONG
+        )
+        return (
+            self._can_represent
+            and is_repeated
+            and place.count > 1
+            and place.at % 8 == place.bits % 8 == 0
         )
 
-    def _element(self, steps: tuple[PathStep, ...]) -> str:
-        for depth in range(len(steps)):
-            if _array(steps, depth) in self._repeats:
-                is_struct = depth + 1 < len(steps)
-                return name_of_steps(
-                    steps[: depth + 1]
-                    if is_struct
-                    else (*steps[:depth], PathStep(steps[depth].node))
-                )
-        return ""
+    def _add_array(self, place: NodePlace, label: str) -> None:
+        part = self._parts.get(id(place.node))
+        times = f"{part.fewest} to {part.most}" if part else str(place.count)
+        self.names.add(place.name)
+        self.arrays.append(
+            Repeat(label, place.at // 8, place.bits // 8, place.count, times)
+        )
 
 
-def _arrays(places: tuple[NodePlace, ...]) -> Iterator[NodePlace]:
-    """Yield the arrays among places, and the arrays within their first elements."""
-    for place in places:
-        if place.count:
-            yield place
-        if place.struct is not None:
-            yield from _arrays(place.elements()[0].inner())
-
-
-def _array(steps: tuple[PathStep, ...], depth: int) -> _Array:
-    """Return the path to the array that a step leads into."""
-    return (
-        *((id(step.node), step.element) for step in steps[:depth]),
-        (id(steps[depth].node), None),
-    )
+def _overlapped(places: tuple[NodePlace, ...]) -> set[int]:
+    """Return the identities of the places that have bits of others: alternatives and
+    overlays. Every element of such an array is shown.
+    """
+    overlapped: set[int] = set()
+    before: NodePlace | None = None  # the place with the largest end up to now
+    for place in sorted(places, key=lambda place: place.at):
+        if place.is_count or place.derived is not None:
+            continue
+        if before is not None and place.at < before.at + before.width:
+            overlapped |= {id(before), id(place)}
+        if before is None or place.at + place.width > before.at + before.width:
+            before = place
+    return overlapped

@@ -6,16 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from itertools import groupby
 
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.repeats import Repeat, Repeats
 from icdgen.describe.numbers import byte_range
 from icdgen.icd.model import Message
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.places import NodePlace
 from icdgen.wording import count
 
-_LONG = 16  # messages with more fields have sections; four flags count as one field
+_LONG = 16  # messages with more fields have sections
+_FLAG_WEIGHT = 0.25  # four flags count as one field
 _SHARE = 10  # fields of a section
 
 
@@ -58,12 +58,13 @@ def bands(relations: Relations, message: Message) -> list[Section]:
     """Return the contained messages or arrays and the bytes between them; empty if
     there are none.
     """
-    return _messages(relations, message) or _arrays(
-        message, relations.links.repeats(message)
-    )
+    repeats = relations.links.repeats(message)
+    return _messages(relations, message, repeats) or _arrays(message, repeats)
 
 
-def _messages(relations: Relations, message: Message) -> list[Section]:
+def _messages(
+    relations: Relations, message: Message, repeats: Repeats
+) -> list[Section]:
     """Return the contained messages and the bytes between them; empty if they overlap
     or are not aligned to bytes.
     """
@@ -76,15 +77,22 @@ def _messages(relations: Relations, message: Message) -> list[Section]:
         first = part.at // 8
         if part.at % 8 or first < end or first + part.length > message.length:
             return []
-        found_sections += _between(message, end, first)
+        found_sections += _between(message, repeats, end, first)
         end = first + part.length
         found_sections.append(
             Section(
-                part.place.text, first, end, _keys(message, first, end), part.place.url
+                part.place.text,
+                first,
+                end,
+                _keys(message, repeats, first, end),
+                part.place.url,
             )
         )
     return (
-        _folded(message, found_sections + _between(message, end, message.length))
+        _folded(
+            repeats,
+            found_sections + _between(message, repeats, end, message.length),
+        )
         if parts
         else []
     )
@@ -94,35 +102,33 @@ def _arrays(message: Message, repeats: Repeats) -> list[Section]:
     """Return the first element of each represented array and the bytes between them."""
     if not repeats.arrays:
         return []
-    section_list = list(_around(message, list(repeats.arrays), 0, message.length, None))
+    section_list = list(_around(message, repeats, list(repeats.arrays), 0, None))
     shown = {key for section in section_list for key in section.keys}
     remaining_keys = [
-        key
-        for key in range(1, len(scalars_in(message.layout)) + 1)
-        if repeats.is_shown(key) and key not in shown
-    ]
-    remaining_keys = [
-        key
-        for key in remaining_keys
-        if not scalars_in(message.layout)[key - 1].is_count
+        field.key
+        for field in repeats.fields
+        if field.key not in shown and not field.place.is_count
     ]
     if remaining_keys:
         section_list.append(
             Section("Derived values", message.length, message.length, remaining_keys)
         )
-    return [
-        replace(section, keys=[key for key in section.keys if repeats.is_shown(key)])
-        for section in section_list
-    ]
+    return section_list
 
 
 def _around(
-    message: Message, arrays: list[Repeat], first: int, end: int, inside: Repeat | None
+    message: Message,
+    repeats: Repeats,
+    arrays: list[Repeat],
+    first: int,
+    inside: Repeat | None,
 ) -> Iterator[Section]:
-    """Yield the sections of the bytes from ``first`` to before ``end``.
+    """Yield the sections of the message or of the first element of ``inside``, which
+    begins at byte ``first``.
 
     Processed arrays are removed from the list.
     """
+    end = first + inside.step if inside else message.length
     title, is_element = (
         (f"{inside.name} × {inside.times}", True) if inside else ("", False)
     )
@@ -130,40 +136,33 @@ def _around(
     def between(start: int, stop: int) -> list[Section]:
         return [
             replace(s, title=title or s.title, is_element=is_element)
-            for s in _between(message, start, stop)
+            for s in _between(message, repeats, start, stop)
         ]
 
     while arrays and arrays[0].first < end:
         array = arrays.pop(0)
         yield from between(first, array.first)
-        yield from _around(
-            message, arrays, array.first, array.first + array.step, array
-        )
+        yield from _around(message, repeats, arrays, array.first, array)
         first = array.end
     yield from between(first, end)
 
 
-def shares(message: Message) -> list[Section]:
+def shares(message: Message, repeats: Repeats) -> list[Section]:
     """Return the fields in order, in several sections if there are many."""
-    keys = list(range(1, len(scalars_in(message.layout)) + 1))
-    if not _is_long(message):
+    fields = repeats.fields
+    keys = [field.key for field in fields]
+    if not _is_long(repeats):
         return [Section("Fields", 0, message.length, keys)]
     # Double ceiling division: first the number of sections, then their size.
     size = -(-len(keys) // -(-len(keys) // _SHARE))  # sections of similar size
+    with_bits = [field.place for field in fields if _has_bits(field.place)]
     section_list = []
     for start in range(0, len(keys), size):
         section_keys = keys[start : start + size]
-        fields = [
-            place
-            for key in section_keys
-            if _has_bits(place := scalars_in(message.layout)[key - 1])
-        ]
-        fields = (
-            fields
-            or [place for place in scalars_in(message.layout) if _has_bits(place)][-1:]
-        )
-        first, end = min(place.at for place in fields) // 8, -(
-            -max(place.at + place.bits for place in fields) // 8
+        places = [field.place for field in fields[start : start + size]]
+        places = [place for place in places if _has_bits(place)] or with_bits[-1:]
+        first, end = min(place.at for place in places) // 8, -(
+            -max(place.at + place.bits for place in places) // 8
         )
         section_list.append(
             Section(
@@ -173,74 +172,41 @@ def shares(message: Message) -> list[Section]:
                 section_keys,
             )
         )
-    return _folded(message, section_list)
-
-
-def panels(message: Message, repeats: Repeats) -> list[Section]:
-    """Return the sections of the decoder for messages with represented arrays: the
-    decoder shows all elements.
-    """
-    section_list: list[Section] = []
-    for element, group in groupby(
-        range(1, len(scalars_in(message.layout)) + 1),
-        key=lambda key: repeats.elements[key - 1],
-    ):
-        keys = list(group)
-        fields = [
-            place
-            for key in keys
-            if _has_bits(place := scalars_in(message.layout)[key - 1])
-        ]
-        first = min((place.at for place in fields), default=0) // 8
-        end = -(-max((place.at + place.bits for place in fields), default=0) // 8)
-        title = element or (
-            "Fields"
-            if fields
-            else (
-                "Count"
-                if scalars_in(message.layout)[keys[0] - 1].is_count
-                else "Derived values"
-            )
-        )
-        section_list.append(Section(title, first, end, keys, open=not element))
-    return section_list
+    return _folded(repeats, section_list)
 
 
 def _has_bits(place: NodePlace) -> bool:
     return not place.is_count and place.derived is None
 
 
-def _folded(message: Message, section_list: list[Section]) -> list[Section]:
+def _folded(repeats: Repeats, section_list: list[Section]) -> list[Section]:
     """Return the sections; those of a long message are folded, except the first."""
-    if not _is_long(message):
+    if not _is_long(repeats):
         return section_list
     return [
         replace(section, open=section is section_list[0]) for section in section_list
     ]
 
 
-def _is_long(message: Message) -> bool:
-    return (
-        sum(1 if place.type != "bool" else 0.25 for place in scalars_in(message.layout))
-        > _LONG
+def _is_long(repeats: Repeats) -> bool:
+    weights = (
+        1 if field.place.type != "bool" else _FLAG_WEIGHT for field in repeats.fields
     )
+    return sum(weights) > _LONG
 
 
-def _between(message: Message, first: int, end: int) -> list[Section]:
+def _between(message: Message, repeats: Repeats, first: int, end: int) -> list[Section]:
     title = byte_range(first, end - first).capitalize()
     return (
-        [Section(title, first, end, _keys(message, first, end))] if end > first else []
+        [Section(title, first, end, _keys(message, repeats, first, end))]
+        if end > first
+        else []
     )
 
 
-def _keys(message: Message, first: int, end: int) -> list[int]:
-    """Return the numbers of the fields in a range of bytes; the last range includes
-    derived values.
+def _keys(message: Message, repeats: Repeats, first: int, end: int) -> list[int]:
+    """Return the numbers of the shown fields in a range of bytes; the last range
+    includes derived values.
     """
     # The position of a derived value is the end of the message.
-    last = 8 * end + (end == message.length)
-    return [
-        key
-        for key, place in enumerate(scalars_in(message.layout), 1)
-        if 8 * first <= place.at < last
-    ]
+    return repeats.keys_between(8 * first, 8 * end + (end == message.length))

@@ -6,7 +6,7 @@ from collections import defaultdict
 
 from icdgen.backends.html import texts
 from icdgen.backends.html.relations import Relations
-from icdgen.icd.places import scalars_in
+from icdgen.icd.lines import lines
 
 _FEW = 8
 _TYPES = {
@@ -33,8 +33,8 @@ def values(relations: Relations) -> dict[str, object]:
     widths: dict[str, set[int]] = defaultdict(set)
     for node in relations.icd.nodes:
         for message in node.messages:
-            for field in scalars_in(message.layout):
-                counts[field.type] += 1
+            for field in lines(message.layout):
+                counts[field.type] += field.count or 1
                 widths[field.type].add(field.bits)
     return {
         "quantities": sorted(quantities.items()),

@@ -4,7 +4,25 @@ const path = require("node:path");
 const readline = require("node:readline");
 const codec = require("./codec.js");
 const { isLike } = require("./frames.js");
-const { messages, nodes } = require(path.join(__dirname, "nodes.json"));
+const { messages: plans, nodes } = require(path.join(__dirname, "nodes.json"));
+
+/** The plan of a message with all elements as fields, views last, and enumerations in the fields. */
+function withViewsLast(compact) {
+  const plan = codec.expanded(compact);
+  const order = [...plan.fields.keys()].sort((a, b) => Boolean(plan.fields[a].view) - Boolean(plan.fields[b].view));
+  const places = new Map(order.map((before, now) => [before, now]));
+  const fields = order.map((before) => {
+    const { when, derived, ...field } = plan.fields[before];
+    if (field.enum) field.enum = plan.enums[field.enum];
+    if (when) field.when = when.map(([place, values]) => [places.get(place), values]);
+    if (derived) field.derived = [derived[0].map((place) => places.get(place)), ...derived.slice(1)];
+    return field;
+  });
+  const withCounter = (part) => ({ ...part, counter: places.get(part.counter), nested: part.nested?.map(withCounter) });
+  return { ...plan, fields, inner: plan.inner?.map(withCounter) };
+}
+
+const messages = plans.map(withViewsLast);
 
 const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
 const hexOfText = (text) => hexOf(Buffer.from(text, "utf8"));
