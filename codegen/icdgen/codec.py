@@ -23,7 +23,7 @@ from functools import lru_cache
 from typing import TypeAlias
 
 from icdgen.icd.curve import Curve
-from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.frames import FrameField, fixed_fields, frame_fields
 from icdgen.icd.layout import Derived, Layout, Overlay, Scalar, Sizes, VariablePart
 from icdgen.icd.meanings import Special
 from icdgen.icd.model import Icd, Message, Node
@@ -183,7 +183,7 @@ def _counters(node: Node, layout: Layout, frame: bytes) -> dict[str, int]:
     """
     names = {part.counter for part in layout.counted_parts if not part.is_rest}
     bits = int.from_bytes(frame, "little")
-    fields = frame_fields(layout, node.orders, dict.fromkeys(layout.parts_by_size, 0))
+    fields = fixed_fields(layout, node.orders)
     return {
         field.name: _number(_read(field, bits))
         for field in fields
@@ -332,6 +332,18 @@ def initial_values(node: Node, message: Message) -> dict[str, Raw]:
         for field in fields
         if all(raw.get(c.field) in c.values for c in field.conditions)
     }
+
+
+def initial_frame(node: Node, message: Message) -> bytes:
+    """Return the frame of a new message, which has the fewest elements."""
+    fixed = fixed_fields(message.layout, node.orders)
+    counts = {field.name: initial_value(message, field) for field in fixed}
+    fields = frame_fields(message.layout, node.orders, sizes_of_values(message, counts))
+    # Bytes and text are 0 in a new message, as all bits without a value.
+    numbers = (field for field in fields if field.is_raw and not field.is_bytes)
+    return frame_with(
+        node, message, {field.name: initial_value(message, field) for field in numbers}
+    )
 
 
 def initial_value(message: Message, field: FrameField) -> Raw:

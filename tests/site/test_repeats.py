@@ -53,6 +53,18 @@ def ublox(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def many_satellites(tmp_path_factory) -> Path:
+    """A site with up to 1,024 satellites in NAV-SAT."""
+    folder = tmp_path_factory.mktemp("many")
+    text = (DEVICES / "ublox" / "ublox.yaml").read_text("utf-8")
+    text = text.replace("bits: 8, name: numSvs", "bits: 16, name: numSvs")
+    text = text.replace("count: numSvs, up_to: 64", "count: numSvs, up_to: 1024")
+    (folder / "ublox.yaml").write_text(text, "utf-8")
+    write(make([folder / "ublox.yaml"]), folder / "site")
+    return folder / "site"
+
+
+@pytest.fixture(scope="module")
 def icds(tmp_path_factory):
     folder = tmp_path_factory.mktemp("nested")
     (folder / "nested.yaml").write_text(json.dumps(NESTED), encoding="utf-8")
@@ -197,6 +209,22 @@ def test_all_satellites_of_a_frame_are_decoded_and_one_can_be_added(browser, ubl
             and len(page.input_value("#frame").split()) == 44
         )
         assert summaries.count() == 5
+
+
+def test_a_page_of_1024_satellites_stays_small_and_decodes_them(
+    browser, ublox, many_satellites
+):
+    few, many = (
+        (folder / NAV_SAT).read_text("utf-8") for folder in (ublox, many_satellites)
+    )
+    assert len(many) < 3 * len(few)
+    assert "All 67 frames" in few and re.search(r"The first \d+ frames", many)
+    with opened(browser, many_satellites.as_uri() + "/", NAV_SAT) as page:
+        page.fill("#frame", f"00 00 00 00 01 00 04 00 {'00 ' * 12 * 1023}{SATELLITE}")
+        fold = page.locator("#decoder details:has(summary:text('satellites[1023],'))")
+        assert "bytes 12284 to 12295, 26 fields" in fold.inner_text()
+        fold.locator("summary").click()
+        assert fold.get_by_label("satellites[1023].svId, raw").input_value() == "7"
 
 
 def test_a_link_to_a_field_of_a_struct_leads_to_its_row(browser, ublox):

@@ -197,6 +197,13 @@ def frame_fields(
     return fields
 
 
+def fixed_fields(layout: Layout, orders: Orders) -> tuple[FrameField, ...]:
+    """Return the scalars of a frame without variable-length elements: those of the
+    fixed part, counts and derived values.
+    """
+    return frame_fields(layout, orders, dict.fromkeys(layout.parts_by_size, 0))
+
+
 @cached_by_owner
 def _frames(
     layout: Layout,

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.frames import FrameField, fixed_fields
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
 from icdgen.icd.pieces import bits_of
 
@@ -112,11 +112,9 @@ def constants(message: Message, node: Node) -> tuple[FrameField, ...]:
     Trailing zeros that a frame omits count as part of it. `node` is the ICD node that
     declares the message.
     """
-    layout = message.layout
-    no_elements = dict.fromkeys(layout.parts_by_size, 0)
     return tuple(
         field
-        for field in frame_fields(layout, node.orders, no_elements)
+        for field in fixed_fields(message.layout, node.orders)
         if field.has_bits and field.const is not None and not field.conditions
     )
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 from icdgen import codec
-from icdgen.icd.frames import FrameField, frame_fields
+from icdgen.icd.frames import FrameField, fixed_fields, frame_fields
 from icdgen.icd.layout import VariablePart
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import AnyScalar
@@ -63,7 +63,7 @@ def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     """Yield frames for each value that decides on the presence of an optional field,
     and for the neighbors of that value.
     """
-    fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
+    fields = {field.name: field for field in fixed_fields(message.layout, node.orders)}
     yielded = set()
     for field in fields.values():
         chosen = {
@@ -160,7 +160,7 @@ def with_counts(
     message: Message, node: Node, frame: bytes, counts: Mapping[str, int]
 ) -> bytes:
     """Return the longest frame with these numbers of elements in the counters."""
-    fields = {field.name: field for field in frame_fields(message.layout, node.orders)}
+    fields = {field.name: field for field in fixed_fields(message.layout, node.orders)}
     values = {}
     for name, part in message.layout.parts_by_size.items():
         if name in counts and not part.is_rest:
@@ -199,10 +199,10 @@ def _position_code(length: int, number: int) -> bytes:
     Over all numbers, each bit of the frame has a different code, so that any mix-up of
     bits is detected.
     """
-    return bytes(
-        sum(((byte * 8 + bit) >> number & 1) << bit for bit in range(8))
-        for byte in range(length)
-    )
+    # The lowest three bits of a position are the position in the byte.
+    if number < 3:
+        return bytes((0b10101010, 0b11001100, 0b11110000)[number : number + 1]) * length
+    return bytes(0xFF * (byte >> number - 3 & 1) for byte in range(length))
 
 
 def random_frame(message: Message, seed: str) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen import codec
@@ -9,11 +10,12 @@ from icdgen.backends.html.texts import MINUS, number
 from icdgen.describe.display import base_of, digits_of, integer_text, number_text
 from icdgen.icd import floats
 from icdgen.icd.model import Message, Node
-from icdgen.icd.places import NodePlace, scalars_in
+from icdgen.icd.places import NodePlace, scalar_count
 from icdgen.tables import clean
 from icdgen.vectors import patterns
 
 _MOST = 60  # maximum number of fields of a message whose values are shown
+_MOST_BYTES = 1 << 16  # maximum length of all frames of a page together
 
 
 class Cell(NamedTuple):
@@ -30,18 +32,40 @@ class Example(NamedTuple):
     cells: list[Cell]
 
 
-def frames(message: Message, node: Node) -> list[tuple[str, str]]:
-    """Return purpose and bytes of each frame of the golden vectors of a message, in
-    order.
+class Frames(NamedTuple):
+    """Golden vectors on a page: purpose and bytes of each frame, in order.
+
+    ``are_all``: whether they are all frames of the message.
     """
-    if not message.length:
-        return []
+
+    rows: list[tuple[str, str]]
+    are_all: bool
+
+
+def frames(message: Message, node: Node) -> Frames:
+    """Return the frames of the golden vectors of a message; of a message with very long
+    frames, the first ones.
+    """
     purposes: dict[bytes, str] = {}
-    for why, frame in patterns.frames(message, node):
-        purposes.setdefault(frame, why)
-    for index, raw in enumerate(patterns.raw_columns(message, node)):
-        purposes.setdefault(codec.encode(node, message, raw), f"chosen values {index}")
-    return [(why, frame.hex(" ").upper()) for frame, why in purposes.items()]
+    are_all = True
+    size = 0
+    for why, frame in _all_frames(message, node):
+        if frame not in purposes:
+            size += len(frame)
+            if purposes and size > _MOST_BYTES:
+                are_all = False
+                break
+            purposes[frame] = why
+    rows = [(why, frame.hex(" ").upper()) for frame, why in purposes.items()]
+    return Frames(rows, are_all)
+
+
+def _all_frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
+    """Yield purpose and bytes of each frame; none of a message without bytes."""
+    if message.length:
+        yield from patterns.frames(message, node)
+        for index, raw in enumerate(patterns.raw_columns(message, node)):
+            yield f"chosen values {index}", codec.encode(node, message, raw)
 
 
 def examples(message: Message, node: Node) -> list[Example]:
@@ -60,16 +84,10 @@ def examples(message: Message, node: Node) -> list[Example]:
         # The frame has all elements, so that each field has a value.
         if message.layout.parts:
             frame = patterns.cut(message, node, frame, message.layout.parts[-1].most)
-        raw = (
-            codec.decode(node, message, frame)
-            if len(scalars_in(message.layout)) <= _MOST
-            else {}
-        )
-        cells = (
-            [_cell(field, raw.get(field.name)) for field in scalars_in(message.layout)]
-            if raw
-            else []
-        )
+        cells = []
+        if scalar_count(message.layout) <= _MOST:
+            raw = codec.decode(node, message, frame)
+            cells = [_cell(field, raw.get(field.name)) for field in message.fields]
         results.append(Example(why, frame.hex(" ").upper(), frame, cells))
     return results
 

@@ -43,9 +43,7 @@ def values(
     is_received = message.telemetry_id is not None
     # A telecommand shows its initial values.
     data = (
-        shown[0].frame
-        if shown and is_received
-        else codec.encode(node, message, codec.initial_values(node, message))
+        shown[0].frame if shown and is_received else codec.initial_frame(node, message)
     )
     return {
         "message": message,
