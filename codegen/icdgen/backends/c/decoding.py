@@ -7,7 +7,7 @@ from typing import Any
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.names import constant, reading
-from icdgen.backends.c.statement import call, either, failed_length_test, loop
+from icdgen.backends.c.statement import FAILED, call, either, length_test, loop
 from icdgen.backends.c.symbols import C_NAMES
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
@@ -103,12 +103,8 @@ def _count(part: VariablePartDescription) -> str:
 
 def misfit_length(message: MessageDescription) -> str:
     """Return the condition for a ``length`` that no frame has."""
-    return either(
-        [
-            failed_length_test(test, constant(message, "length"))
-            for test in message.length_tests
-        ]
-    )
+    longest = constant(message, "length")
+    return either([length_test(test, longest, FAILED) for test in message.length_tests])
 
 
 def miscounted(part: VariablePartDescription) -> tuple[str, str, str] | None:
@@ -213,9 +209,8 @@ def miscount(part: VariablePartDescription, counter: str = "") -> str:
     can have all.
     """
     count = counter or f"message->{part.counter.name}"
-    failed = {"at least": "<", "at most": ">"}
     tests = [
-        f"{count} {failed[test.kind]} {test.value}u" for test in part.counter_tests
+        f"{count} {FAILED[test.kind]} {test.value}u" for test in part.counter_tests
     ]
     return either(tests) if tests else ""
 

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
 from icdgen.describe.lengths import LengthTest
 from icdgen.describe.nodes import MessageOfId
+
+PASSED = {"equal": "==", "at least": ">=", "at most": "<=", "multiple": "=="}
+"""Operators of a `LengthTest` for lengths that pass it."""
+FAILED = {"equal": "!=", "at least": "<", "at most": ">", "multiple": "!="}
+"""Operators of a `LengthTest` for lengths that fail it."""
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 
@@ -76,35 +81,20 @@ def like(candidate: MessageOfId, depth: int = 3) -> str:
     return either(terms, f" &&\n{STEP * depth}")
 
 
-def length_test(test: LengthTest, longest: str) -> str:
-    """Return the condition for a ``length`` that passes a test.
+def length_test(
+    test: LengthTest, longest: str, operators: Mapping[str, str] = PASSED
+) -> str:
+    """Return the condition for a ``length`` that passes a test, or fails it with the
+    operators `FAILED`.
 
     ``longest`` is the macro of the longest.
     """
+    operator = operators[test.kind]
     if test.kind == "multiple":
-        return f"{_remainder(test)} == 0u"
-    operators = {"equal": "==", "at least": ">=", "at most": "<="}
-    return f"length {operators[test.kind]} {_bytes(test, longest)}"
-
-
-def failed_length_test(test: LengthTest, longest: str) -> str:
-    """Return the condition for a ``length`` that fails a test.
-
-    ``longest`` is the macro of the longest.
-    """
-    if test.kind == "multiple":
-        return f"{_remainder(test)} != 0u"
-    operators = {"equal": "!=", "at least": "<", "at most": ">"}
-    return f"length {operators[test.kind]} {_bytes(test, longest)}"
-
-
-def _bytes(test: LengthTest, longest: str) -> str:
-    return f"{test.value}u" if test.kind == "at least" else longest
-
-
-def _remainder(test: LengthTest) -> str:
-    counted = f"(length - {test.without}u)" if test.without else "length"
-    return f"({counted} % {test.value}u)"
+        counted = f"(length - {test.without}u)" if test.without else "length"
+        return f"({counted} % {test.value}u) {operator} 0u"
+    bound = f"{test.value}u" if test.kind == "at least" else longest
+    return f"length {operator} {bound}"
 
 
 def head(returned: str, name: str, *parameters: str) -> str:
