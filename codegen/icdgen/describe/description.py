@@ -547,6 +547,16 @@ class Composite(Named[WithFields]):
             for member in self.members
         )
 
+    @property
+    def has_physical(self) -> bool:
+        """Whether one of its own members has a physical value other than the raw value,
+        or is computed from other fields.
+        """
+        return any(
+            field.has_physical or field.model.derived is not None
+            for field in self.declared_members
+        )
+
     @cached_property
     def has_wide_steps(self) -> bool:
         """Whether the scale of one of its own members needs arithmetic of more than 128
