@@ -1,5 +1,5 @@
-"""Who imports whom within a package, imports within functions and for type checkers
-included.
+"""Who imports whom within packages, imports within functions and for type checkers
+included, and calls of `import_module` with a literal name.
 """
 
 from __future__ import annotations
@@ -11,9 +11,13 @@ from pathlib import Path
 Graph = Mapping[str, frozenset[str]]  # module -> modules that it imports
 
 
-def graph(folder: Path) -> Graph:
-    """The modules of a package. Raises `SyntaxError` for what is no Python."""
-    files = {_module(path, folder): path for path in sorted(folder.rglob("*.py"))}
+def graph(*folders: Path) -> Graph:
+    """The modules of packages. Raises `SyntaxError` for what is no Python."""
+    files = {
+        _module(path, folder): path
+        for folder in folders
+        for path in sorted(folder.rglob("*.py"))
+    }
     return {
         name: frozenset(_imports(name, path, files)) - {name}
         for name, path in files.items()
@@ -41,6 +45,22 @@ def _imports(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
                     yield inner
                 elif base in known:
                     yield base
+        elif isinstance(node, ast.Call):
+            yield from {_imported_by_call(node)} & known.keys()
+
+
+def _imported_by_call(call: ast.Call) -> str:
+    """Return the module that `import_module` or `__import__` loads; empty if the call
+    is another one, or computes the name.
+    """
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
+    name = call.func.id if isinstance(call.func, ast.Name) else name
+    if name not in ("import_module", "__import__") or not call.args:
+        return ""
+    match call.args[0]:
+        case ast.Constant(value=str(module)):
+            return module
+    return ""
 
 
 def circles(graph: Graph) -> list[list[str]]:

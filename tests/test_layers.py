@@ -49,12 +49,23 @@ RUNTIME_LAYERS = [
     "wire",
 ]
 RUNTIME_ROWS = [
-    ["icdgen_runtime"],
     *([f"icdgen_runtime.{name}" for name in row.split()] for row in RUNTIME_LAYERS),
+    ["icdgen_runtime"],  # names of all modules, so none of them imports it
 ]
-# A language's backend -> the only packages that import it: they need its names of
-# messages and fields.
+# A package -> the only packages that import it. Some need the names that the backend
+# of a language gives messages and fields. Nothing that computes needs the runtime, and
+# the runtime works without the generator.
 USERS = {
+    "icdgen": [],
+    "icdgen_runtime": [
+        "icdgen.backends.html",
+        "icdgen.commands",
+        "icdgen.link",
+        "icdgen.logfile",
+        "icdgen.recognize",
+        "icdgen.runtime_objects",
+        "icdgen.sim",
+    ],
     "icdgen.backends.c": [
         "icdgen.backends.c_selftest",
         "icdgen.backends.html",
@@ -83,8 +94,8 @@ def test_imports_lead_down(folder, rows):
     assert imports.upward(imports.graph(folder), rows) == []
 
 
-def test_the_backend_of_a_language_is_imported_by_its_users_only():
-    assert imports.reserved(imports.graph(PACKAGE), USERS) == []
+def test_backends_runtime_and_generator_are_imported_by_their_users_only():
+    assert imports.reserved(imports.graph(PACKAGE, RUNTIME), USERS) == []
 
 
 def test_the_order_names_only_what_there_is():
@@ -195,6 +206,40 @@ def test_a_backend_that_is_imported_by_the_site_in_a_copy_of_the_package_is_foun
     )
     error = "icdgen.backends.html.wire imports icdgen.backends.python.nodes"
     assert imports.reserved(modules, USERS) == [error]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import_module('icdgen.backends.python')",
+        "importlib.import_module('icdgen.backends.python')",
+        "__import__('icdgen.backends.python')",
+    ],
+)
+def test_a_planted_import_by_a_call_in_the_simulator_is_detected(tmp_path, text):
+    modules = imports.graph(_copy(PACKAGE, tmp_path, "sim/run.py", text))
+    error = "icdgen.sim.run imports icdgen.backends.python"
+    assert imports.reserved(modules, USERS) == [error]
+
+
+def test_a_planted_import_of_the_generator_by_the_runtime_is_detected(tmp_path):
+    copy = _copy(RUNTIME, tmp_path, "wire/uart.py", "from icdgen.naming import words")
+    error = "icdgen_runtime.wire.uart imports icdgen.naming"
+    assert imports.reserved(imports.graph(PACKAGE, copy), USERS) == [error]
+
+
+def test_a_planted_import_of_the_runtime_by_the_model_is_detected(tmp_path):
+    copy = _copy(PACKAGE, tmp_path, "icd/units.py", "import icdgen_runtime._codec")
+    error = "icdgen.icd.units imports icdgen_runtime._codec"
+    assert imports.reserved(imports.graph(copy, RUNTIME), USERS) == [error]
+
+
+def test_a_module_of_the_runtime_that_imports_all_names_in_a_copy_is_detected(tmp_path):
+    copy = _copy(RUNTIME, tmp_path, "_errors.py", "from icdgen_runtime import Message")
+    error = (
+        "icdgen_runtime._errors imports icdgen_runtime, which does not stand below it"
+    )
+    assert imports.upward(imports.graph(copy), RUNTIME_ROWS) == [error]
 
 
 def test_a_circle_that_is_planted_in_a_copy_of_the_package_is_found(tmp_path):
