@@ -19,14 +19,7 @@ def report(reads: Sequence[Read], colour: bool = False) -> str:
     """Return the findings of each definition, followed by its statistics and the
     renamed identifiers.
     """
-    shown = [
-        read
-        for read in reads
-        if len(reads) == 1
-        or read.trees
-        or read.definitions.total
-        or read.definitions.import_findings
-    ]
+    shown = [read for read in reads if len(reads) == 1 or _has_content(read)]
     blocks = ["\n".join(_lines(read, colour)) for read in shown]
     if unshown := [
         printable(read.definitions.file) for read in reads if read not in shown
@@ -38,6 +31,12 @@ def report(reads: Sequence[Read], colour: bool = False) -> str:
             f"without messages of {'its' if len(unshown) == 1 else 'their'} own: {names}"
         )
     return "\n\n".join(blocks)
+
+
+def _has_content(read: Read) -> bool:
+    """Return whether a definition has messages, or findings about them."""
+    definitions = read.definitions
+    return bool(read.trees or definitions.total or definitions.import_findings)
 
 
 def _lines(read: Read, colour: bool) -> list[str]:

@@ -104,13 +104,8 @@ def _define(sheets: Sheets, to: Definitions) -> None:
     """Add the ICD with the messages of all packages of a file."""
     types, structs = Types(to, sheets), Structs()
     sent, independent = Interfaces(sheets).sent()
-    containers = [
-        container
-        for container in (
-            _read_message(sending, sheets, types, structs, to) for sending in sent
-        )
-        if container is not None
-    ]
+    messages = (_read_message(sending, sheets, types, structs, to) for sending in sent)
+    containers = [message for message in messages if message is not None]
     types.report_raw_only()
     network = Network(
         node_name(to.file), _title(sheets) or node_name(to.file), {**ORDERS[BIG]}

@@ -170,12 +170,7 @@ class Enumerations:
         ``name`` is its preferred name, and ``owner`` a prefix for names in conflict.
         """
         values = tuple(
-            (
-                member["value"],
-                member["to"] if "to" in member else member["value"],
-                str(member["name"]),
-            )
-            for member in named
+            (member["value"], _last(member), str(member["name"])) for member in named
         )
         self.uses.append((to, name, owner, values))
 
@@ -218,15 +213,14 @@ class Enumerations:
         for to, name, owner, values in self.uses:
             unique_name = name if len(kinds[name]) == 1 else f"{owner} {name}"
             to["enum"] = unique_name
-            enum_members = [
-                {
-                    "value": first,
-                    **({"to": last} if last != first else {}),
-                    "name": text,
-                }
-                for first, last, text in values
-            ]
+            enum_members = [_member(*value) for value in values]
             enums.setdefault(
                 unique_name, {"name": unique_name, "members": enum_members}
             )
         return list(enums.values())
+
+
+def _member(first: int, last: int, name: str) -> Item:
+    """Return the enumeration member of a value or of a range of values."""
+    range_end = {"to": last} if last != first else {}
+    return {"value": first, **range_end, "name": name}

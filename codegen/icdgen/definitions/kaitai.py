@@ -169,16 +169,7 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
     ]
     times = Counter(words)
     candidates = [
-        (
-            text
-            if times[text] == 1
-            else " ".join(
-                [
-                    name,
-                    *(f"{label.word} {label.value}".strip() for label in layout.labels),
-                ]
-            )
-        )
+        text if times[text] == 1 else _name_with_values(name, layout)
         for text, layout in zip(words, layouts, strict=True)
     ]
     times = Counter(candidates)
@@ -193,6 +184,12 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
             )
         result.append(line(text, 200))
     return result
+
+
+def _name_with_values(name: str, layout: Layout) -> str:
+    """Return the name of the format, with words and values of the branches."""
+    labels = (f"{label.word} {label.value}".strip() for label in layout.labels)
+    return " ".join([name, *labels])
 
 
 def _fields(layout: Layout, order: str) -> list[Item]:

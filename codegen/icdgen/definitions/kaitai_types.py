@@ -100,14 +100,17 @@ class Type:
             enumeration = mapping(scope.body, "enums").get(name)
             if isinstance(enumeration, Map):
                 return {
-                    value: str(
-                        member.get("id", "") if isinstance(member, Map) else member
-                    )
+                    value: _member_name(member)
                     for key, member in enumeration.items()
                     if (value := integer(key)) is not None
                 }
             scope = scope.outer
         raise NotSupported(f"there is no enumeration `{line(reference, 60)}`")
+
+
+def _member_name(member: object) -> str:
+    """Return the name of a member that is a mapping with an `id`, or only a name."""
+    return str(member.get("id", "") if isinstance(member, Map) else member)
 
 
 def mapping(body: Map, key: str) -> Map | dict[str, Any]:

@@ -246,12 +246,11 @@ def _discriminator(containers: list[Sent]) -> Hashable | None:
         for key in (containers[0].told if containers else ())
         if all(key in container.told for container in containers)
     ]
+    end = 1 << _MOST_ID_BITS
     fits = [
         key
         for key in common
-        if all(
-            0 <= container.told[key] < 1 << _MOST_ID_BITS for container in containers
-        )
+        if all(0 <= container.told[key] < end for container in containers)
     ]
     return max(
         fits,

@@ -248,12 +248,12 @@ def _identified(candidates: list[_Candidate], to: Definitions) -> list[_Candidat
     Applies only to databases of space packets. The containers that inherit the base
     ones are the messages.
     """
-    is_packet = any(candidate.header is not None for candidate in candidates)
+    if all(candidate.header is None for candidate in candidates):
+        return candidates
     bases = [
         candidate
         for candidate in candidates
-        if is_packet
-        and candidate.is_base
+        if candidate.is_base
         and (candidate.header is None or candidate.header.apid is None)
     ]
     if bases:
@@ -355,18 +355,17 @@ def _is_same(first: Item, second: Item) -> bool:
     telemetry has their type.
     """
 
-    def plain(message: Item) -> list[Item]:
-        fields = (field for field in message.get("fields", ()) if not field.get("view"))
-        return [
-            (
-                {"at": f["at"], "bits": f["const"] & (1 << f["bits"]) - 1}
-                if "const" in f
-                else f
-            )
-            for f in fields
-        ]
+    def plain(field: Item) -> Item:
+        if "const" not in field:
+            return field
+        return {"at": field["at"], "bits": field["const"] & (1 << field["bits"]) - 1}
 
-    return first["length"] == second["length"] and plain(first) == plain(second)
+    def plain_fields(message: Item) -> list[Item]:
+        return [plain(f) for f in message.get("fields", ()) if not f.get("view")]
+
+    return first["length"] == second["length"] and (
+        plain_fields(first) == plain_fields(second)
+    )
 
 
 def _group(names: Names, element: Element) -> Item:

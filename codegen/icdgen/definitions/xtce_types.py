@@ -81,17 +81,10 @@ class Types(Reading):
         chain = self._chain(element)
         kind = re.sub("(Parameter|Argument)Type$", "", element.tag)
         if kind == "Aggregate":
-            listed = [
-                member
-                for type_ in chain
-                for member in type_.iterfind("MemberList/Member")
-            ]
+            type_of = self.names.type_of
             members = [
-                (
-                    member.get("name", ""),
-                    self.names.type_of(member.get("typeRef", ""), element),
-                )
-                for member in listed
+                (member.get("name", ""), type_of(member.get("typeRef", ""), element))
+                for member in _inside(chain, "MemberList/Member")
             ]
             return Piece({}, 0, members=members)
         if kind == "Array":
@@ -279,11 +272,7 @@ class Types(Reading):
                 f"{where} has labels, and is encoded as {piece.item['type']}"
             )
         choices: dict[int, str] = {}
-        for enumeration in (
-            enumeration
-            for type_ in chain
-            for enumeration in type_.iterfind("EnumerationList/Enumeration")
-        ):
+        for enumeration in _inside(chain, "EnumerationList/Enumeration"):
             first = number(enumeration.get("value", ""), "the value of a label")
             last = number(
                 enumeration.get("maxValue") or str(first), "the value of a label"
@@ -375,12 +364,7 @@ class Types(Reading):
 
         Empty if there are several, or it applies to raw values of a calibrated number.
         """
-        ranges = [
-            element
-            for type_ in chain
-            for path in _RANGES
-            for element in type_.iterfind(path)
-        ]
+        ranges = list(_inside(chain, *_RANGES))
         owners = [
             owner
             for type_ in chain
@@ -496,6 +480,13 @@ def _time(item: Item, chain: list[Element]) -> dict[str, Any]:
 def described(*elements: Element) -> dict[str, str]:
     """Return the summary of the first element that has a description."""
     return summary(next((text for text in map(_description, elements) if text), ""))
+
+
+def _inside(chain: list[Element], *paths: str) -> Iterator[Element]:
+    """Yield the elements of types at each of the paths."""
+    for type_ in chain:
+        for path in paths:
+            yield from type_.iterfind(path)
 
 
 def _below(chain: list[Element]) -> Iterator[Element]:
