@@ -300,11 +300,12 @@ def _nowhere(tree: Map, where: Map, named: _ByName) -> Finding:
         owners = list(named.of(tree, f"{kind}s", where[kind]))
         if owners:
             target = f"field `{where.get('field') or where.get('fields')}` in {target}"
-            names, key = [
+            names = [
                 field.get("name")
                 for owner in owners
                 for field in mappings(owner.get("fields"))
-            ], "field"
+            ]
+            key = "field"
     candidates = (name for name in names if isinstance(name, str))
     help, fix = suggestion(
         str(where.get(key, "")), candidates, "names are the manual's, to the letter"

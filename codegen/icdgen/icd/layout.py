@@ -304,19 +304,16 @@ class Layout:
         """Arrays of variable length in a struct, at their positions in its longest
         element.
         """
-        return tuple(
-            VariablePart(
-                node,
-                node.size.counter,
-                False,
-                node.at // 8,
-                stride(node) // 8,
-                node.size.most,
-                node.size.plus,
-            )
-            for node in self.fixed
-            if isinstance(node, Array) and isinstance(node.size, Counted)
-        )
+        parts: list[VariablePart] = []
+        for node in self.fixed:
+            if isinstance(node, Array) and isinstance(size := node.size, Counted):
+                begin, step = node.at // 8, stride(node) // 8
+                parts.append(
+                    VariablePart(
+                        node, size.counter, False, begin, step, size.most, size.plus
+                    )
+                )
+        return tuple(parts)
 
     @cached_property
     def parts_by_size(self) -> dict[str, VariablePart]:

@@ -11,7 +11,7 @@ becomes a tuple, because the model has lists only in values that are written as 
 from __future__ import annotations
 
 import json
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -96,18 +96,14 @@ def _defaults(kind: Any) -> list[tuple[str, Any]]:
         return [
             (name, kind._field_defaults.get(name, MISSING)) for name in kind._fields
         ]
-    return [
-        (
-            field.name,
-            (
-                field.default
-                if field.default_factory is MISSING
-                else field.default_factory()
-            ),
-        )
-        for field in fields(kind)
-        if field.compare
-    ]
+    return [(field.name, _default(field)) for field in fields(kind) if field.compare]
+
+
+def _default(field: Field[Any]) -> Any:
+    """Return the default of an attribute, `MISSING` without one."""
+    if field.default_factory is MISSING:
+        return field.default
+    return field.default_factory()
 
 
 class _Reader:

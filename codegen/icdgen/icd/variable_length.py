@@ -112,16 +112,17 @@ def placed_fields(
 
     The schema check reports the other fields.
     """
-    return [
-        item
-        for item in filter(wanted, mappings(message.get("fields")))
-        if isinstance(item.get("name"), str)
-        and all(
-            type(item.get(key)) is int
-            for key in ("at", "bits")[: 1 if _is_sized(item) else 2]
-        )
-        and (_is_sized(item) or item["bits"] > 0)
-    ]
+    fields = filter(wanted, mappings(message.get("fields")))
+    return [field for field in fields if _is_placed(field)]
+
+
+def _is_placed(item: Map) -> bool:
+    """Return whether a field has a name, and a valid position and width."""
+    return (
+        isinstance(item.get("name"), str)
+        and type(item.get("at")) is int
+        and (_is_sized(item) or (type(item.get("bits")) is int and item["bits"] > 0))
+    )
 
 
 def _is_sized(item: Map) -> bool:

@@ -221,16 +221,18 @@ def list_tables_match_detail_tables(ctx: Context) -> Iterator[Fault]:
             if own != value and not (
                 key in _IDS and own is not None and number(own) == number(value)
             ):
-                sides = (listed, message.source)
                 values = [
-                    quote(
-                        ctx.written(side, key)
-                        if key in _IDS and key in side
-                        else side.get(key)
-                    )
-                    for side in sides
+                    quote(_as_written(ctx, side, key))
+                    for side in (listed, message.source)
                 ]
                 listed_value = f"the {key.replace('_', ' ')} {values[0]}"
                 text = f"the list table gives {quote(message.name)} {listed_value}, the detail table {values[1]}"
                 help = f"decide in an erratum: `held` has the other `{key}`, or `listed: null` to ignore the list table"
                 yield Fault(message.source, listed.at(key), text, help)
+
+
+def _as_written(ctx: Context, entries: Map, key: str) -> object:
+    """Return a value of a list or detail table, an id in the spelling of its file."""
+    if key in _IDS and key in entries:
+        return ctx.written(entries, key)
+    return entries.get(key)

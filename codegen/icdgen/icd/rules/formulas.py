@@ -147,14 +147,12 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
     kind.
     """
     for kind, stated_for in stated.items():
+        messages = (message for message in node.messages if message.kind == kind)
         contrary = [
             field
-            for message in node.messages
-            if message.kind == kind
+            for message in messages
             for field in lines(message.layout)
-            if "formula" in field.scalar.source
-            and "formula_for" not in field.scalar.source
-            and _gives(field.scalar) != stated_for
+            if _depends_on_kind(field.scalar) and _gives(field.scalar) != stated_for
         ]
         if contrary:
             fields = count(len(contrary), "field")
@@ -165,6 +163,11 @@ def _stated(stated: Map, node: Node) -> Iterator[Fault]:
             message = f"no formula of a {kind} message gives anything but the {stated_for} value, so the key is not needed"
             help = f"remove `{kind}`"
         yield Fault.at(stated, kind, message, help)
+
+
+def _depends_on_kind(field: Scalar) -> bool:
+    """Return whether `formula_for` of the ICD applies to the formula of a field."""
+    return "formula" in field.source and "formula_for" not in field.source
 
 
 def _gives(field: Scalar) -> str:

@@ -67,11 +67,7 @@ def structs_exist(ctx: Context) -> Iterator[Fault]:
 def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         uses = {
-            struct["name"]: [
-                row
-                for row in mappings(struct.get("fields"))
-                if isinstance(row.get("struct"), str)
-            ]
+            struct["name"]: _rows_with_struct(struct)
             for struct in mappings(node.source.get("structs"))
             if isinstance(struct.get("name"), str)
         }
@@ -82,6 +78,12 @@ def structs_do_not_contain_themselves(ctx: Context) -> Iterator[Fault]:
                     message = f"the struct {quote(name)} contains itself: {' -> '.join((name, *path))}"
                     help = "write the inner fields directly into the struct"
                     yield Fault.at(row, "struct", message, help)
+
+
+def _rows_with_struct(struct: Map) -> list[Map]:
+    """Return the fields of a struct that are structs."""
+    rows = mappings(struct.get("fields"))
+    return [row for row in rows if isinstance(row.get("struct"), str)]
 
 
 def _shortest_path(
