@@ -67,16 +67,23 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
     numbers = [
         member
         for member in message.members
-        if not member.model.conditions
-        and member.model.name not in selectors
-        and member.model.const is None
-        and not member.model.is_bytes
-        and member.struct is None
-        and not member.count
-        and member.model.name not in counters
+        if _is_free_number(member) and member.model.name not in counters | selectors
     ]
     scaled = (member for member in numbers if member.is_scaled and member.is_settable)
     return next(scaled, numbers[0] if numbers else None)
+
+
+def _is_free_number(member: FieldDescription) -> bool:
+    """Return whether a field is a single number that is always present and not
+    constant.
+    """
+    return not (
+        member.model.conditions
+        or member.model.const is not None
+        or member.model.is_bytes
+        or member.struct is not None
+        or member.count
+    )
 
 
 def example(message: MessageDescription) -> Example:

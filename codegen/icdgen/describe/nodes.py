@@ -8,7 +8,7 @@ variable parts and its ids.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 from icdgen import layout
@@ -78,15 +78,12 @@ class MessageDescription(Composite[Message]):
         parts = []
         for part in self.model.layout.parts:
             field = by_name[part.name]
-            inner = (
-                VariablePartDescription(
-                    model,
-                    field.struct.member_for[id(model.node)],
-                    by_name[model.counter],
-                )
-                for model in (part.inner if field.struct is not None else ())
-                if field.struct is not None
-            )
+            inner: list[VariablePartDescription] = []
+            if field.struct is not None:
+                for model in part.inner:
+                    member = field.struct.member_for[id(model.node)]
+                    counter = by_name[model.counter]
+                    inner.append(VariablePartDescription(model, member, counter))
             parts.append(
                 VariablePartDescription(
                     part, field, by_name[part.counter], tuple(inner)
@@ -380,12 +377,7 @@ class NodeDescription:
     def _sharing(self) -> dict[str, frozenset[MessageDescription]]:
         """Messages of each direction that share their id with another one."""
         return {
-            direction: frozenset(
-                row.message
-                for under_id in ids
-                if under_id.is_shared
-                for row in under_id.messages
-            )
+            direction: frozenset(_messages_with_shared_id(ids))
             for direction, ids in self._ids.items()
         }
 
@@ -446,6 +438,14 @@ class NodeDescription:
     def log_bits(self) -> dict[int, int]:
         """Telemetry id -> the bit of the log mask that selects it."""
         return {row.id: row.bit for row in self.model.loggable}
+
+
+def _messages_with_shared_id(
+    ids: Iterable[MessagesOfId],
+) -> Iterator[MessageDescription]:
+    for messages_of_id in ids:
+        if messages_of_id.is_shared:
+            yield from (row.message for row in messages_of_id.messages)
 
 
 class Description:
