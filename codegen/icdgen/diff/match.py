@@ -396,24 +396,22 @@ def _fields(pair: MessagePair) -> list[FieldPair]:
     """Return the pairs of fields that have a line in the ICD; fields of a struct for
     each use of it.
     """
-    old, new = (
-        (
-            sorted(
-                (line for line in lines(message.layout) if not line.is_count),
-                key=_place,
-            )
-            if message
-            else []
-        )
-        for message in (pair.before, pair.after)
-    )
     pairs = _side_by_side(
-        old,
-        new,
+        _lines_by_place(pair.before),
+        _lines_by_place(pair.after),
         lambda pairs_by_name, *left: _renamed_fields(pair, pairs_by_name, *left),
     )
     field_pairs = [FieldPair(*sides, owner=pair) for sides in pairs]
     return sorted(field_pairs, key=lambda p: _place(p.before or p.new))
+
+
+def _lines_by_place(message: Message | None) -> list[Line]:
+    """Return the lines of a message in the order of their places, without counts of
+    elements.
+    """
+    if message is None:
+        return []
+    return sorted((ln for ln in lines(message.layout) if not ln.is_count), key=_place)
 
 
 def _place(field: Line) -> tuple[int, str]:

@@ -144,13 +144,8 @@ class FieldPair(SideBySide[Line]):
 
         For a variable-length part, the bits of one element are compared.
         """
-        was, now = (
-            position(node, line, self.is_open)
-            for node, line in (
-                (self.owner.old_node, self.old),
-                (self.owner.new_node, self.new),
-            )
-        )
+        was = position(self.owner.old_node, self.old, self.is_open)
+        now = position(self.owner.new_node, self.new, self.is_open)
         return was == now
 
     @cached_property

@@ -68,15 +68,15 @@ def _repeated(line: Line, is_open: bool) -> tuple[tuple[int, int], ...] | None:
 
 def _in_words(repeated: tuple[tuple[int, int], ...]) -> str:
     """Return the repetition as text: ``4 structs, one every 3 bytes``."""
-    texts = [
-        (
-            f"{count(times, 'struct') if times else 'structs'}, one every {bits(stride)}"
-            if stride
-            else "a struct"
-        )
-        for times, stride in repeated
-    ]
-    return ", in each of them ".join(texts)
+    return ", in each of them ".join(_level_text(*level) for level in repeated)
+
+
+def _level_text(times: int, stride: int) -> str:
+    """Return the repetition of one level of structs as text."""
+    if not stride:
+        return "a struct"
+    structs = count(times, "struct") if times else "structs"
+    return f"{structs}, one every {bits(stride)}"
 
 
 @rule("DIF313", "node")
