@@ -31,25 +31,23 @@ def assemble(
 
     ``prose``: keep descriptions as summaries.
     """
+    findings = survey.import_findings
     nodes = _parts_by_node(document, survey, profile)
     everything = [enum for _, enum in survey.of(ReadEnum)]
     for node in nodes:
         _merge_enums(node, survey)
     for node in nodes:
-        references.listed(node, survey.import_findings)
+        references.listed(node, findings)
     _includes(nodes)
     for node in nodes:
-        references.enums(node, nodes, everything, survey.import_findings)
+        references.enums(node, nodes, everything, findings)
     for node in nodes:
-        references.complete(
-            node, icd_trees.head(node, document, profile), survey.import_findings
-        )
+        head = icd_trees.head(node, document, profile)
+        references.complete(node, head, findings)
     return {
-        node_parts.name: icd_trees.tree(
-            node_parts, document, profile, prose, survey.import_findings
-        )
-        for node_parts in nodes
-        if node_parts.holds
+        node.name: icd_trees.tree(node, document, profile, prose, findings)
+        for node in nodes
+        if node.holds
     }
 
 

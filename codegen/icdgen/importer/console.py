@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Sequence
+from typing import Any
 
 from icdgen.diagnostics import Finding
 from icdgen.import_results import report as shared
-from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY
+from icdgen.import_results.findings import CERTAIN, DOUBTFUL, LIKELY, ImportFinding
+from icdgen.importer.document import SourceTable
 from icdgen.importer.model import BACKGROUND, UNKNOWN
 from icdgen.importer.run import Result
 from icdgen.importer.words import table_name
@@ -60,30 +62,32 @@ def as_json(result: Result, checked: Sequence[Finding]) -> str:
     for the files.
     """
     entries = [
-        {
-            "table": _table(entry.table.label),
-            "caption": entry.table.caption,
-            "page": entry.table.page,
-            "line": entry.table.line,
-            "is": entry.what,
-            "sure": result.sure_of(entry.table),
-        }
+        _table_as_json(entry.table, entry.what, result.sure_of(entry.table))
         for entry in result.survey.found
     ]
-    import_findings = [
-        {
-            **shared.finding_as_json(t),
-            "table": _table(t.spot.table),
-            "page": t.spot.page,
-            "line": t.spot.line,
-        }
-        for t in result.import_findings
-    ]
+    import_findings = [_finding_as_json(finding) for finding in result.import_findings]
     written = shared.files_as_json(result.targets)
     return json.dumps(
         {"manual": result.document.file, "pages": result.document.pages, "tables": entries, "findings": import_findings,
          "files": written, "check": shared.checked_as_json(checked)}, indent=2, ensure_ascii=False,
     )  # fmt: skip
+
+
+def _table_as_json(table: SourceTable, what: str, sure: str) -> dict[str, Any]:
+    return {
+        "table": _table(table.label),
+        "caption": table.caption,
+        "page": table.page,
+        "line": table.line,
+        "is": what,
+        "sure": sure,
+    }
+
+
+def _finding_as_json(finding: ImportFinding) -> dict[str, Any]:
+    spot = finding.spot
+    place = {"table": _table(spot.table), "page": spot.page, "line": spot.line}
+    return {**shared.finding_as_json(finding), **place}
 
 
 def _table(number: int | None) -> int | str | None:

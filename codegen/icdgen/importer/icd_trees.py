@@ -10,7 +10,14 @@ from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
 from icdgen.import_results.findings import ImportFinding
 from icdgen.importer.document import Document, SourceTable
-from icdgen.importer.model import Listed, NodeParts, ReadEnum, ReadField, ReadMessage
+from icdgen.importer.model import (
+    Listed,
+    NodeParts,
+    ReadEnum,
+    ReadField,
+    ReadMessage,
+    ReadStruct,
+)
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import squeezed, table_name
 
@@ -29,11 +36,7 @@ def tree(
         units=_units(node, import_findings),
         enums=[_enum(item, prose) for item in node.enums],
         structs=[
-            {
-                "name": item.name,
-                "length": item.length,
-                "fields": [_field(field, prose) for field in item.fields],
-            }
+            _struct(item, prose)
             for message in node.messages
             for item in message.structs
         ],
@@ -59,13 +62,11 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
     """
     by_kind = {}
     for kind in dict.fromkeys(message["kind"] for message in messages):
-        fields = [
-            f
-            for m in messages
-            if m["kind"] == kind
-            for f in m.get("fields", ())
-            if "formula" in f
-        ]
+        of_kind = (message for message in messages if message["kind"] == kind)
+        all_fields = (
+            field for message in of_kind for field in message.get("fields", ())
+        )
+        fields = [field for field in all_fields if "formula" in field]
         words = {field.get("formula_for") for field in fields}
         if len(fields) > 1 and len(words) == 1 and None not in words:
             by_kind[kind] = words.pop()
@@ -96,6 +97,11 @@ def _source(table: SourceTable) -> dict[str, Any]:
     if table.page is not None:
         source["page"] = table.page
     return source
+
+
+def _struct(struct: ReadStruct, prose: bool) -> dict[str, Any]:
+    fields = [_field(field, prose) for field in struct.fields]
+    return {"name": struct.name, "length": struct.length, "fields": fields}
 
 
 def _enum(enum: ReadEnum, prose: bool) -> dict[str, Any]:

@@ -142,10 +142,7 @@ class Profile:
     @cached_property
     def _needs_of_vocabulary(self) -> dict[str, list[tuple[str, ...]]]:
         return {
-            kind: [
-                tuple(alternatives.split("|"))
-                for alternatives in roles.get("needs", ())
-            ]
+            kind: [tuple(group.split("|")) for group in roles.get("needs", ())]
             for kind, roles in self.data["headings"].items()
         }
 
@@ -235,21 +232,20 @@ class Profile:
 
     @cached_property
     def nodes(self) -> list[NodeWords]:
-        return [
-            NodeWords(
-                name=item["name"],
-                match=list(item.get("match", ())),
-                tables=tuple(item["tables"]) if "tables" in item else None,
-                group=item.get("group"),
-                head={
-                    k: v
-                    for k, v in item.items()
-                    if k not in ("match", "tables", "group", "include")
-                },
-                include=list(item.get("include", ())),
-            )
-            for item in self.data.get("nodes", ())
-        ]
+        return [_node_words(item) for item in self.data.get("nodes", ())]
+
+
+def _node_words(item: dict[str, Any]) -> NodeWords:
+    """Return an entry of `nodes`."""
+    not_in_head = ("match", "tables", "group", "include")
+    return NodeWords(
+        name=item["name"],
+        match=list(item.get("match", ())),
+        tables=tuple(item["tables"]) if "tables" in item else None,
+        group=item.get("group"),
+        head={key: value for key, value in item.items() if key not in not_in_head},
+        include=list(item.get("include", ())),
+    )
 
 
 def phrase(text: str) -> re.Pattern[str]:

@@ -194,10 +194,8 @@ def _by_title(
         enum
         for enum in near
         if len(wanted) > 5
-        and all(
-            squeezed(text).startswith(wanted)
-            for text in (enum.table.caption, enum.name)
-        )
+        and squeezed(enum.table.caption).startswith(wanted)
+        and squeezed(enum.name).startswith(wanted)
     ]
     if len({squeezed(enum.name) for enum in torn}) > 1:
         torn = []

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -405,19 +405,10 @@ class _Reader:
                     if counts
                     else f"{declaration.name}." if declaration.name else ""
                 )
-                result += [
-                    Member(
-                        m.byte + index * layout.size,
-                        m.bits,
-                        m.kind,
-                        prefix + m.name,
-                        m.bit,
-                        m.count,
-                        m.members,
-                        declaration.coord.line,
-                    )
-                    for m in layout.members
-                ]
+                for member in layout.members:
+                    byte, name = member.byte + index * layout.size, prefix + member.name
+                    line = declaration.coord.line
+                    result.append(replace(member, byte=byte, name=name, line=line))
             return result, layout.size * total, layout.alignment
         name, size = self.scalar(kind)
         count = 1

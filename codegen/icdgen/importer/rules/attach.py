@@ -59,19 +59,16 @@ def _hosts(
 
     If several tables describe one name, each belongs to the nearest message above it.
     """
-    fields = [
-        (m, d)
-        for m in messages
-        for d in m.drafts
-        if squeezed(d.name) == squeezed(name)
-        and name
-        and squeezed(part.name) in ("", squeezed(m.name))
-    ]
+    if not name:
+        return []
+    wanted = squeezed(name)
+    hosts = [m for m in messages if squeezed(part.name) in ("", squeezed(m.name))]
+    fields = [(m, d) for m in hosts for d in m.drafts if squeezed(d.name) == wanted]
     rivals = [
         p
         for p in parts
         if p.rule.what == part.rule.what
-        and squeezed(p.given.get("of", "")) == squeezed(name)
+        and squeezed(p.given.get("of", "")) == wanted
         and squeezed(p.name) == squeezed(part.name)
     ]
     # Manuals print the table of values below the message that it belongs to.

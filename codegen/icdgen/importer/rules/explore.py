@@ -103,16 +103,17 @@ def _title(title: str) -> str:
 
 def as_json(tables: list[SourceTable], document: str) -> str:
     """Return the kinds of tables for programs."""
-    entries: list[dict[str, Any]] = [
-        {
-            "headings": group[0].titles,
-            "count": len(group),
-            "tables": [table.number for table in group],
-            "pages": sorted({table.page for table in group if table.page is not None}),
-            "names": [name_of(table) for table in group],
-        }
-        for group in kinds(tables)
-    ]
+    entries = [_kind_as_json(group) for group in kinds(tables)]
     return json.dumps(
         {"document": document, "kinds": entries}, indent=2, ensure_ascii=False
     )
+
+
+def _kind_as_json(group: list[SourceTable]) -> dict[str, Any]:
+    return {
+        "headings": group[0].titles,
+        "count": len(group),
+        "tables": [table.number for table in group],
+        "pages": sorted({table.page for table in group if table.page is not None}),
+        "names": [name_of(table) for table in group],
+    }

@@ -310,14 +310,11 @@ class _Interpreter:
         For rows, these are each row, then the rows above the headings as one text.
         """
         if source == "row":
-            texts = [
-                " | ".join(
-                    filter(
-                        None, (cell_text(c.text, self.document_words) for c in r.cells)
-                    )
-                )
-                for r in table.rows
-            ]
+            words = self.document_words
+            cells = (
+                [cell_text(c.text, words) for c in row.cells] for row in table.rows
+            )
+            texts = [" | ".join(filter(None, row)) for row in cells]
             head = heading_rows(rule, texts_of(table, rule.transpose))
             texts.append(
                 " | ".join(filter(None, texts[: head.start] if head else texts))
@@ -470,14 +467,17 @@ class _Interpreter:
         """
         ids_with_table = {part.number(role) for part in self.parts for role in _IDS}
         used = {rule.name for choice in choices for rule in choice.rules}
+        rules = [
+            rule
+            for rule in self.profile.rules
+            if rule.name in used and rule.what in ("message", "registers")
+        ]
         patterns = [
             (rule, pattern)
-            for rule in self.profile.rules
+            for rule in rules
             for source in ("heading", "before")
             for pattern in rule.sources.get(source, ())
-            if rule.name in used
-            and rule.what in ("message", "registers")
-            and pattern.roles & set(_IDS)
+            if pattern.roles & set(_IDS)
         ]
         for table in self.tables:
             for text in map(normalised, (*table.before, *table.after)):

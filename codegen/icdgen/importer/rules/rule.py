@@ -114,17 +114,19 @@ class Rule:
     base: int = 10
 
     @property
+    def column_patterns(self) -> Iterator[Pattern]:
+        """Patterns of `columns` and `lines`."""
+        for column in (*self.columns, *self.lines):
+            yield from column.patterns
+
+    @property
     def has_fields(self) -> bool:
         """Whether the rule gives roles of fields.
 
         Otherwise, each row is a message without parameters.
         """
-        patterns = [
-            pattern
-            for column in (*self.columns, *self.lines)
-            for pattern in column.patterns
-        ]
-        given = {*self.each, *(role for pattern in patterns for role in pattern.roles)}
+        roles = (role for pattern in self.column_patterns for role in pattern.roles)
+        given = {*self.each, *roles}
         return not given <= set(MESSAGE_ROLES)
 
     @property
@@ -133,12 +135,7 @@ class Rule:
 
         Bit numbers in other texts then refer to all of these bytes.
         """
-        columns = (*self.columns, *self.lines)
-        return any(
-            {"byte", "last_byte"} <= p.roles
-            for column in columns
-            for p in column.patterns
-        )
+        return any({"byte", "last_byte"} <= p.roles for p in self.column_patterns)
 
     @property
     def heading_titles(self) -> list[str]:
@@ -353,18 +350,13 @@ class _Reader:
             for correction in rule.corrections
             for role in correction.roles
         ]
-        columns = (
-            pattern
-            for column in (*rule.columns, *rule.lines)
-            for pattern in column.patterns
-        )
         sources = (
             pattern for patterns in rule.sources.values() for pattern in patterns
         )
         melt = (rule.melt,) if rule.melt is not None else ()
         given += [
             (role, p.place)
-            for p in (*sources, *columns, *melt)
+            for p in (*sources, *rule.column_patterns, *melt)
             for role in sorted(p.roles)
         ]
         for role, place in given:
@@ -495,13 +487,6 @@ class _Reader:
 def roles_of_message(rule: Rule) -> Iterator[str]:
     """Return the roles of a message that any key of the rule may give."""
     yield from (role for role in rule.literals if role in MESSAGE_ROLES)
-    for patterns in (
-        *rule.sources.values(),
-        *(c.patterns for c in (*rule.columns, *rule.lines)),
-    ):
-        yield from (
-            role
-            for pattern in patterns
-            for role in pattern.roles
-            if role in MESSAGE_ROLES
-        )
+    sources = (pattern for patterns in rule.sources.values() for pattern in patterns)
+    for pattern in (*sources, *rule.column_patterns):
+        yield from (role for role in pattern.roles if role in MESSAGE_ROLES)

@@ -203,11 +203,11 @@ class Session:
             table = self.tables[number - 1]
             import_findings = self.result.import_findings
             choices = self.result.interpretation.choices
+            of_table = (choice for choice in choices if choice.table.number == number)
             reasons = [
                 (rule.name, reason)
-                for c in choices
-                if c.table.number == number
-                for rule, reason in c.reasons
+                for choice in of_table
+                for rule, reason in choice.reasons
             ]
             return {
                 "number": number, "title": table.title, "page": table.page, "caption": table.caption, "headings": table.headings,
