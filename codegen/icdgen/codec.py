@@ -101,13 +101,9 @@ def fields_of_frame(
 
     Raises `CodecError`.
     """
-    return [
-        field
-        for field in frame_fields(
-            message.layout, node.orders, sizes_of_values(message, raw)
-        )
-        if field.name in raw
-    ]
+    sizes = sizes_of_values(message, raw)
+    fields = frame_fields(message.layout, node.orders, sizes)
+    return [field for field in fields if field.name in raw]
 
 
 def derived(message: Message, raw: Mapping[str, Raw]) -> dict[str, Raw]:

@@ -170,13 +170,10 @@ def _received_count(endpoint: Endpoint, packets: list[CanPacket]) -> int:
 
 
 def _chosen(candidates: list[Reading], selection: Selection) -> Reading:
-    different = {
-        reading.key: reading
-        for reading in (
-            *candidates,
-            *(reading for reading in candidates if reading.is_own),
-        )
-    }
+    # The reading of the node that declares a message replaces those of nodes that
+    # include it.
+    own = (reading for reading in candidates if reading.is_own)
+    different = {reading.key: reading for reading in (*candidates, *own)}
     return match.most_likely(
         list(different.values()), f"a CAN message with id {candidates[0].id}", selection
     )

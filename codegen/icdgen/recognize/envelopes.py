@@ -115,14 +115,11 @@ def readings(
         for result in usable
         if (result.lost, -len(result.readings)) == (least, fewer)
     ]
-    chosen = {
-        best[0].spans[at]: match.most_likely(
-            [result.readings[at] for result in best],
-            "a frame in an envelope",
-            selection,
-        )
-        for at in range(-fewer)
-    }
+    chosen = {}
+    for at in range(-fewer):
+        readings = [result.readings[at] for result in best]
+        reading = match.most_likely(readings, "a frame in an envelope", selection)
+        chosen[best[0].spans[at]] = reading
     taken = bytearray(len(data))
     for span in chosen:
         span.mark(taken)

@@ -81,14 +81,16 @@ def by_length(endpoints: Sequence[Endpoint], data: bytes) -> list[Reading]:
     checksum.
     """
     return _unique(
-        reading
-        for endpoint in endpoints
-        for what, variants in _directions(endpoint)
-        for id in variants
-        for reading in _with_checksum(
-            endpoint, what, id, _message(endpoint, variants, id, data), data
-        )
+        reading for endpoint in endpoints for reading in _with_any_id(endpoint, data)
     )
+
+
+def _with_any_id(endpoint: Endpoint, data: bytes) -> Iterator[Reading]:
+    """Yield the candidates of a node for bytes without an id."""
+    for what, variants in _directions(endpoint):
+        for id in variants:
+            message = _message(endpoint, variants, id, data)
+            yield from _with_checksum(endpoint, what, id, message, data)
 
 
 def _of_endpoint(endpoint: Endpoint, body: bytes) -> Iterator[Reading]:

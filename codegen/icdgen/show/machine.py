@@ -219,18 +219,22 @@ def _errata(node: Node, is_note: bool) -> list[_Object]:
         for erratum in errata:
             places.setdefault(erratum.id, []).append(place)
     return [
-        _present(
-            **_attributes(erratum),
-            **{"what" if is_note else "why": erratum.why},
-            tables=list(erratum.tables),
-            printed=plain(dict(erratum.printed)),
-            held=plain(dict(erratum.held)),
-            places=places.get(erratum.id, []),
-        )
-        | ({} if is_note else {"changes": erratum.changes})
+        _erratum(erratum, places.get(erratum.id, []))
         for erratum in node.errata
         if erratum.is_note == is_note
     ]
+
+
+def _erratum(erratum: Erratum, places: list[_Object]) -> _Object:
+    """Return an erratum or a note, with the places that it is about."""
+    return _present(
+        **_attributes(erratum),
+        **{"what" if erratum.is_note else "why": erratum.why},
+        tables=list(erratum.tables),
+        printed=plain(dict(erratum.printed)),
+        held=plain(dict(erratum.held)),
+        places=places,
+    ) | ({} if erratum.is_note else {"changes": erratum.changes})
 
 
 def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:

@@ -5,6 +5,7 @@ struct or erratum.
 from __future__ import annotations
 
 import textwrap
+from collections import Counter
 from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
@@ -86,24 +87,22 @@ def to_text(
 
 def _nodes(icd: Icd, width: int | None) -> str:
     """Return the table of all nodes."""
-    rows = [
-        (
-            node.name,
-            node.title,
-            _number(node.node_type),
-            _number(node.interface_version),
-            *(
-                str(sum(message.kind == kind for message in node.messages))
-                for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)
-            ),
-            str(sum(message.field_count for message in node.messages)),
-            str(sum(not erratum.is_note for erratum in node.errata)),
-            str(sum(erratum.is_note for erratum in node.errata)),
-            ", ".join(node.includes),
-        )
-        for node in icd.nodes
-    ]
-    return render(_NODES, rows, width)
+    return render(_NODES, [_row_of_node(node) for node in icd.nodes], width)
+
+
+def _row_of_node(node: Node) -> tuple[str, ...]:
+    kinds = Counter(message.kind for message in node.messages)
+    return (
+        node.name,
+        node.title,
+        _number(node.node_type),
+        _number(node.interface_version),
+        *(str(kinds[kind]) for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)),
+        str(sum(message.field_count for message in node.messages)),
+        str(sum(not erratum.is_note for erratum in node.errata)),
+        str(sum(erratum.is_note for erratum in node.errata)),
+        ", ".join(node.includes),
+    )
 
 
 def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:

@@ -237,20 +237,18 @@ def by_name(
     spelling; an alias of the same words.
     """
     wanted = _joined(key, vocabulary)
+
+    def has_words(names: Iterable[str]) -> bool:
+        names = (name for name in names if _has_indices_of(key, name))
+        return any(_joined(name, vocabulary) == wanted for name in names)
+
     steps: list[Callable[[_Named], bool]] = [
         lambda item: item.name == key,
         lambda item: item.name.casefold() == key.strip().casefold(),
-        *(
-            lambda item, names=names: wanted
-            in (
-                _joined(name, vocabulary)
-                for name in names(item)
-                if _has_indices_of(key, name)
-            )
-            for names in (_names, _aliases)
-            if wanted
-        ),
     ]
+    if wanted:
+        steps.append(lambda item: has_words(_names(item)))
+        steps.append(lambda item: has_words(_aliases(item)))
     for is_match in steps:
         matches = [item for item in items if is_match(item)]
         if matches:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from icdgen.describe.numbers import byte_count
 from icdgen.tables import Column, clean, render
 from icdgen.values.find import describe
-from icdgen.values.frame import Frame
+from icdgen.values.frame import Frame, Row
 
 _COLUMNS = [
     Column("field"),
@@ -28,19 +28,14 @@ def to_text(frame: Frame, width: int | None = None) -> str:
     if frame.data:
         lines.append(frame.data.hex(" "))
     text = "".join(clean(line) + "\n" for line in lines)
-    rows = [
-        (
-            row.field.name,
-            row.raw_text,
-            row.text,
-            row.field.unit_symbol,
-            "; ".join(row.remarks),
-        )
-        for row in frame.rows
-    ]
-    table = render(_COLUMNS, rows, width)
+    table = render(_COLUMNS, [_cells(row) for row in frame.rows], width)
     return (
         text
         + ("\n" + table if table else "")
         + "".join(f"\nnote: {clean(remark)}\n" for remark in frame.remarks)
     )
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    unit = row.field.unit_symbol
+    return row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks)
