@@ -39,6 +39,11 @@ def _batches(
         yield batch
 
 
+def _readers(entries: list[Entry], length: int) -> list[tuple[Entry, ColumnReader]]:
+    """Return a reader for each column of a message of ``length`` bytes."""
+    return [(entry, ColumnReader(entry.column, length)) for entry in entries]
+
+
 class _TableBuilder:
     """Converter of messages to Arrow tables."""
 
@@ -47,13 +52,7 @@ class _TableBuilder:
 
         self.sheet = sheet
         self.readers = {
-            name: [
-                (
-                    entry,
-                    ColumnReader(entry.column, sheet.recording.messages[name].length),
-                )
-                for entry in entries
-            ]
+            name: _readers(entries, sheet.recording.messages[name].length)
             for name, entries in sheet.entries.items()
         }
         fields = [

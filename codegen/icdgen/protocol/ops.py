@@ -220,15 +220,17 @@ def _frame(frame: logs.Frame) -> dict[str, Any]:
     return {"bit": frame.bit, "id": frame.id, "bytes": frame.data.hex()}
 
 
+def _log_entry(entry: Request) -> tuple[int, int, list[bytes]]:
+    """Return seconds, milliseconds and frames of an entry."""
+    return (
+        number(entry, "seconds"),
+        number(entry, "milliseconds", 0, 65535),
+        [_hex(frame) for frame in rows(entry, "frames")],
+    )
+
+
 def log_encode(facts: Facts, request: Request) -> dict[str, Any]:
-    entries = [
-        (
-            number(e, "seconds"),
-            number(e, "milliseconds", 0, 65535),
-            [_hex(f) for f in rows(e, "frames")],
-        )
-        for e in mappings(request, "entries")
-    ]
+    entries = [_log_entry(entry) for entry in mappings(request, "entries")]
     return {"bytes": logs.encode(facts, octets(request, "mask"), entries).hex()}
 
 

@@ -99,23 +99,25 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
         "LENGTH": message.length,
         "IDS": message.ids,
         "ACKNOWLEDGED": message.acknowledge,
-        "FIELDS": tuple(
-            FieldInfo(
-                field.name,
-                field.model.name,
-                field.model.at,
-                field.model.bits,
-                field.model.type,
-                byte_order=field.model.byte_order,
-                bit_order=field.model.bit_order,
-            )
-            for field in description.fields
-        ),
+        "FIELDS": tuple(map(_field_info, description.fields)),
         "BYTE_ORDER": description.node.byte_order,
         "BIT_ORDER": description.node.bit_order,
     }
     # A subclass per message, because the runtime reads these facts from the class.
     return type("ModelMessage", (ModelMessage,), members)
+
+
+def _field_info(field: FieldDescription) -> FieldInfo:
+    """Return the facts of a field that the runtime uses."""
+    return FieldInfo(
+        field.name,
+        field.model.name,
+        field.model.at,
+        field.model.bits,
+        field.model.type,
+        byte_order=field.model.byte_order,
+        bit_order=field.model.bit_order,
+    )
 
 
 def _value(field: NodePlace, raw: int | bytes) -> object:

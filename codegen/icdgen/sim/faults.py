@@ -66,17 +66,13 @@ class Faults:
         if self.hits("noise", on):
             out[:0] = self.random.randbytes(self.random.randrange(1, 32))
         pieces = [bytes(out)] * (2 if self.hits("duplicate", on) else 1)
-        return [
-            (
-                (
-                    self.random.randrange(1, self.late_ms + 1)
-                    if self.hits("late", on)
-                    else 0
-                ),
-                piece,
-            )
-            for piece in pieces
-        ]
+        return [(self._delay(on), piece) for piece in pieces]
+
+    def _delay(self, on: str) -> int:
+        """Return the delay of a piece in milliseconds: 0 if it is not late."""
+        if not self.hits("late", on):
+            return 0
+        return self.random.randrange(1, self.late_ms + 1)
 
 
 def parse(text: str) -> Fault:

@@ -154,12 +154,9 @@ def _seeded(protocol: Tree, messages: list[str]) -> Tree:
     """Return the protocol section with checksum seeds of 0 for these messages instead
     of the seeds of other messages.
     """
+    seeds = {"seeds": dict.fromkeys(messages, 0)}
     checksums = {
-        name: (
-            {**checksum, "seeds": dict.fromkeys(messages, 0)}
-            if "seeds" in checksum
-            else checksum
-        )
+        name: {**checksum, **seeds} if "seeds" in checksum else checksum
         for name, checksum in protocol.get("checksums", {}).items()
     }
     return {**protocol, "checksums": checksums} if checksums else protocol
