@@ -260,28 +260,19 @@ def _numbers(field: AnyScalar) -> Iterator[int]:
     # Off-by-one errors at the upper end, which the maximum alone would not show.
     yield high - 1
     if field.type == "enum" and field.enum is not None:
-        yield from (
-            value
-            for member in field.enum.members
-            for value in dict.fromkeys((member.value, member.last))
-        )
-        yield from (
-            value
-            for member in field.enum.members
-            if member.to is not None
-            for value in (member.value + 1, member.to + 1)
-        )
+        for member in field.enum.members:
+            yield from dict.fromkeys((member.value, member.last))
+        for member in field.enum.members:
+            if member.to is not None:
+                yield from (member.value + 1, member.to + 1)
         if field.enum.unnamed is not None:
             yield field.enum.unnamed
     if field.const is not None:
         yield from (field.const, field.const + 1)
     for special in field.special:
         yield special.value
-    yield from (
-        number
-        for near in _near(field)
-        for number in (math.floor(near), math.ceil(near))
-    )
+    for near in _near(field):
+        yield from (math.floor(near), math.ceil(near))
 
 
 def _near_bits(field: AnyScalar) -> Iterator[int]:

@@ -114,11 +114,8 @@ def _on_curve(field: Scalar, curve: Curve) -> Iterator[float]:
         value, next_value = curve.double(raw), curve.double(raw + 1)
         middle = value + (next_value - value) / 2
         yield from (value, next_value, middle)
-        yield from (
-            math.nextafter(near, direction)
-            for near in (value, middle, next_value)
-            for direction in (-math.inf, math.inf)
-        )
+        for near in (value, middle, next_value):
+            yield from (math.nextafter(near, -math.inf), math.nextafter(near, math.inf))
 
 
 def _above(field: Scalar, raw: int) -> Fraction:

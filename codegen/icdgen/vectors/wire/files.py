@@ -69,17 +69,7 @@ def requests(facts: Facts, source: Random) -> Requests:
     if facts.index:
         index = facts.index
         sizes = {role: place.bytes for role, place in index.fields.items()}
-        entries: list[dict[str, Any]] = [
-            {
-                r: (
-                    source.randbytes(n).hex()
-                    if r == "meta"
-                    else source.getrandbits(8 * n)
-                )
-                for r, n in sizes.items()
-            }
-            for _ in range(3)
-        ]
+        entries = [_random_entry(sizes, source) for _ in range(3)]
         index_entries = [
             reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])})
             for e in entries
@@ -99,3 +89,15 @@ def requests(facts: Facts, source: Random) -> Requests:
             "op": "index_encode",
             "entries": [{**entries[0], "counter": 256}],
         }
+
+
+def _random_entry(sizes: dict[str, int], source: Random) -> dict[str, Any]:
+    """Return an entry of the index file; ``sizes`` are the bytes of its fields."""
+    return {
+        role: (
+            source.randbytes(size).hex()
+            if role == "meta"
+            else source.getrandbits(8 * size)
+        )
+        for role, size in sizes.items()
+    }

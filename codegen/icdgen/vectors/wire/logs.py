@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from random import Random
+from typing import Any
 
 from icdgen.protocol import logs as log_files
 from icdgen.protocol.facts import Facts, need
@@ -39,26 +40,12 @@ def requests(facts: Facts, source: Random) -> Requests:
                 for _, size in (facts.log_file.seconds, facts.log_file.milliseconds)
             ]
             times = [(0, 0), (min(0xFFFFFFFF, most[0]), min(999, most[1]))]
-            entries = [
-                {
-                    "seconds": s,
-                    "milliseconds": ms,
-                    "frames": [f.hex() for f in slots_data],
-                }
-                for (s, ms), slots_data in zip(times, data, strict=True)
-            ]
-            file = log_files.encode(
-                facts,
-                mask,
-                [
-                    (s, ms, slots_data)
-                    for (s, ms), slots_data in zip(times, data, strict=True)
-                ],
-            )
+            rows = [(s, ms, row) for (s, ms), row in zip(times, data, strict=True)]
+            file = log_files.encode(facts, mask, rows)
             yield "two entries", {
                 "op": "log_encode",
                 "mask": mask.hex(),
-                "entries": entries,
+                "entries": [_entry(*row) for row in rows],
             }
             for size in sorted(
                 {0, len(mask) - 1, len(mask), len(mask) + 1, len(file) - 1, len(file)}
@@ -95,3 +82,11 @@ def requests(facts: Facts, source: Random) -> Requests:
             "entries": [{"seconds": 1, "milliseconds": 2, "frames": data_}],
         }
     yield "a mask that is too short", {"op": "log_encode", "mask": "01", "entries": []}
+
+
+def _entry(seconds: int, milliseconds: int, frames: list[bytes]) -> dict[str, Any]:
+    return {
+        "seconds": seconds,
+        "milliseconds": milliseconds,
+        "frames": [frame.hex() for frame in frames],
+    }
