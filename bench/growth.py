@@ -4,6 +4,7 @@ an ICD, and with the greatest number of elements of an array of structs.
 Usage::
 
     python bench/growth.py [--fields 1000 10000 100000] [--up-to 64 256 1024]
+                           [--commands show check c python rust site]
 
 The ICDs of the first table are those of `bench/large.py`. The second table takes UBX
 NAV-SAT of `examples/devices/ublox` with another `up_to` of its satellites. Each figure
@@ -23,7 +24,7 @@ from pathlib import Path
 from large import ROOT, write
 
 UBLOX = ROOT / "examples" / "devices" / "ublox" / "ublox.yaml"
-COMMANDS = ("show", "check", "c", "site")
+COMMANDS = ("show", "check", "c", "python", "rust", "site")
 
 
 def arguments(command: str, icd: Path, out: Path) -> list[str]:
@@ -31,10 +32,10 @@ def arguments(command: str, icd: Path, out: Path) -> list[str]:
     lines = {
         "show": ["show", "--format", "json", "--icd", icd],
         "check": ["check", icd],
-        "c": ["--lang", "c", "--out", out, icd],
         "site": ["docs", "--out", out, icd],
     }
-    return [sys.executable, "-m", "icdgen", *map(str, lines[command])]
+    line = lines.get(command, ["--lang", command, "--out", out, icd])
+    return [sys.executable, "-m", "icdgen", *map(str, line)]
 
 
 def measure(line: list[str]) -> tuple[float, float]:
@@ -51,10 +52,10 @@ def measure(line: list[str]) -> tuple[float, float]:
     return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
-def row(title: str, icd: Path, folder: Path) -> None:
+def row(title: str, icd: Path, commands: list[str], folder: Path) -> None:
     """Print a row of the table: all commands for an ICD."""
     cells = []
-    for command in COMMANDS:
+    for command in commands:
         seconds, megabytes = measure(
             arguments(command, icd, folder / f"{command}{time.monotonic_ns()}")
         )
@@ -68,6 +69,7 @@ def main() -> None:
     )
     parser.add_argument("--fields", type=int, nargs="*", default=[1000, 10000, 100000])
     parser.add_argument("--up-to", type=int, nargs="*", default=[64, 256, 1024])
+    parser.add_argument("--commands", nargs="+", choices=COMMANDS, default=COMMANDS)
     options = parser.parse_args()
     os.environ["ICDGEN_CACHE"] = "off"
     with tempfile.TemporaryDirectory() as top:
@@ -75,11 +77,13 @@ def main() -> None:
         measure(
             arguments("site", UBLOX, folder / "first")
         )  # Python caches its compiled modules
-        print(f"| | {' | '.join(COMMANDS)} |\n|{'---|' * (len(COMMANDS) + 1)}")
+        columns = options.commands
+        print(f"| | {' | '.join(columns)} |\n|{'---|' * (len(columns) + 1)}")
         for fields in options.fields:
             row(
                 f"{fields:,} fields",
                 write(folder / f"fields{fields}", fields, newer=False),
+                columns,
                 folder,
             )
         text = UBLOX.read_text(encoding="utf-8")
@@ -92,7 +96,7 @@ def main() -> None:
                 ),
                 encoding="utf-8",
             )
-            row(f"up_to {most:,}", icd, folder)
+            row(f"up_to {most:,}", icd, columns, folder)
 
 
 if __name__ == "__main__":
