@@ -62,7 +62,8 @@ class NamingPolicy:
     def message_of_direction(
         self, node: NodeDescription, direction: str, message: MessageDescription
     ) -> Symbols:
-        """Names of a message in a type for all messages of a direction.
+        """Names of a message in the type that has any message of a direction: in C, the
+        member ``status`` of the union of ``demo_telemetry_t``.
 
         Included nodes can declare the message.
 

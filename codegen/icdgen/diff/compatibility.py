@@ -216,7 +216,7 @@ def _read(
         return lengths, length_reasons
     reasons = [
         *length_reasons,
-        *_group_by_reason((p.any.name, why) for p, why in (*wrong, *derived)),
+        *_lines_by_reason((p.any.name, why) for p, why in (*wrong, *derived)),
     ]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
@@ -229,7 +229,7 @@ def _read(
     return verdict, tuple(reasons)
 
 
-def _group_by_reason(items: Iterable[tuple[str, str]]) -> list[str]:
+def _lines_by_reason(items: Iterable[tuple[str, str]]) -> list[str]:
     """Return one line for each reason with the names it concerns: ``has another unit:
     `a` and `b` ``.
     """
@@ -287,7 +287,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     ]
     reasons = [
         *length_reasons,
-        *_group_by_reason((part.any.name, why) for part, why, _ in results if why),
+        *_lines_by_reason((part.any.name, why) for part, why, _ in results if why),
     ]
     return (
         NO if any(refused for *_, refused in results) else PARTLY if reasons else YES

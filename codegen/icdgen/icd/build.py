@@ -529,7 +529,7 @@ def calibration(
         return None, None
     if kind != "float":
         with suppress(formula.FormulaError):
-            return formula.parse_cached(text), None
+            return formula.parse(text), None
     with suppress(formula.FormulaError):
         return None, curve.parse(text)
     return None, None

@@ -61,6 +61,7 @@ The last coefficient is not 0, except in a constant polynomial.
 """
 
 
+@lru_cache(maxsize=1024)
 def parse(text: str) -> Scale:
     """Return the scale of a linear formula. Raises `FormulaError`.
 
@@ -206,6 +207,3 @@ def _shortened(terms: list[Fraction]) -> _Polynomial:
     while len(terms) > 1 and not terms[-1]:
         terms.pop()
     return tuple(terms)
-
-
-parse_cached = lru_cache(maxsize=1024)(parse)

@@ -259,7 +259,7 @@ def ascii_text(raw: bytes) -> str | None:
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
     ids_by_direction = {
-        direction: shared.ids(icd, node, direction)
+        direction: shared.messages_by_id(icd, node, direction)
         for direction in (TELECOMMAND, TELEMETRY)
     }
     settings: dict[int, list[Message]] = {}

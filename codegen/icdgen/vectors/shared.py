@@ -27,18 +27,18 @@ class SharedRow(NamedTuple):
     expected: int | None = None
 
 
-def ids(icd: Icd, node: Node, direction: str) -> dict[int, list[Message]]:
-    """Return the messages of a direction that the node sends or receives, by id, in the
-    order of the ICD.
+def messages_by_id(icd: Icd, node: Node, direction: str) -> dict[int, list[Message]]:
+    """Return the messages of a direction that the node sends or receives, by rising id;
+    those of one id in the order of the ICD.
     """
-    messages_by_id: dict[int, list[Message]] = {}
+    by_id: dict[int, list[Message]] = {}
     for message in icd.messages_of(node):
         id = (
             message.telecommand_id if direction == TELECOMMAND else message.telemetry_id
         )
         if id is not None:
-            messages_by_id.setdefault(id, []).append(message)
-    return dict(sorted(messages_by_id.items()))
+            by_id.setdefault(id, []).append(message)
+    return dict(sorted(by_id.items()))
 
 
 def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
@@ -46,7 +46,7 @@ def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
     differ from them, as the reference codec assigns them.
     """
     for direction in (TELECOMMAND, TELEMETRY):
-        for id, messages in ids(icd, node, direction).items():
+        for id, messages in messages_by_id(icd, node, direction).items():
             # Ids of one message are tested by the vectors of the message.
             if len(messages) > 1:
                 rows = (

@@ -9,7 +9,7 @@ from icdgen import codec
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.vectors.lines import NodeLines
 from icdgen.vectors.make import NodeVectors
-from icdgen.vectors.shared import SharedRow, ids
+from icdgen.vectors.shared import SharedRow, messages_by_id
 
 
 class SharedIds:
@@ -23,7 +23,7 @@ class SharedIds:
         for node in icd.nodes:
             rows, numbers = vectors[node.name].shared, lines[node.name].shared
             by_direction = {
-                direction: ids(icd, node, direction)
+                direction: messages_by_id(icd, node, direction)
                 for direction in {row.direction for row in rows}
             }
             # The messages of an id are needed again for each change, so they are looked

@@ -49,7 +49,9 @@ def _array(head: str, rows: list[str]) -> Iterator[str]:
 
 
 def _wide_scale(steps: Steps) -> Iterator[str]:
-    """List the declaration of a scale whose terms have more than 64 bits."""
+    """List the declaration of a scale that `icdgen_wide.h` computes: its terms are too
+    large for 128 bits.
+    """
     yield "static const icdgen_scale_t scale = {"
     for term in steps.terms:
         parts = (

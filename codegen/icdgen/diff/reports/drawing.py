@@ -168,6 +168,9 @@ def _title(line: Line) -> str:
 
 
 def _link(old: Box, new: Box) -> Link:
+    """Return the quadrilateral that connects a field with the same field of the other
+    release.
+    """
     top, bottom = OLD_Y + HEIGHT, NEW_Y
     corners = (
         (old.x, top),

@@ -42,7 +42,7 @@ def keys_have_an_effect(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         yield from _acknowledges(node)
         yield from _can_data(node)
-        yield from _unsolicited(node)
+        yield from _faults_of_unsolicited_log(node)
 
 
 def _acknowledges(node: Node) -> Iterator[Fault]:
@@ -73,9 +73,9 @@ def _can_data(node: Node) -> Iterator[Fault]:
             yield Fault.at(section, key, what, help)
 
 
-def _unsolicited(node: Node) -> Iterator[Fault]:
-    """Yield the faults of unsolicited logs without framing, or on another bus than the
-    UART.
+def _faults_of_unsolicited_log(node: Node) -> Iterator[Fault]:
+    """Yield the faults of an unsolicited log that states `framed: false`, which has no
+    effect, or another bus than the UART.
     """
     log = section_of(node, "unsolicited_log")
     if log is None:

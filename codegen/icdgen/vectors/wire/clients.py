@@ -88,6 +88,7 @@ def _op(bus: str, script: list[dict[str, Any]], **more: object) -> dict[str, Any
 
 
 def _line(facts: Facts, message: bytes) -> str:
+    """Return the bytes of a message on the UART, in hexadecimal."""
     assert facts.framing
     return uart.encode(facts.framing, message).hex()
 
