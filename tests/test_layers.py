@@ -17,7 +17,7 @@ PACKAGE = ROOT / "codegen" / "icdgen"
 LAYERS = [  # what stands in one row does not know each other
     "diagnostics errors fingerprints frozen naming once shipped suggest tables wording",
     "cache config icd render",
-    "codec layout reports",
+    "codec frame_bits reports",
     "protocol",
     "describe",
     "link_calls values vectors",
@@ -179,9 +179,9 @@ def test_a_planted_import_of_a_reserved_package_is_found(package):
             "icdgen.sim imports icdgen.backends, which does not stand below it",
         ),
         (
-            "layout.py",
+            "frame_bits.py",
             "from icdgen.describe import describe",
-            "icdgen.layout imports icdgen.describe, which does not stand below it",
+            "icdgen.frame_bits imports icdgen.describe, which does not stand below it",
         ),
     ],
 )

@@ -1,6 +1,6 @@
 """Reference codec: slow, simple and exact.
 
-Tests compare all generated code with it, so it does not use ``icdgen.layout``.
+Tests compare all generated code with it, so it does not use ``icdgen.frame_bits``.
 
 Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and,
 for floats, the int of their IEEE 754 bits, which preserves the payload of a NaN.

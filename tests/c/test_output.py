@@ -11,7 +11,7 @@ import subprocess
 
 import pytest
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.backends.c import CBackend
 from icdgen.backends.c.symbols import FILE
 from icdgen.backends.c.text import comment, literal, plain
@@ -209,7 +209,7 @@ def test_reserved_bits_are_spoken_of_where_there_are_some(shipped):
     found = set()
     for node in harness.shipped().nodes:
         for message in describe(harness.shipped()).node(node).messages:
-            has_some = bool(layout.gaps(message.model, node))
+            has_some = bool(frame_bits.reserved_bits(message.model, node))
             text = shipped[f"{node.name}/{message.name}.h"]
             assert ("reserved bits 0" in text) == has_some, message.model.name
             found.add(has_some)

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 
 from icdgen import codec
+from icdgen.frame_bits import constant_bytes
 from icdgen.icd.model import Icd
 from icdgen.icd.variants import common_length, ids_of
-from icdgen.layout import constant_bytes
 from icdgen.vectors.make import make
 from tests.conformance import odd
 from tests.conformance.icds import icd_of

@@ -8,7 +8,7 @@ from collections import Counter
 from fractions import Fraction
 from math import ceil, floor
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
 from icdgen.icd.enumeration import Enum
 from icdgen.icd.layout import VariablePart
@@ -133,7 +133,7 @@ def _bits(field: NodePlace, node: Node) -> list[int]:
     """
     if field.is_bytes:
         return list(range(field.at, field.at + field.bits))
-    pieces = sorted(layout.pieces(field, node), key=lambda one: one.at)
+    pieces = sorted(frame_bits.pieces(field, node), key=lambda one: one.at)
     return [8 * one.byte + one.shift + bit for one in pieces for bit in range(one.bits)]
 
 

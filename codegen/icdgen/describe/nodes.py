@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.describe.comments import Comment, message_comment
 from icdgen.describe.description import (
     Composite,
@@ -52,7 +52,7 @@ class MessageDescription(Composite[Message]):
     @property
     def has_reserved_bits(self) -> bool:
         """Whether some bits of its frame belong to no field."""
-        return bool(layout.gaps(self.model, self.node))
+        return bool(frame_bits.reserved_bits(self.model, self.node))
 
     @cached_property
     def optional_members(self) -> tuple[FieldDescription, ...]:
@@ -209,14 +209,14 @@ class MessageOfId(NamedTuple):
 
     message: MessageDescription
     id_name: str
-    constant_bytes: tuple[layout.ConstantByte, ...]
+    constant_bytes: tuple[frame_bits.ConstantByte, ...]
 
     @property
     def length_tests(self) -> tuple[LengthTest, ...]:
         """Tests that the lengths of its frames pass."""
         return length_tests_of_frame(self.message.model.layout.lengths)
 
-    def can_lack(self, constant: layout.ConstantByte) -> bool:
+    def can_lack(self, constant: frame_bits.ConstantByte) -> bool:
         """Return whether a frame can end in front of a byte, which then counts as 0."""
         return constant.byte >= self.message.model.layout.shortest
 
@@ -411,7 +411,7 @@ class NodeDescription:
             name = "id" if variant.message.id is not None else other_name
             message = self._description.message(variant.message)
             candidates.append(
-                MessageOfId(message, name, layout.constant_bytes(variant))
+                MessageOfId(message, name, frame_bits.constant_bytes(variant))
             )
         return MessagesOfId(id, tuple(candidates), common_length(variants))
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from icdgen import layout, naming
+from icdgen import frame_bits, naming
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.curve import Curve
 from icdgen.icd.frames import FrameField
@@ -43,7 +43,7 @@ class Column:
     @property
     def size(self) -> int:
         """Number of bytes that contain bits of the field."""
-        return len(layout.byte_range(self.field)) if self.field else self.length
+        return len(frame_bits.byte_range(self.field)) if self.field else self.length
 
     @property
     def kind(self) -> str:
@@ -146,7 +146,7 @@ def columns_of(
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(
-            p._replace(byte=p.byte + start) for p in layout.pieces(field, owner)
+            p._replace(byte=p.byte + start) for p in frame_bits.pieces(field, owner)
         )
         operands = tuple(columns[operand] for operand in operand_names)
         columns[field.name] = Column(

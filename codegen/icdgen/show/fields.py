@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.describe.bounds import allowed_ends, bounds
 from icdgen.describe.comments import condition_text, orders_text
 from icdgen.describe.numbers import (
@@ -43,7 +43,7 @@ def field_table(message: Message | Struct, node: Node, width: int | None = None)
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [
         (gap.at, (str(gap.at), str(gap.bits), *reserved))
-        for gap in layout.gaps(message, node)
+        for gap in frame_bits.reserved_bits(message, node)
     ]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from dataclasses import field as dataclass_field
 from fractions import Fraction
 
-from icdgen import codec, layout
+from icdgen import codec, frame_bits
 from icdgen.describe.bounds import bounds
 from icdgen.describe.display import digits_of, integer_text, number_text
 from icdgen.describe.numbers import bit_range, exact_text, value_text
@@ -265,7 +265,7 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     """Return a remark for each run of reserved bits that is not 0."""
     reasons = []
     fields = frame_fields(message.layout, node.orders)
-    for gap in layout.gaps_between(fields, (), message.length, node):
+    for gap in frame_bits.reserved_bits_between(fields, (), message.length, node):
         pieces = pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
         if any(
             data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from icdgen.frame_bits import reserved_bits
 from icdgen.icd.layout import Layout, Scalar
 from icdgen.icd.layout_nodes import overlay_of
 from icdgen.icd.lines import lines
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Message
-from icdgen.layout import gaps
 from tests.diff.edits.edit import (
     done,
     edit,
@@ -32,7 +32,7 @@ from tests.diff.edits.edit import (
 @edit()
 def move_field(icd, rng):
     found = [
-        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: not f.is_bytes) for g in gaps(m, n) if g.bits >= f.bits
+        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: not f.is_bytes) for g in reserved_bits(m, n) if g.bits >= f.bits
     ]  # fmt: skip
     one = pick(rng, found)
     if one is None:
@@ -127,7 +127,7 @@ def fill_gap(icd, rng):
     found = [
         (n, m, g)
         for n, m in messages_of(icd, lambda m: is_free(m, "Filler"))
-        for g in gaps(m, n)
+        for g in reserved_bits(m, n)
     ]
     one = pick(rng, found)
     if one is None:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, islice, zip_longest
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.backends.html.labels import Box, Label, fit
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.texts import clip
@@ -130,7 +130,7 @@ class _Canvas:
         """
         labels = {field.key: field.short for field in self.fields}
         optional = [field for field in self.fields if field.place.conditions]
-        masks = [layout.mask(field.place, self.node) for field in optional]
+        masks = [frame_bits.mask(field.place, self.node) for field in optional]
         for shown, own_mask in zip(optional, masks, strict=True):
             alternatives = (
                 other.place.name
@@ -156,7 +156,7 @@ class _Canvas:
                 bits = range(max(place.at, begin), min(place.at + place.bits, end))
                 owner[bits.start - begin : bits.stop - begin] = [shown.key] * len(bits)
                 continue
-            for piece in layout.pieces(place, self.node):
+            for piece in frame_bits.pieces(place, self.node):
                 right = 8 * piece.byte + 8 - piece.shift
                 for bit in range(right - piece.bits, right):
                     # The first one of alternative fields

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.describe.bounds import bounds
 from icdgen.describe.display import base_of, digits_of
 from icdgen.describe.steps import EXACT_DOUBLE, steps
@@ -178,7 +178,9 @@ class _Fields:
         scaled, curve, how = steps(field), field.curve, field.derived
         earlier = [part.node for part in variable[:-1]]
         digits, base = digits_of(field), base_of(field)
-        pieces = () if field.is_count or field.is_bytes else layout.pieces(field, node)
+        pieces = (
+            () if field.is_count or field.is_bytes else frame_bits.pieces(field, node)
+        )
         # A lookup table may cover only a part of the raw range.
         is_part = (
             bool(curve)

@@ -7,14 +7,14 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from icdgen import layout
+from icdgen import frame_bits
 from icdgen.backends.html import envelopes, wire
 from icdgen.backends.html.relations import Relations
+from icdgen.frame_bits import constant_bytes
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import places_in
 from icdgen.icd.variants import Variant, ids_of
-from icdgen.layout import constant_bytes
 from icdgen.protocol import facts
 
 
@@ -57,7 +57,7 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
         ),
         None,
     )
-    pieces = () if counter is None else layout.pieces(counter, node)
+    pieces = () if counter is None else frame_bits.pieces(counter, node)
     tail_data = {
         "least": own.shortest,
         "step": tail.step,

@@ -7,9 +7,9 @@ from __future__ import annotations
 from bisect import bisect_left
 from dataclasses import dataclass
 
+from icdgen.frame_bits import reserved_bits_between
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace, places_in
-from icdgen.layout import gaps_between
 
 _LONG = 16  # longer arrays of numbers are represented by one element
 
@@ -60,7 +60,7 @@ class Repeats:
         self._parts = {id(part.node): part for part in message.layout.counted_parts}
         self._add(places_in(message.layout), 1, "", "", False)
         self.arrays.sort(key=lambda repeat: (repeat.first, -repeat.end))
-        self.gaps = gaps_between(
+        self.gaps = reserved_bits_between(
             (field.place for field in self.fields),
             (
                 range(8 * (array.first + array.step), 8 * array.end)

@@ -72,7 +72,7 @@ def byte_range(field: FrameField | NodePlace) -> range:
     return range(field.at // 8, (field.at + field.bits + 7) // 8)
 
 
-class Gap(NamedTuple):
+class ReservedBits(NamedTuple):
     """A run of reserved bits, from bit ``at`` of the frame on, counted in the bit order
     of the ICD node.
     """
@@ -81,7 +81,7 @@ class Gap(NamedTuple):
     bits: int
 
 
-def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
+def reserved_bits(message: Message | Struct, node: Node) -> tuple[ReservedBits, ...]:
     """Return the runs of reserved bits, in order; of an array of structs, those of its
     first element.
     """
@@ -96,15 +96,15 @@ def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
             first = place.first_element
             omitted.append(range(first.at + first.bits, place.at + place.width))
             places += first.inner()
-    return gaps_between(fields, omitted, message.length, node)
+    return reserved_bits_between(fields, omitted, message.length, node)
 
 
-def gaps_between(
+def reserved_bits_between(
     fields: Iterable[FrameField | NodePlace],
     omitted: Iterable[range],
     length: int,
     node: Node,
-) -> tuple[Gap, ...]:
+) -> tuple[ReservedBits, ...]:
     """Return the runs of bits of a frame of `length` bytes that are neither in a field
     nor in an omitted range, in order.
     """
@@ -130,5 +130,5 @@ def gaps_between(
                 )
                 free[first : first + piece.bits] = bytes(piece.bits)
     return tuple(
-        Gap(run.start(), len(run.group())) for run in re.finditer(b"\1+", free)
+        ReservedBits(run.start(), len(run.group())) for run in re.finditer(b"\1+", free)
     )
