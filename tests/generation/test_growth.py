@@ -90,3 +90,30 @@ def test_an_array_of_more_elements_takes_no_more_work(command, kind, tmp_path):
         COMMANDS[command](path)  # fill the caches that all runs share
         numbers.append(calls(lambda path=path: COMMANDS[command](path)))
     assert numbers[-1] < 1.02 * numbers[-2], numbers
+
+
+KINDS = {
+    "plain": "{{at: {at}, bits: 8, name: Own {n}, type: uint}}",
+    "overlay": (
+        "{{at: {at}, bits: 8, name: Own {n}, type: uint}}\n"
+        "      - {{at: {at}, bits: 4, name: Part {n}, type: uint, view: true}}"
+    ),
+    "optional": "{{at: {at}, bits: 8, name: Own {n}, type: uint, when: {{Kind: {n}}}}}",
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_check_takes_work_in_proportion_to_the_fields_of_a_message(kind, tmp_path):
+    def work_for(count: int) -> int:
+        lines = [KINDS[kind].format(at=8 * n, n=n) for n in range(1, count + 1)]
+        first = "{at: 0, bits: 8, name: Kind, type: uint}"
+        fields = "".join(f"      - {line}\n" for line in (first, *lines))
+        head = ICD.partition("structs:")[0].format()
+        message = f"  - name: State\n    id: 1\n    kind: telemetry\n    length: {count + 1}\n"
+        path = tmp_path / f"{count}.yaml"
+        path.write_text(f"{head}messages:\n{message}    fields:\n{fields}")
+        return calls(lambda: load([path]))
+
+    work_for(2)  # what is computed once
+    few, many = work_for(50), work_for(200)
+    assert many < 4.4 * few, (few, many)

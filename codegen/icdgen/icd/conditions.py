@@ -26,10 +26,9 @@ def _when(item: Map) -> Map:
 
 
 def conditions_of(
-    message: Map, item: Map, enums: Mapping[str, Enum]
+    fields: Mapping[str, Map], item: Map, enums: Mapping[str, Enum]
 ) -> tuple[Condition, ...]:
-    """Return the valid conditions of a field."""
-    fields = _fields(message)
+    """Return the valid conditions of a field; `fields` are those of `fields_by_name`."""
     conditions = []
     for name, listed in _when(item).items():
         field = fields.get(name)
@@ -57,9 +56,13 @@ def are_valid(node: LayoutNode) -> bool:
     return len(_when(node.source)) == len(node.present_if)
 
 
-def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
-    """Yield the faults of the fields that a field depends on."""
-    when, fields = _when(item), _fields(message)
+def faults_of_names(
+    message: Map, fields: Mapping[str, Map], item: Map
+) -> Iterator[Fault]:
+    """Yield the faults of the fields that a field depends on; `fields` are those of
+    `fields_by_name`.
+    """
+    when = _when(item)
     for name in when:
         if name not in fields:
             text = f"`{item['name']}` depends on `{name}`, but the message `{message['name']}` has no such field"
@@ -85,10 +88,12 @@ def faults_of_names(message: Map, item: Map) -> Iterator[Fault]:
 
 
 def faults_of_values(
-    message: Map, item: Map, enums: Mapping[str, Enum]
+    fields: Mapping[str, Map], item: Map, enums: Mapping[str, Enum]
 ) -> Iterator[Fault]:
-    """Yield the faults of the values that other fields must have."""
-    when, fields = _when(item), _fields(message)
+    """Yield the faults of the values that other fields must have; `fields` are those of
+    `fields_by_name`.
+    """
+    when = _when(item)
     for name, listed in when.items():
         field = fields.get(name)
         if (
@@ -207,7 +212,7 @@ def _is_sound(field: Map) -> bool:
     return 0 < bits <= 64 or (bits > 64 and kind not in INTEGERS)
 
 
-def _fields(message: Map) -> dict[str, Map]:
+def fields_by_name(message: Map) -> dict[str, Map]:
     """Return the fields of a message by name, without structs.
 
     If a name occurs twice, the first field is used.

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import conditions, variable_length
 from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map
 from icdgen.icd.model import Struct
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import rule
@@ -21,21 +22,44 @@ _NEVER = (
 )
 
 
+def _owners_of_optional_fields(ctx: Context) -> dict[int, Map]:
+    """Return the mappings of messages and structs with optional fields, by their id()."""
+    owners = (message.source for _, (_, message, _) in ctx.fields_with["when"])
+    return {id(owner): owner for owner in owners}
+
+
+def _fields_by_owner(ctx: Context) -> dict[int, dict[str, Map]]:
+    """Return the fields by name of messages and structs with optional fields."""
+    return {
+        key: conditions.fields_by_name(owner)
+        for key, owner in _owners_of_optional_fields(ctx).items()
+    }
+
+
 @rule("ICD160")
 def conditions_name_plain_fields(ctx: Context) -> Iterator[Fault]:
+    fields = _fields_by_owner(ctx)
     for field, (_, message, _) in ctx.fields_with["when"]:
-        yield from conditions.faults_of_names(message.source, field.source)
+        own = fields[id(message.source)]
+        yield from conditions.faults_of_names(message.source, own, field.source)
 
 
 @rule("ICD161")
 def conditions_can_be_met(ctx: Context) -> Iterator[Fault]:
+    fields = _fields_by_owner(ctx)
     for field, (_, message, node) in ctx.fields_with["when"]:
+        own = fields[id(message.source)]
         enums = {enum.name: enum for owner in ctx.scope(node) for enum in owner.enums}
-        yield from conditions.faults_of_values(message.source, field.source, enums)
+        yield from conditions.faults_of_values(own, field.source, enums)
 
 
 @rule("ICD162")
 def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
+    with_variable_length = {
+        key
+        for key, owner in _owners_of_optional_fields(ctx).items()
+        if variable_length.variable_fields(owner)
+    }
     for field, (_, message, _) in ctx.fields_with["when"]:
         source = field.source
         reason = next(
@@ -56,7 +80,7 @@ def optional_fields_can_be_absent(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(
                 source, "when", text, help if source.get("count") else "remove `when`"
             )
-        elif variable_length.variable_fields(message.source):
+        elif id(message.source) in with_variable_length:
             text = f"{quote(message.name)} has a variable-length field, so its other fields cannot be optional"
             yield Fault.at(source, "when", text, "remove `when`")
 

@@ -4,6 +4,7 @@ without a field.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from operator import attrgetter
@@ -173,15 +174,20 @@ def _overlaps_among(
     Fields that are never present in the same frame can have the same bits.
     """
     before: list[tuple[NodePlace, int]] = []
+    indices_by_byte: defaultdict[int, list[int]] = defaultdict(list)  # of `before`
     for field in fields:
         if field.at + field.bits > owner.length * 8:
             continue  # ICD020 reports it
         mask = _mask(field.at, field.bits, field.orders_in_effect(icd_node.orders).bit)
-        for other, other_mask in before:
+        field_bytes = range(field.at // 8, (field.at + field.bits + 7) // 8)
+        near = {index for byte in field_bytes for index in indices_by_byte[byte]}
+        for other, other_mask in (before[index] for index in sorted(near)):
             shared = mask & other_mask
             if shared and not are_exclusive(other.conditions, field.conditions):
                 yield Overlap(other, field, _bits_of(shared))
                 break
+        for byte in field_bytes:
+            indices_by_byte[byte].append(len(before))
         before.append((field, mask))
 
 
@@ -279,8 +285,19 @@ def orders_have_an_effect(ctx: Context) -> Iterator[Fault]:
                 yield Fault.at(field.source, key, message, f"remove `{key}`")
 
 
+def _always_owned(message: Message, icd_node: Node) -> int:
+    """Return a mask of the bits that fields have in every frame of a message."""
+    mask = 0
+    for place in scalars_in(message.layout):
+        if _has_own_bits(place) and not place.conditions:
+            order = place.orders_in_effect(icd_node.orders).bit
+            mask |= _mask(place.at, place.bits, order)
+    return mask
+
+
 @rule("ICD029")
 def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
+    always_owned: dict[int, int] = {}  # by the id() of the message
     for field, line in ctx.fields_with["view"]:
         node, message, icd_node = line
         if not isinstance(message, Message):
@@ -310,12 +327,9 @@ def overlay_fields_are_valid(ctx: Context) -> Iterator[Fault]:
             yield Fault.at(
                 source, "const", text, "give `const` to the field that has the bits"
             )
-        free = _mask(node.at, field.bits, line.orders.bit)
-        for other in scalars_in(message.layout):
-            if _has_own_bits(other) and not other.conditions:
-                free &= ~_mask(
-                    other.at, other.bits, other.orders_in_effect(icd_node.orders).bit
-                )
+        if id(message) not in always_owned:
+            always_owned[id(message)] = _always_owned(message, icd_node)
+        free = _mask(node.at, field.bits, line.orders.bit) & ~always_owned[id(message)]
         if free and is_read(message):
             always = "always " if message.has_conditions else ""
             text = f"{name} is an overlay of {_bits_of(free)} that no field {always}has"
