@@ -5,8 +5,8 @@ from __future__ import annotations
 WIRE, MEANING, SOURCE, TEXT = "wire", "meaning", "source", "text"
 LAYERS = (WIRE, MEANING, SOURCE, TEXT)  # most severe first
 ABOUT = {
-    WIRE: "bytes mean something else",
-    MEANING: "same bytes, another sense",
+    WIRE: "values are at other bits or are read differently",
+    MEANING: "the raw values are the same, their meaning differs",
     SOURCE: "generated names and types change",
     TEXT: "words only",
 }

@@ -396,6 +396,8 @@ def all_bytes_are_described(ctx: Context) -> Iterator[Fault]:
                 if message.layout.nodes
                 else "no field describes them"
             )
+            if message.reserved:
+                described += f" and `reserved` {message.reserved:,}"
             text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
             missing = (
                 "the last byte"
@@ -403,12 +405,15 @@ def all_bytes_are_described(ctx: Context) -> Iterator[Fault]:
                 else f"the last {count(undescribed, 'byte')}"
             )
             missing = (
-                f"{count(undescribed, 'byte')} before those"
-                if message.reserved
-                else missing
+                f"{count(undescribed, 'byte')} more" if message.reserved else missing
             )
             pronoun = "it" if undescribed + message.reserved == 1 else "them"
-            reserve = f"write `reserved: {undescribed + message.reserved}` beside `length` if the manual calls {pronoun} reserved"
+            total = undescribed + message.reserved
+            reserve = (
+                f"write `reserved: {total}`, which counts all reserved bytes at the end, if the manual calls {pronoun} reserved"
+                if message.reserved
+                else f"write `reserved: {total}` beside `length` if the manual calls {pronoun} reserved"
+            )
             yield Fault.at(
                 message.source,
                 "length",

@@ -165,13 +165,11 @@ def packets_match_their_message(ctx: Context) -> Iterator[Fault]:
                 if message is None or (key == "id_of" and bus == "uart"):
                     continue  # on the UART, packets can have any id
                 if message.telemetry_id is None or message.length != sum(sizes):
-                    text = f"a packet has {count(sizes[1], 'byte')} of counter and {sizes[0]} of the file, which "
-                    yield Fault.at(
-                        section,
-                        key,
-                        f"{text}{quote(message.name)} has not",
-                        "name its frame",
-                    )
+                    size = count(sum(sizes), "byte")
+                    parts = f"{sizes[1]} for its counter and {sizes[0]} for data of the file"
+                    text = f"a packet of a download has {size} ({parts}), and {quote(message.name)} is no telemetry of {size}"
+                    help = "name the telemetry that carries a packet"
+                    yield Fault.at(section, key, text, help)
 
 
 @rule("ICD118")
