@@ -284,7 +284,7 @@ class Builder:
         """
         nodes: list[FixedNode] = []
         left_out = set(map(id, behind))
-        fields = conditions.fields_by_name(owner)
+        fields: dict[str, Map] = {}  # by name, once a condition needs them
         for item in self.items("fields", owner):
             is_broken = any(
                 id(item.get(key)) in self.broken for key in ("when", "count", "size")
@@ -292,6 +292,7 @@ class Builder:
             if is_broken or variable_length.is_variable(item) or id(item) in left_out:
                 continue
             if "when" in item and item.keys().isdisjoint(("struct", "count")):
+                fields = fields or conditions.fields_by_name(owner)
                 present_if = conditions.conditions_of(fields, item, self.scope.enums)
                 nodes.append(
                     _overlaid(

@@ -396,24 +396,21 @@ def all_bytes_are_described(ctx: Context) -> Iterator[Fault]:
                 if message.layout.nodes
                 else "no field describes them"
             )
+            total = undescribed + message.reserved
             if message.reserved:
                 described += f" and `reserved` {message.reserved:,}"
+                missing = f"{count(undescribed, 'byte')} more"
+                place = ", which counts all reserved bytes at the end,"
+            else:
+                missing = (
+                    "the last byte"
+                    if undescribed == 1
+                    else f"the last {count(undescribed, 'byte')}"
+                )
+                place = " beside `length`"
+            pronoun = "it" if total == 1 else "them"
+            reserve = f"write `reserved: {total}`{place} if the manual calls {pronoun} reserved"
             text = f"{quote(message.name)} has {count(message.length, 'byte')}, but {described}"
-            missing = (
-                "the last byte"
-                if undescribed == 1 and not message.reserved
-                else f"the last {count(undescribed, 'byte')}"
-            )
-            missing = (
-                f"{count(undescribed, 'byte')} more" if message.reserved else missing
-            )
-            pronoun = "it" if undescribed + message.reserved == 1 else "them"
-            total = undescribed + message.reserved
-            reserve = (
-                f"write `reserved: {total}`, which counts all reserved bytes at the end, if the manual calls {pronoun} reserved"
-                if message.reserved
-                else f"write `reserved: {total}` beside `length` if the manual calls {pronoun} reserved"
-            )
             yield Fault.at(
                 message.source,
                 "length",
