@@ -198,6 +198,12 @@ structs:
   - name: Point
     length: 3
     fields: [{at: 0, bits: 16, name: X, type: int, formula: raw*0.1, unit: m}, {at: 16, bits: 8, name: Way, type: enum, enum: Way}]
+  - name: Curve
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Kind, type: uint}
+      - {at: 8, bits: 16, name: Levels, type: uint, count: Inner, up_to: 2}
+      - {at: 8, after: Levels, bits: 8, name: End, type: uint}
 messages:
   - name: Points
     id: 1000
@@ -265,6 +271,14 @@ messages:
       - {at: 32, name: Points, struct: Point, count: Count, up_to: 3}
       - {at: 32, after: Points, name: Key, type: bytes, size: Size, up_to: 4}
       - {at: 32, after: Key, name: Words, type: text, size: Length, up_to: 5}
+  - name: Curves
+    id: 1008
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Inner, type: uint}
+      - {at: 8, bits: 8, name: Count, type: uint}
+      - {at: 16, name: Curves, struct: Curve, count: Count, up_to: 3}
 """
 
 
@@ -291,7 +305,7 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     for message, data in frames:
         rows = frame(icd, node, message, data).rows
         wanted.append((message.name, [_same(value_of(row)) for row in rows]))
-    assert len({name for name, _ in wanted}) == 9 and len(wanted) > 100
+    assert len({name for name, _ in wanted}) == 10 and len(wanted) > 100
     icd_option = ("--icd", tmp_path / "odd.yaml")
     said = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
     rows = [json.loads(line) for line in said.stdout.splitlines()]

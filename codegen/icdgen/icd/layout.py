@@ -370,6 +370,15 @@ class Layout:
                 )
             yield part.gap(size)
 
+    def in_longest(self, frame: bytes, sizes: Sizes) -> bytes:
+        """Return the longest frame with the bytes of a frame of these sizes at their
+        positions; absent bytes are 0.
+        """
+        for gap in self.gaps(sizes):
+            before = frame[: gap.begin].ljust(gap.begin, b"\0")
+            frame = before + bytes(gap.length) + frame[gap.begin :]
+        return frame.ljust(self.longest, b"\0")
+
     def size_of_frame(self, sizes: Sizes) -> int:
         """Return the length in bytes of a frame of these sizes."""
         return self.length + sum(

@@ -245,11 +245,8 @@ def _unpacked(node: Node, message: Message, data: bytes) -> Unpacked:
     Raise `icdgen.codec.LengthError` if the length of the data is invalid.
     """
     raw = codec.decode_frame(node, message, data)
-    sizes = codec.sizes_of_values(message, raw)
-    begin = message.layout.length
-    padded, ends = data[:begin], {}
-    for part in message.layout.parts:
-        size = sizes[part.name] * part.step
-        padded += data[begin : begin + size].ljust(part.most * part.step, b"\0")
-        begin, ends[part.name] = begin + size, part.begin + size
-    return padded, frozenset(raw), ends
+    layout, sizes = message.layout, codec.sizes_of_values(message, raw)
+    ends = {
+        part.name: part.begin + sizes[part.name] * part.step for part in layout.parts
+    }
+    return layout.in_longest(data, sizes), frozenset(raw), ends

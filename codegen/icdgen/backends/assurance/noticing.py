@@ -240,14 +240,8 @@ class MessageWatch:
 
         ``raw``: values of the frame.
         """
-        layout = self.message.layout
-        for gap in layout.gaps(codec.sizes_of_values(self.message, raw)):
-            frame = (
-                frame[: gap.begin].ljust(gap.begin, b"\0")
-                + bytes(gap.length)
-                + frame[gap.begin :]
-            )
-        return frame.ljust(layout.longest, b"\0")
+        sizes = codec.sizes_of_values(self.message, raw)
+        return self.message.layout.in_longest(frame, sizes)
 
     @cached_property
     def _of_others(self) -> list[list[int]]:
