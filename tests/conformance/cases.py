@@ -131,7 +131,9 @@ class MessageCases:
         for field in self.fields:
             yield from self.unfit(field)
         for field in (*self.scaled, *self.texts):
-            if field["name"] not in self.one_way:
+            # Not every element can be in a frame: arrays in elements can share a counter.
+            is_sent = self.is_sent(field["name"], self.full)
+            if is_sent and field["name"] not in self.one_way:
                 yield from self.settings(field)
         yield from self.set_views()
 
