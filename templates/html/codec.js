@@ -57,12 +57,14 @@ const icdgenCodec = (() => {
   function decode(message, frame) {
     const { tail } = message;
     const actual = frame.length;
+    const behind = frame.slice(Math.max(0, actual - behindOf(message)));
     if (message.inner) frame = spread(message, frame);
     const count = tail ? elementsIn(message, frame.length, frame.length - actual) : 0;
     const endsEarly = message.endsEarly && frame.length > 0 && frame.length < message.length;
     if (!tail && !endsEarly && frame.length !== message.length) throw misfit(message, message.endsEarly && !frame.length ? 1 : message.length, frame.length);
     const longest = tail || endsEarly ? new Uint8Array(message.length) : frame;
     if (longest !== frame) longest.set(frame);
+    if (behindOf(message)) longest.set(behind, endOf(message));
     const raw = message.fields.map((field) => read(field, longest));
     if (message.conditional) message.fields.forEach((field, index) => (raw[index] = isThere(message, field, raw) ? raw[index] : null));
     message.fields.forEach((field, index) => {
@@ -99,10 +101,10 @@ const icdgenCodec = (() => {
     });
   }
 
-  /** The beginning of the longest frame: with zeros for what inner open parts do not have. Throws a CodecError for a frame that cannot be. */
+  /** The longest frame up to its open end: with zeros for what inner open parts do not have. Throws a CodecError for a frame that cannot be. */
   function spread(message, frame) {
     if (frame.length < message.fewest) throw misfit(message, message.fewest, frame.length);
-    let whole = frame;
+    let whole = frame.slice(0, frame.length - behindOf(message));
     for (const gap of gaps(message, (index) => read(message.fields[index], frame))) {
       if (!gap) throw misfit(message, frame.length === message.length ? message.inner[0].begin : message.length, frame.length);
       const [place, lacking] = gap;
@@ -114,15 +116,12 @@ const icdgenCodec = (() => {
     return whole;
   }
 
-  /** The frame of the beginning of the longest one. Throws a CodecError for a count that cannot be. */
-  function squeezed(message, raw, frame) {
-    for (const [place, lacking] of gaps(message, (index) => raw[index]).reverse()) {
-      const left = new Uint8Array(frame.length - lacking);
-      left.set(frame.subarray(0, place));
-      left.set(frame.subarray(place + lacking), place);
-      frame = left;
-    }
-    return frame;
+  /** Of each byte of the frame of raw values, the place in the longest frame. Throws a CodecError for a count that cannot be. */
+  function places(message, raw) {
+    const [size, end] = [sizeOf(message, raw), endOf(message)];
+    const found = Array.from({ length: size + behindOf(message) }, (_, at) => (at < size ? at : at - size + end));
+    for (const [place, lacking] of gaps(message, (index) => raw[index]).reverse()) found.splice(place, lacking);
+    return found;
   }
 
   /** How many elements the end of a frame of so many bytes has, of which it lacks some. Throws a CodecError if no frame has so many. */
@@ -131,13 +130,19 @@ const icdgenCodec = (() => {
     const refuse = (expected) => misfit(message, expected - lacking, actual - lacking);
     const shortest = least + Math.max(0, plusOf(message)) * step;
     if (actual < shortest) throw refuse(shortest);
-    if (actual > message.length) throw refuse(message.length);
+    if (actual > endOf(message)) throw refuse(endOf(message));
     if ((actual - least) % step) throw refuse(actual - ((actual - least) % step));
     return (actual - least) / step;
   }
 
   /** How many more elements the end of a message has than the field says that counts them. */
   const plusOf = (message) => message.tail.plus ?? 0;
+
+  /** Bytes of the fields behind the open end of a message. */
+  const behindOf = (message) => message.tail?.behind ?? 0;
+
+  /** First byte behind the open end of the longest frame. */
+  const endOf = (message) => message.length - behindOf(message);
 
   function misfit(message, expected, actual) {
     return new CodecError("length", `${message.name} has ${expected} bytes, ${actual} given`, { expected, actual });
@@ -153,7 +158,7 @@ const icdgenCodec = (() => {
     return (field.when ?? []).every(([index, values]) => values.some((value) => BigInt(value) === raw[index]));
   }
 
-  /** Bytes of the frame of raw values. Throws a CodecError for more elements than there can be. */
+  /** Bytes of the longest frame up to the last element of its open end. Throws a CodecError for more elements than there can be. */
   function sizeOf(message, raw) {
     if (!message.tail) return message.length;
     const counter = counterOf(message);
@@ -165,10 +170,10 @@ const icdgenCodec = (() => {
     return least + (Number(raw[counter]) + plus) * step;
   }
 
-  /** Whether a frame of so many bytes holds a field; open bytes and text are there, if only in part. */
-  function isIn(field, size) {
-    if (field.type === "bytes") return Boolean(field.isOpen) || field.first + field.bits / 8 <= size;
-    return field.pieces.every(([byte]) => byte < size);
+  /** Whether a frame with so many bytes up to its last element has a field; open bytes and text are there, if only in part. */
+  function isIn(message, field, size) {
+    if (field.type === "bytes") return Boolean(field.isOpen) || field.first + field.bits / 8 <= size || field.first >= endOf(message);
+    return field.pieces.every(([byte]) => byte < size || byte >= endOf(message));
   }
 
   /** Parts with their own counters, and the arrays in their elements. */
@@ -187,11 +192,11 @@ const icdgenCodec = (() => {
       if (raw[counter] < low || raw[counter] > high) throw unfit(message.fields[counter], `takes ${low} to ${high}, not ${raw[counter]}`);
     });
     message.fields.forEach((field, index) => {
-      if (field.view || !isIn(field, size) || !isThere(message, field, raw)) return;
+      if (field.view || !isIn(message, field, size) || !isThere(message, field, raw)) return;
       check(field, raw[index]);
       write(field, frame, raw[index]);
     });
-    if (message.inner) return squeezed(message, raw, frame.slice(0, size));
+    if (message.inner) return Uint8Array.from(places(message, raw), (at) => frame[at]);
     return message.tail ? frame.slice(0, size) : frame;
   }
 
@@ -440,7 +445,7 @@ const icdgenCodec = (() => {
   }
 
   return {
-    CodecError, expanded, plusOf, decode, encode, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
+    CodecError, expanded, plusOf, decode, encode, places, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
     rawFromText, floatValue, floatBits, memberName,
   };
 })();

@@ -10,6 +10,7 @@
   const FEW_FLAGS = 6; // of so many flags on end a grid is made
   let raw = codec.fresh(plan);
   let shown = null; // the frame whose values are shown
+  let size = 0; // bytes of the longest frame up to the last element of its open end
 
   function make(name, attributes, ...children) {
     const element = document.createElement(name);
@@ -89,7 +90,7 @@
   function rowOf(key) {
     if (!rows.has(key - 1)) {
       rows.set(key - 1, makeRow(fields[key - 1], key - 1));
-      if (shown) fillRow(key - 1, shown);
+      if (shown) fillRow(key - 1);
     }
     return rows.get(key - 1);
   }
@@ -177,7 +178,7 @@
       changed[index] = new Uint8Array(Math.max(field.bits / 8, typed.length));
       changed[index].set(typed);
       changed[at] = BigInt(Math.max(0, typed.length - codec.plusOf(plan)));
-    } else if (!field.view && !codec.isIn(field, codec.sizeOf(plan, raw))) {
+    } else if (!field.view && !codec.isIn(plan, field, codec.sizeOf(plan, raw))) {
       const first = field.type === "bytes" ? field.first : Math.min(...field.pieces.map(([byte]) => byte));
       changed[at] = BigInt(Math.max(0, Math.floor((first - least) / step) + 1 - codec.plusOf(plan)));
     }
@@ -187,9 +188,10 @@
 
   function show(frame, remarks) {
     shown = frame;
-    for (const index of rows.keys()) fillRow(index, frame);
+    size = codec.sizeOf(plan, raw);
+    for (const index of rows.keys()) fillRow(index);
     const wrong = fields.flatMap((field, index) => {
-      const one = shownOf(field, raw[index], frame);
+      const one = shownOf(field, raw[index]);
       const remark = one === null ? {} : values.remark(field, one, plan.enums);
       return remark.wrong ? [`${field.name}: ${remark.text}`] : [];
     });
@@ -197,15 +199,15 @@
     link.setAttribute("href", `#try=${text}`);
     const more = wrong.length > 3 ? [`${wrong.length - 3} more fields are wrong`] : [];
     say([`${frame.length} bytes`, ...remarks, ...wrong.slice(0, 3), ...more].join(", "), wrong.length > 0);
-    fold(frame);
+    fold();
     light(frame);
     send(frame);
   }
 
-  function fillRow(index, frame) {
+  function fillRow(index) {
     const { box, value, note } = rows.get(index);
     const field = fields[index];
-    const one = shownOf(field, raw[index], frame);
+    const one = shownOf(field, raw[index]);
     box.removeAttribute("aria-invalid");
     if (one === null) {
       clear(rows.get(index));
@@ -225,21 +227,21 @@
   }
 
   /** Of arrays the elements that are in the frame have a fold, and one more, with which the frame can be made longer. */
-  function fold(frame) {
+  function fold() {
     if (plan.sections) return;
     let before = true;
     sections.forEach(({ keys }, number) => {
-      const there = keys.some((key) => shownOf(fields[key - 1], raw[key - 1], frame) !== null);
+      const there = keys.some((key) => shownOf(fields[key - 1], raw[key - 1]) !== null);
       folds[number].hidden = !there && !before;
       before = there;
     });
   }
 
   /** The value of a field as the frame holds it: bytes that are cut off are as many as there are; null for what is not there. */
-  function shownOf(field, one, frame) {
+  function shownOf(field, one) {
     if (!plan.tail || field.implied || one === null) return one;
-    if (field.isOpen) return one.subarray(0, frame.length - field.first);
-    return codec.isIn(field, frame.length) ? one : null;
+    if (field.isOpen) return one.subarray(0, size - field.first);
+    return codec.isIn(plan, field, size) ? one : null;
   }
 
   function say(text, wrong, ...links) {
@@ -260,16 +262,19 @@
   });
 
   function light(frame) {
-    const isSet = (at) => (frame[at >> 3] >> (7 - (at & 7))) & 1;
+    const places = plan.inner ? codec.places(plan, raw) : Array.from(frame.keys());
+    const longest = new Uint8Array(plan.length); // drawings show the longest frame
+    places.forEach((place, number) => (longest[place] = frame[number]));
+    const isSet = (at) => (longest[at >> 3] >> (7 - (at & 7))) & 1;
     strip.replaceChildren(...Array.from(frame, (byte, number) => {
       const bits = Array.from({ length: 8 }, (_, bit) => {
-        const at = number * 8 + bit;
+        const at = places[number] * 8 + bit;
         return make("i", { ...(owners[at] ? { "data-key": tieOf(owners[at]) } : {}), ...(isSet(at) ? { class: "on" } : {}) });
       });
       return make("span", { title: `byte ${number}` }, make("b", {}, frames.hex([byte])), ...bits);
     }));
     const text = (key) => {
-      const one = shownOf(fields[key - 1], raw[key - 1], frame);
+      const one = shownOf(fields[key - 1], raw[key - 1]);
       return one === null ? "" : values.shortText(fields[key - 1], one, plan.enums);
     };
     pictures().forEach((svg, number) => icdgenLit.show(svg, drawings[number], plan.length * 8, isSet, text));

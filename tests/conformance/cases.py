@@ -316,8 +316,8 @@ class MessageCases:
             return self.message["length"]
         if "inner" in self.message or "nested" in self.tail:
             return Maybe(...)
-        step = self.tail["step"]
-        least = self.tail["least"] + step * max(0, self.tail.get("plus", 0))
+        step, behind = self.tail["step"], self.tail.get("behind", 0)
+        least = self.tail["least"] + step * max(0, self.tail.get("plus", 0)) + behind
         if least <= actual < self.message["length"]:
             return Maybe(actual - (actual - least) % step)
         return Maybe(least if actual < least else self.message["length"])

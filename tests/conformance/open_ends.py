@@ -47,7 +47,8 @@ def open_parts(
     elements: st.SearchStrategy,
     structs: list[dict],
 ) -> list[dict]:
-    """One, or several behind each other, all but the last counted by fields.
+    """One, or several behind each other, all but the last counted by fields; and fields
+    of fixed size behind some of them.
 
     ``place``: of the first; its name is that of all.
     """
@@ -57,18 +58,40 @@ def open_parts(
         0 if draw(st.integers(0, 2)) else min(len(free), draw(st.integers(1, 2)))
     ):
         one = open_end(_named(place, number, found), free, elements, structs)
-        found.append(draw(one.filter(lambda part: _counter(part) != "rest")))
-        free = [
-            one for one in free if one["name"] != _counter(found[-1])
-        ]  # a field counts one part
-    return [
-        *found,
-        draw(
-            open_end(
-                _named(place, 9, found) if found else place, free, elements, structs
-            )
-        ),
-    ]
+        part = draw(one.filter(lambda part: _counter(part) != "rest"))
+        # a field counts one part
+        free = [one for one in free if one["name"] != _counter(part)]
+        found.append(part)
+        found += draw(fields_behind(place, number, found, elements, structs))
+    end = _named(place, 9, found) if found else place
+    found.append(draw(open_end(end, free, elements, structs)))
+    return found + draw(fields_behind(place, 9, found, elements, structs))
+
+
+@st.composite
+def fields_behind(
+    draw,
+    place: dict,
+    number: int,
+    before: list[dict],
+    elements: st.SearchStrategy,
+    structs: list[dict],
+) -> list[dict]:
+    """None, or a few fields of fixed size behind a part.
+
+    ``place`` and ``number``: of the part; their names begin with its name.
+    """
+    found: list[dict] = []
+    whole = elements.filter(lambda one: one["bits"] * one.get("count", 1) % 8 == 0)
+    for index in range(draw(st.sampled_from((0, 0, 1, 1, 2, 3)))):
+        at = _named(place, 10 * (number + 1) + index, [*before, *found])
+        if structs and draw(st.integers(0, 2)) == 0:
+            count = draw(st.sampled_from(({}, {"count": 1}, {"count": 2})))
+            struct = draw(st.sampled_from(structs))["name"]
+            found.append({**at, "struct": struct, **count})
+        else:
+            found.append({**at, **draw(whole)})
+    return found
 
 
 @st.composite

@@ -12,7 +12,12 @@ from hypothesis import strategies as st
 from icdgen.icd import exact, formula
 from icdgen.icd.curve import OUTSIDE
 from tests.conformance.derived import derived
-from tests.conformance.open_ends import nested_end, open_end, open_parts
+from tests.conformance.open_ends import (
+    fields_behind,
+    nested_end,
+    open_end,
+    open_parts,
+)
 from tests.conformance.sharing import sharing
 
 # Words that mean something to a language, to generated code, or to a template; alone
@@ -172,7 +177,10 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             ends, struct = draw(
                 nested_end(message["length"], named, struct, inner, _field(enums))
             )
-            fields, message["length"] = [*fields, *ends], message["length"] + 2
+            message["length"] += 2
+            place = {"at": 8 * message["length"], **own_names.one("behind")}
+            ends += draw(fields_behind(place, 0, ends, _field(enums), structs))
+            fields = [*fields, *ends]
             variable.append(struct)
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))

@@ -279,6 +279,15 @@ messages:
       - {at: 0, bits: 8, name: Inner, type: uint}
       - {at: 8, bits: 8, name: Count, type: uint}
       - {at: 16, name: Curves, struct: Curve, count: Count, up_to: 3}
+  - name: Checked
+    id: 1009
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: uint}
+      - {at: 8, name: Payload, type: bytes, size: rest, up_to: 6}
+      - {at: 8, after: Payload, name: Last, struct: Point}
+      - {at: 8, after: Last, bits: 16, name: CRC, type: uint}
 """
 
 
@@ -305,7 +314,7 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     for message, data in frames:
         rows = frame(icd, node, message, data).rows
         wanted.append((message.name, [_same(value_of(row)) for row in rows]))
-    assert len({name for name, _ in wanted}) == 10 and len(wanted) > 100
+    assert len({name for name, _ in wanted}) == 11 and len(wanted) > 100
     icd_option = ("--icd", tmp_path / "odd.yaml")
     said = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
     rows = [json.loads(line) for line in said.stdout.splitlines()]

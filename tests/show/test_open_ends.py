@@ -7,6 +7,7 @@ import json
 import jsonschema_rs
 
 from icdgen.diff.inputs import shown
+from icdgen.icd.places import places_in
 from icdgen.loading import load
 from icdgen.show.fields import field_table
 from icdgen.show.machine import SCHEMA, to_json
@@ -47,6 +48,29 @@ def test_what_is_shown_for_programs_is_read_back_with_the_open_ends():
     assert list(map(_facts, again.nodes[0].messages)) == list(
         map(_facts, icd.nodes[0].messages)
     )
+
+
+def test_fields_behind_a_part_are_shown_behind_it_and_read_back():
+    icd = load([odd.FOLDER / "behind.yaml"]).icd
+    node = icd.node("behind")
+    rows = {
+        message.name: field_table(message, node).splitlines()
+        for message in node.messages
+    }
+    assert "up to the fields behind it" in rows["Packet"][-2]
+    assert "CRC" in rows["Packet"][-1] and "behind Payload" in rows["Packet"][-1]
+    assert "Total" in rows["Between"][-1] and "behind Third" in rows["Between"][-1]
+    assert "4 to 44 bytes" in to_text(icd, ["behind", "Packet"])
+    tree = to_json(icd)
+    jsonschema_rs.validator_for(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))
+    ).validate(tree)
+    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    for old, new in zip(node.messages, again.nodes[0].messages, strict=True):
+        assert _facts(old) == _facts(new)
+        assert [(place.name, place.at) for place in places_in(old.layout)] == [
+            (place.name, place.at) for place in places_in(new.layout)
+        ]
 
 
 def test_arrays_in_elements_are_shown_with_their_counters_and_read_back():

@@ -41,6 +41,15 @@ messages:
       - {at: 24, name: Keys, struct: Key, count: Keys Count, up_to: 3}
       - {at: 24, after: Keys, bits: 8, name: Levels, type: uint, count: {field: Levels Last, plus: 1}, up_to: 4}
       - {at: 24, after: Levels, name: Words, type: text, size: rest, up_to: 5}
+  - name: Checked
+    id: 4
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Size, type: uint}
+      - {at: 8, name: Payload, type: bytes, size: Size, up_to: 4}
+      - {at: 8, after: Payload, name: Sums, bits: 8, count: 2, type: uint}
+      - {at: 8, after: Sums, bits: 16, name: CRC, type: uint}
   - name: Data
     id: 2
     kind: telemetry
@@ -91,6 +100,9 @@ def frame(icd, message: str, *assigned: str) -> str:
             ("curves[1].kind=1", "points count=3"),
             "03 02 0000000000 0100000000",
         ),
+        ("Checked", ("crc=0x1234",), "00 0000 3412"),
+        ("Checked", ("payload=01 02", "sums=[3, 4]", "crc=5"), "02 0102 0304 0500"),
+        ("Checked", ("crc=5", "payload=01 02", "payload=03"), "01 03 0000 0500"),
         ("Data", ("data=01 02 03",), "010203"),
         ("Data", ("data=01 02 03", "data=04"), "04"),
     ],

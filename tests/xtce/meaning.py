@@ -95,7 +95,7 @@ def _lacks(one: Message, node: Node) -> bool:
 def has_open_end(one: Message) -> bool:
     """Whether a message has an open end for which XTCE has a word."""
     parts = one.layout.parts
-    if len(parts) != 1 or parts[0].is_rest or one.has_conditions:
+    if len(parts) != 1 or parts[0].is_rest or parts[0].behind or one.has_conditions:
         return False
     place = next(
         place for place in places_in(one.layout) if place.node is parts[0].node

@@ -292,6 +292,9 @@ def field_comment(
         if own_part
         else _place(field) + _inner_count(field)
     )
+    front = message.layout.part_in_front_of(field.node)
+    if front is not None and own_part is None:
+        place = f"behind {words(front.name)}, in the longest frame {place}"
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(
         head, (sentence(field.summary), " ".join(facts)), field.errata, elsewhere
@@ -346,10 +349,8 @@ def _variable_place(field: NodePlace, message: Message, part: VariablePart) -> s
         what = f"text of up to {part.most} character{'s' * (part.most != 1)}"
     else:
         what = f"up to {array_text(part.most, field.bits)}"
-    before = [
-        other.name for other in message.layout.parts[:-1] if 8 * other.begin < field.at
-    ]
-    place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
+    front = message.layout.part_in_front_of(field.node)
+    place = f"behind {words(front.name)}" if front else f"from byte {field.at // 8} on"
     counted = "" if part.is_rest else f"as many as {words(part.counter)} says"
     return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 

@@ -141,11 +141,17 @@ class FieldDescription(ScalarDescription):
         return self.model.index
 
     @property
+    def is_in_sequence(self) -> bool:
+        """Whether the field is a variable part of its message, or behind or in one."""
+        sequence = self.message.model.layout.sequence
+        return any(self.member_of_message.model.node is node for node in sequence)
+
+    @property
     def is_in_last_part(self) -> bool:
         """Whether the field is the last variable part of its message, or in it."""
         # Fields below a member have the node of that member in `member_of_message`.
-        sequence = self.message.model.layout.sequence
-        return bool(sequence) and self.member_of_message.model.node is sequence[-1]
+        parts = self.message.model.layout.parts
+        return bool(parts) and self.member_of_message.model.node is parts[-1].node
 
     @property
     def is_in_earlier_part(self) -> bool:
@@ -153,8 +159,8 @@ class FieldDescription(ScalarDescription):
         part.
         """
         return any(
-            self.member_of_message.model.node is node
-            for node in self.message.model.layout.sequence[:-1]
+            self.member_of_message.model.node is part.node
+            for part in self.message.model.layout.parts[:-1]
         )
 
     @property

@@ -92,6 +92,16 @@ class MessageDescription(Composite[Message]):
         return tuple(parts)
 
     @property
+    def has_gaps(self) -> bool:
+        """Whether a frame can differ from the beginning of the longest frame."""
+        return self.model.layout.has_gaps
+
+    @property
+    def steady_bytes(self) -> int:
+        """Bytes that every frame has outside its parts of variable length."""
+        return self.model.layout.steady_bytes
+
+    @property
     def counted_parts(self) -> tuple[VariablePartDescription, ...]:
         """Parts of variable length and those in elements of them."""
         inner = (inner for part in self.variable_parts for inner in part.inner)
@@ -115,9 +125,9 @@ class MessageDescription(Composite[Message]):
         """
         assert self.last_part is not None
         last = self.last_part.model
-        # Before these tests, a decoder with several parts has put all of the earlier
-        # ones in front of the last.
-        return length_tests(last.lengths, last.begin if self.spread_parts else 0)
+        # Before these tests, a decoder of frames with gaps has put all that is in front
+        # of the last part before it.
+        return length_tests(last.lengths, last.begin if self.has_gaps else 0)
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

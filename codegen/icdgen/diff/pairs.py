@@ -144,8 +144,8 @@ class FieldPair(SideBySide[Line]):
 
         For a variable-length part, the bits of one element are compared.
         """
-        was = position(self.owner.old_node, self.old, self.is_open)
-        now = position(self.owner.new_node, self.new, self.is_open)
+        was = _comparable(self.owner.old_node, self.owner.old, self.old, self.is_open)
+        now = _comparable(self.owner.new_node, self.owner.new, self.new, self.is_open)
         return was == now
 
     @cached_property
@@ -257,16 +257,28 @@ def orders(node: Node) -> tuple[str, str]:
     return node.byte_order, node.bit_order
 
 
-def position(node: Node, line: Line, first_only: bool = False) -> Position:
+def _comparable(node: Node, message: Message, line: Line, first_only: bool) -> Position:
+    """Return the `position` of a field in a frame without variable-length elements in
+    front of it: the longest frame also depends on the most elements of these.
+    """
+    parts = message.layout.parts
+    elements = sum(part.most * part.step for part in parts if 8 * part.end <= line.at)
+    return position(node, line, first_only, 8 * elements)
+
+
+def position(
+    node: Node, line: Line, first_only: bool = False, absent: int = 0
+) -> Position:
     """Return the bits of a field in a form that is comparable between nodes of
     different byte and bit order.
 
-    With ``first_only``, bits of the first element of a variable-length part.
+    With ``first_only``, bits of the first element of a variable-length part. ``absent``
+    is the number of bits in front of it that the frame does not have.
     """
     # A derived value has no bits.
     if line.derived is not None:
         return ()
-    starts = line.starts(first_only)
+    starts = [start - absent for start in line.starts(first_only)]
     if line.is_bytes:
         bits = 8 if first_only and line.scalar.length is not None else line.bits
         return tuple(range(at // 8, (at + bits + 7) // 8) for at in starts)

@@ -39,8 +39,9 @@ from icdgen.icd.layout import (
     Scalar,
     Size,
     StructRef,
-    VariableNode,
+    bits_of_node,
     stride,
+    struct_layout_of,
 )
 from icdgen.icd.layout_nodes import counter_of_rest, derived_of, overlay_of
 from icdgen.icd.located import Map, plain, unread
@@ -192,9 +193,7 @@ class Builder:
         """Return the layout of a struct, with the nodes behind a variable-length array
         as in the longest element.
         """
-        is_variable = variable_structs.is_variable_struct(item)
-        behind = variable_structs.sequence_of_struct(item) if is_variable else ()
-        fixed, length = self.fixed_nodes(item, behind), item["length"]
+        fixed, length = self.fixed_nodes(item), item["length"]
         nodes: list[FixedNode] = []
         for row in self.sequence_of_struct(item):
             size: Size | None = row.get("count")
@@ -205,21 +204,19 @@ class Builder:
             if node is None or not stride(node):
                 return Layout(item["name"], item["length"], fixed, owner=self.name)
             nodes.append(node)
-            length += stride(node) * (node.most if isinstance(node, Array) else 1) // 8
+            length += bits_of_node(node) // 8
         return Layout(item["name"], length, (*fixed, *nodes), owner=self.name)
 
     def sequence_of_struct(self, item: Map) -> list[Map]:
         """Return the variable-length arrays of a struct and the fields behind them;
         none if one has an error.
         """
-        rows, structs = variable_structs.sequence_of_struct(item), self.scope.structs
+        rows, structs = variable_length.sequence_of(item), self.scope.structs
         lengths = {name: struct.length for name, struct in structs.items()}
         variable = {
             name for name, struct in structs.items() if struct.layout.inner_parts
         }
-        is_valid = variable_structs.is_variable_struct(item) and not any(
-            id(row) in self.broken for row in rows
-        )
+        is_valid = not any(id(row) in self.broken for row in rows)
         return (
             rows
             if is_valid
@@ -259,7 +256,7 @@ class Builder:
             name=item["name"],
             length=item["length"],
             fixed=self.fixed_nodes(item),
-            sequence=self.variable_nodes(item),
+            sequence=self.sequence(item),
             orders=declared_orders(item),
             may_end_early="may_end_early" in item,
             owner=self.name,
@@ -274,16 +271,13 @@ class Builder:
                 layout = replace(layout, derived=(*layout.derived, node))
         return layout
 
-    def fixed_nodes(
-        self, owner: Map, behind: Iterable[Map] = ()
-    ) -> tuple[FixedNode, ...]:
+    def fixed_nodes(self, owner: Map) -> tuple[FixedNode, ...]:
         """Return the nodes at fixed positions of a message or struct.
 
-        A split field has one node per part. Fields `behind` a variable-length array of a
-        struct are left out.
+        A split field has one node per part.
         """
         nodes: list[FixedNode] = []
-        left_out = set(map(id, behind))
+        left_out = set(map(id, variable_length.sequence_of(owner)))
         fields: dict[str, Map] = {}  # by name, once a condition needs them
         for item in self.items("fields", owner):
             is_broken = any(
@@ -332,13 +326,16 @@ class Builder:
             )
             yield _overlaid(scalar, part)
 
-    def variable_nodes(self, message: Map) -> tuple[VariableNode, ...]:
-        """Return the nodes of variable length; an empty tuple if one has an error,
-        because their positions are dependent.
+    def sequence(self, message: Map) -> tuple[FixedNode, ...]:
+        """Return the nodes of variable length and those behind them; an empty tuple if
+        one has an error, because their positions are dependent.
         """
-        items = variable_length.variable_fields(message)
+        items = variable_length.sequence_of(message)
         lengths = {name: struct.length for name, struct in self.scope.structs.items()}
-        counters = [variable_length.counter_of(message, item) for item in items]
+        counters = [
+            variable_length.counter_of(message, item)
+            for item in filter(variable_length.is_variable, items)
+        ]
         if any(id(item) in self.broken for item in (*items, *counters)):
             return ()
         if any(any(variable_length.faults(message, item, lengths)) for item in items):
@@ -350,30 +347,28 @@ class Builder:
             for item in uses
         ):
             return ()
-        nodes: list[VariableNode] = []
+        nodes: list[FixedNode] = []
         for item in items:
-            counter, counting = variable_length.counter_of(
-                message, item
-            ), variable_length.counting(item)
-            if counter is None:
-                most, is_array = item["up_to"], "count" in item
-                size: Size = Rest(
-                    counter_of_rest(
-                        item["name"], item.get("identifier"), is_array, most, item
-                    ),
-                    most,
-                )
-            else:
-                size = Counted(counter["name"], item["up_to"], counting.plus)
+            size: Size | None = item.get("count")
+            if variable_length.is_variable(item):
+                size = self.variable_size(message, item)
             node = self.node_of(item, item["at"], size)
-            if (
-                not isinstance(node, Array | Scalar)
-                or not stride(node)
-                or _is_without_fields(node)
-            ):
+            if node is None or not stride(node) or _is_without_fields(node):
                 return ()
             nodes.append(node)
         return tuple(nodes)
+
+    def variable_size(self, message: Map, item: Map) -> Counted | Rest:
+        """Return the size of a variable-length field of a message."""
+        counter = variable_length.counter_of(message, item)
+        if counter is not None:
+            plus = variable_length.counting(item).plus
+            return Counted(counter["name"], item["up_to"], plus)
+        most, is_array = item["up_to"], "count" in item
+        identifier = item.get("identifier")
+        return Rest(
+            counter_of_rest(item["name"], identifier, is_array, most, item), most
+        )
 
     def node_of(self, item: Map, at: int, size: Size | None) -> FixedNode | None:
         """Return the node of a line; None if it refers to an unknown struct, or to one
@@ -491,13 +486,12 @@ def _overlaid(scalar: Scalar, item: Map) -> Scalar | Overlay:
     return overlay_of(scalar) if item.get("view", False) else scalar
 
 
-def _is_without_fields(node: Array | Scalar) -> bool:
-    """Return whether a node is an array of structs without readable fields."""
-    return (
-        isinstance(node, Array)
-        and isinstance(node.item, StructRef)
-        and not node.item.layout.fixed
-    )
+def _is_without_fields(node: FixedNode) -> bool:
+    """Return whether a node is a struct, or an array of structs, without readable
+    fields.
+    """
+    struct = struct_layout_of(node)
+    return struct is not None and not struct.fixed
 
 
 def _id(item: Map, key: str) -> int | None:

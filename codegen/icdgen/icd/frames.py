@@ -32,6 +32,8 @@ from icdgen.icd.layout import (
     Scalar,
     Sizes,
     StructRef,
+    bits_of_node,
+    is_variable,
     size_of,
     stride,
 )
@@ -198,10 +200,12 @@ def frame_fields(
 
 
 def fixed_fields(layout: Layout, orders: Orders) -> tuple[FrameField, ...]:
-    """Return the scalars of a frame without variable-length elements: those of the
-    fixed part, counts and derived values.
+    """Return the scalars whose positions do not depend on the frame: those of the fixed
+    part, counts and derived values.
     """
-    return frame_fields(layout, orders, dict.fromkeys(layout.parts_by_size, 0))
+    fields = frame_fields(layout, orders, dict.fromkeys(layout.parts_by_size, 0))
+    sequence = set(map(id, layout.sequence))
+    return tuple(field for field in fields if id(field.steps[0].node) not in sequence)
 
 
 @cached_by_owner
@@ -223,16 +227,20 @@ def flatten(
     orders = layout.orders.within(orders)
     for node in layout.fixed:
         fields += _scalars(node, (PathStep(node),), node.at, node.orders.within(orders))
-    end = 8 * layout.length
-    for part in layout.parts:
-        node, size = part.node, size_of(part.node)
+    end, parts = 8 * layout.length, iter(layout.parts)
+    for node in layout.sequence:
+        own = node.orders.within(orders)
+        if not is_variable(node):
+            fields += _scalars(node, (PathStep(node),), end, own)
+            end += bits_of_node(node)
+            continue
+        part, size = next(parts), size_of(node)
         number, gaps = (
             (size.most, ())
             if sizes is None
             else (sizes[part.name], part.gaps_of(sizes))
         )
         step = 8 * (part.step - sum(gap.length for gap in gaps))
-        own = node.orders.within(orders)
         if isinstance(node, Array):
             for element in range(number):
                 begin = end + element * step

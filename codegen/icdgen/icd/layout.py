@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from math import gcd
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, TypeGuard
 
 from icdgen.frozen import dataclass
 from icdgen.icd.curve import Curve, has_inverse
@@ -89,8 +89,8 @@ class LayoutNode:
     """A line of the ICD: attributes that all kinds of nodes have."""
 
     name: str
-    # First bit in the layout, counted in its own bit order; in a sequence: the end of
-    # the fixed part.
+    # First bit in the layout, counted in its own bit order; in the sequence of a
+    # message: the end of the fixed part.
     at: int = 0
     identifier: str | None = None
     aliases: tuple[str, ...] = ()  # other names that a search matches
@@ -235,6 +235,9 @@ VariableNode: TypeAlias = Scalar | Array
 class Layout:
     """Nodes of a message or of a struct.
 
+    In a message, the sequence begins with the first node of variable length. Nodes of
+    fixed size can follow it.
+
     A struct has fixed nodes only. An array of variable length in a struct is placed as
     in the longest element, with the nodes behind it; `inner_parts` lists these arrays.
     """
@@ -242,7 +245,7 @@ class Layout:
     name: str
     length: int  # bytes of the fixed part
     fixed: tuple[FixedNode, ...]  # at fixed bits, in the order of the ICD
-    sequence: tuple[VariableNode, ...] = ()  # behind the fixed part, contiguous
+    sequence: tuple[FixedNode, ...] = ()  # behind the fixed part, contiguous
     derived: tuple[Derived, ...] = ()
     orders: Orders = UNDECLARED  # as the message declares them
     may_end_early: bool = False
@@ -254,16 +257,21 @@ class Layout:
         return (*self.fixed, *self.sequence, *self.derived)
 
     @property
+    def steady_bytes(self) -> int:
+        """Bytes that every frame has outside its variable parts."""
+        return self.length + sum(part.behind for part in self.parts)
+
+    @property
     def longest(self) -> int:
         """Length of the longest frame in bytes."""
-        return self.length + sum(part.most * part.step for part in self.parts)
+        return self.steady_bytes + sum(part.most * part.step for part in self.parts)
 
     @property
     def shortest(self) -> int:
         """Length of the shortest frame in bytes; at least 1 if frames may end early,
         unless the message is empty.
         """
-        shortest = self.length + sum(
+        shortest = self.steady_bytes + sum(
             part.fewest * part.shortest_step for part in self.parts
         )
         return min(1, shortest) if self.may_end_early else shortest
@@ -284,6 +292,12 @@ class Layout:
         parts: list[VariablePart] = []
         begin = self.length
         for node in self.sequence:
+            if not is_variable(node):
+                parts[-1] = parts[-1]._replace(
+                    behind=parts[-1].behind + bits_of_node(node) // 8
+                )
+                begin += bits_of_node(node) // 8
+                continue
             size, step = size_of(node), stride(node) // 8
             is_rest = isinstance(size, Rest)
             counter, plus = (
@@ -356,7 +370,9 @@ class Layout:
         """Whether a frame can differ from the beginning of the longest frame: a
         variable part is not the end of it.
         """
-        return len(self.parts) > 1 or any(part.inner for part in self.parts)
+        return len(self.parts) > 1 or any(
+            part.inner or part.behind for part in self.parts
+        )
 
     def gaps(self, sizes: Sizes) -> Iterator[Gap]:
         """Yield the bytes of the longest frame that a frame of these sizes does not
@@ -379,9 +395,24 @@ class Layout:
             frame = before + bytes(gap.length) + frame[gap.begin :]
         return frame.ljust(self.longest, b"\0")
 
+    def part_of(self, node: LayoutNode) -> VariablePart | None:
+        """Return the variable part of a node; None for any other node."""
+        return next((part for part in self.parts if part.node is node), None)
+
+    def part_in_front_of(self, node: LayoutNode) -> VariablePart | None:
+        """Return the variable part behind which a node has no fixed position: the
+        nearest one; None for a node of the fixed part, and for the first part.
+        """
+        front: VariablePart | None = None
+        for other in self.sequence:
+            if other is node:
+                return front
+            front = self.part_of(other) or front
+        return None
+
     def size_of_frame(self, sizes: Sizes) -> int:
         """Return the length in bytes of a frame of these sizes."""
-        return self.length + sum(
+        return self.steady_bytes + sum(
             sizes[part.name] * part.step_of(sizes) for part in self.parts
         )
 
@@ -415,11 +446,17 @@ class VariablePart(NamedTuple):
     step: int  # bytes of an element
     most: int  # elements
     plus: int  # number of elements minus value of the counter
+    behind: int = 0  # bytes of fields of fixed size directly behind it
 
     @property
     def name(self) -> str:
         """Name of the node."""
         return self.node.name
+
+    @property
+    def end(self) -> int:
+        """Offset of the first byte behind it if it has the most elements."""
+        return self.begin + self.most * self.step
 
     @property
     def is_array(self) -> bool:
@@ -495,16 +532,31 @@ class VariablePart(NamedTuple):
         """Offsets that its end can have in bytes if all parts before it have the most
         elements.
         """
-        return range(self.shortest, self.begin + self.most * self.step + 1, self.step)
+        return range(self.shortest, self.end + 1, self.step)
+
+
+def is_variable(node: LayoutNode) -> TypeGuard[VariableNode]:
+    """Return whether a node has a variable length."""
+    match node:
+        case Array(size=size):
+            return not isinstance(size, int)
+        case Scalar(length=length):
+            return length is not None
+    return False
 
 
 def size_of(node: VariableNode) -> Counted | Rest:
-    """Return the size of a node of `Layout.sequence`."""
+    """Return the size of a node of variable length."""
     size = node.size if isinstance(node, Array) else node.length
-    assert isinstance(
-        size, Counted | Rest
-    ), "a sequence has nodes of variable length only"
+    assert isinstance(size, Counted | Rest), "a node of variable length has a counter"
     return size
+
+
+def bits_of_node(node: LayoutNode) -> int:
+    """Return the width in bits of a node of fixed size, of an array of all elements
+    together; of variable length as in the longest frame.
+    """
+    return stride(node) * (node.most if isinstance(node, Array) else 1)
 
 
 def stride(node: LayoutNode) -> int:

@@ -28,6 +28,8 @@ from icdgen.icd.layout import (
     Rest,
     Scalar,
     StructRef,
+    bits_of_node,
+    is_variable,
     size_of,
     stride,
 )
@@ -257,17 +259,23 @@ def _places(layout: Layout, outer: Orders) -> tuple[NodePlace, ...]:
         _place(node, orders, smallest_raw=layout.smallest_raw(node.name))
         for node in layout.fixed
     ]
-    for part in layout.parts:
-        node, size, at = part.node, size_of(part.node), 8 * part.begin
+    end, parts = 8 * layout.length, iter(layout.parts)
+    for node in layout.sequence:
+        if not is_variable(node):
+            places.append(_place(node, orders, end - node.at))
+            end += bits_of_node(node)
+            continue
+        part, size, at = next(parts), size_of(node), end
         own, steps = node.orders.within(orders), (PathStep(node),)
         if isinstance(node, Array):
             places.append(_place_of_item(steps, node.item, at, own, part.most))
         else:
             places.append(NodePlace(steps, node, None, at, 8 * part.most, own))
+        end = 8 * part.end
         # The count has no bits. It is placed at the end of the array, so that it sorts
         # directly after it.
         if isinstance(size, Rest):
-            counter, end = size.counter, 8 * (part.begin + part.most * part.step)
+            counter = size.counter
             places.append(
                 NodePlace(
                     (PathStep(counter),),

@@ -1,13 +1,13 @@
 """Variable-length fields of a message as a file declares them, and their faults.
 
-They follow the fixed part, one directly after another. Another field, or the end of the
-frame, gives the number of elements.
+They follow the fixed part, one directly after another, and fields of fixed size can
+follow them. Another field, or the end of the frame, gives the number of elements.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from itertools import pairwise, takewhile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import takewhile
 from typing import NamedTuple
 
 from icdgen.icd.fault import Fault
@@ -66,9 +66,18 @@ def variable_fields(message: Map) -> list[Map]:
     ]
 
 
+def sequence_of(owner: Map) -> list[Map]:
+    """Return the variable-length fields of a message or struct and the fields that name
+    the field in front of them, in the order of the file; none without a variable-length
+    field.
+    """
+    items = placed_fields(owner, lambda item: is_variable(item) or "after" in item)
+    return items if any(map(is_variable, items)) else []
+
+
 def fixed_fields_after(message: Map) -> list[Map]:
     """Return the fields of fixed size that are placed at or after the start of the
-    first variable-length field.
+    first variable-length field and do not name the field in front of them.
     """
     first = next(iter(variable_fields(message)), None)
     if first is None or _is_unknown(message, first):
@@ -239,61 +248,129 @@ def reason_against(counter: Map, message: Map) -> str:
 
 
 def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
-    """Yield the faults of the position and the type of a variable-length field."""
-    name, fixed = f"`{item['name']}`", 8 * message["length"]
+    """Yield the faults of the position and the type of a variable-length field, or of a
+    field of fixed size behind one.
+    """
     # `faults_of_count` reports an unknown counter. The field may be meant as a fixed
     # array, so its position is not checked.
-    if _is_unknown(message, item):
+    if is_variable(item) and _is_unknown(message, item):
         return
-    # Each fault below returns at once: further faults of the position would only follow
-    # from it.
-    parts = variable_fields(message)
-    before = next(
-        (part for part, following in pairwise(parts) if following is item), None
-    )
-    names = [part["name"] for part in parts]
-    if item.get("after") in names[names.index(item["name"]) + 1 :]:
+    sequence = sequence_of(message)
+    index = next(index for index, row in enumerate(sequence) if row is item)
+    fault = _fault_of_order(message, sequence, index)
+    if fault is not None:
+        yield fault
+        return
+    if is_variable(item):
+        yield from _faults_of_variable_type(item, structs)
+    else:
+        yield from faults_of_bytes(item, structs)
+        yield from faults_of_keys(item, ("view", "bitfields"))
+    longest = message["length"] + sum(_most_bytes(row, structs) for row in sequence)
+    if longest > MOST_BYTES and item is [*filter(is_variable, sequence)][-1]:
+        text = f"`{message['name']}` can have {longest:,} bytes with all of `{item['name']}`, more than the limit of {MOST_BYTES:,}"
+        yield Fault.at(item, "up_to", text, "correct `up_to`")
+
+
+def _fault_of_order(message: Map, sequence: list[Map], index: int) -> Fault | None:
+    """Return the first fault of the position of a field of the sequence; None if it has
+    none. Further faults would only follow from it.
+    """
+    item, earlier = sequence[index], sequence[:index]
+    name, fixed = f"`{item['name']}`", 8 * message["length"]
+    before = earlier[-1] if earlier else None
+    # The fault of the field that names this one is reported there.
+    if any(row.get("after") == item["name"] for row in earlier):
+        return None
+    if item.get("after") in [row["name"] for row in sequence[index + 1 :]]:
         text = f"{name} follows `{item['after']}`, which is listed later in the file"
-        help = "list variable-length fields in the order of the frame; `after` names the one directly in front"
-        yield Fault.at(item, "after", text, help)
-        return
+        help = (
+            "list variable-length fields, and fields behind them, in the order of the frame; "
+            "`after` names the one directly in front"
+        )
+        return Fault.at(item, "after", text, help)
     if before is None and "after" in item:
         text = f"{name} has `after: {item['after']}`, but no field in front of it has a variable length"
-        yield Fault.at(
-            item,
-            "after",
-            text,
-            "remove `after`: the first variable-length field begins where `length` ends",
+        help = (
+            "remove `after`: the first variable-length field begins where `length` ends"
+            if is_variable(item)
+            else "list it behind the variable-length field, or remove `after` and correct `at`"
         )
-        return
+        return Fault.at(item, "after", text, help)
     if before is not None and item.get("after") != before["name"]:
-        text = f"{name} is not the first variable-length field of `{message['name']}`"
+        text = (
+            f"{name} is not the first variable-length field of `{message['name']}`"
+            if is_variable(item) and is_variable(before)
+            else f"{name} is behind `{before['name']}`, whose end is not at a fixed place"
+        )
         help = f"write `after: {before['name']}`, the field in front of it"
         if "after" in item:
-            yield Fault.at(item, "after", text, help, yaml_text(before["name"]))
-        else:
-            yield Fault.at(item, "name", text, help)
-        return
-    if before is not None and counting(before).name == REST:
-        text = (
-            f"{name} follows `{before['name']}`, which extends to the end of the frame"
-        )
-        help = (
-            f"let a field count `{before['name']}`: write its name instead of `{REST}`"
-        )
-        yield Fault.at(item, "after", text, help)
-        return
+            return Fault.at(item, "after", text, help, yaml_text(before["name"]))
+        return Fault.at(item, "name", text, help)
+    rest = next(
+        (row for row in earlier if is_variable(row) and counting(row).name == REST),
+        None,
+    )
+    if rest is not None and is_variable(item):
+        text = f"{name} follows `{rest['name']}`, which extends to the end of the frame"
+        help = f"let a field count `{rest['name']}`: write its name instead of `{REST}`"
+        return Fault.at(item, "after", text, help)
     if "reserved" in message:
         text = f"`{message['name']}` has `reserved` bytes, which cannot follow {name}, a variable-length field"
-        help = f"remove `reserved`; `length` is that of the shortest frame, which ends where `{parts[0]['name']}` begins"
-        yield Fault.at(message, "reserved", text, help)
-        return
+        help = (
+            "remove `reserved`, and describe bytes at the end of a frame as `bytes` with `after`; "
+            f"`length` ends where `{sequence[0]['name']}` begins"
+        )
+        return Fault.at(message, "reserved", text, help)
     if item["at"] != fixed:
-        text = f"{name} has a variable length and begins at bit {item['at']:,}, but `length` ends at bit {fixed:,}"
-        help = "`length` is that of the shortest frame: it must end where the variable-length field begins"
-        yield Fault.at(item, "at", text, help)
-        return
-    is_octets = item.get("type") in _OCTETS
+        is_behind = "is behind a field of" if not is_variable(item) else "has a"
+        text = f"{name} {is_behind} variable length and begins at bit {item['at']:,}, but `length` ends at bit {fixed:,}"
+        help = (
+            "`length` is that of the fields in front of the first variable-length field; "
+            "this field and all fields with `after` have `at` there"
+        )
+        return Fault.at(item, "at", text, help)
+    return None
+
+
+def _most_bytes(item: Map, structs: Lengths) -> int:
+    """Return the greatest number of bytes of a field of the sequence of a message."""
+    key = "up_to" if is_variable(item) else "count"
+    return _integer(item, key) * element_bits(item, structs) // 8
+
+
+def _integer(item: Map, key: str) -> int:
+    """Return a number of a field; 1 if it is absent or, which the schema check reports,
+    not a number.
+    """
+    value = item.get(key)
+    return value if type(value) is int else 1
+
+
+def faults_of_bytes(item: Map, structs: Lengths) -> Iterator[Fault]:
+    """Yield the fault of a field that other fields follow and that ends within a byte."""
+    count = 1 if is_variable(item) else _integer(item, "count")
+    if element_bits(item, structs) * count % 8:
+        text = (
+            f"`{item['name']}` does not have whole bytes, so what follows has no place"
+        )
+        help = "combine it with its neighbours to whole bytes: write them as a struct"
+        yield Fault.at(item, "bits", text, help)
+
+
+def faults_of_keys(item: Map, keys: Iterable[str]) -> Iterator[Fault]:
+    """Yield the faults of keys that a field without a fixed place cannot have."""
+    for key in keys:
+        if item.get(key):
+            text = f"`{item['name']}` has no fixed place, so it cannot have `{key}`"
+            front = item.get("after")
+            help = f"remove `{key}`, or place the field in front of `{front}`"
+            yield Fault.at(item, key, text, help)
+
+
+def _faults_of_variable_type(item: Map, structs: Lengths) -> Iterator[Fault]:
+    """Yield the faults of the type and the keys of a variable-length field."""
+    name, is_octets = f"`{item['name']}`", item.get("type") in _OCTETS
     if "size" in item and not is_octets:
         text = f"{name} is `{item.get('type')}`: `size` is for bytes and text"
         yield Fault.at(
@@ -314,15 +391,10 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Fault
         if item.get(key):
             text = f"{name} has a variable length, so it cannot have `{key}`"
             yield Fault.at(item, key, text, f"remove `{key}`")
-    longest = message["length"] + sum(
-        part.get("up_to", 0) * element_bits(part, structs) // 8 for part in parts
-    )
-    if longest > MOST_BYTES and item is parts[-1]:
-        text = f"`{message['name']}` can have {longest:,} bytes with all of {name}, more than the limit of {MOST_BYTES:,}"
-        yield Fault.at(item, "up_to", text, "correct `up_to`")
 
 
 def faults(message: Map, item: Map, structs: Lengths) -> Iterator[Fault]:
-    """Yield all faults of a variable-length field."""
-    yield from faults_of_count(message, item)
+    """Yield all faults of a variable-length field, or of a field behind one."""
+    if is_variable(item):
+        yield from faults_of_count(message, item)
     yield from faults_of_place(message, item, structs)

@@ -18,25 +18,20 @@ from icdgen.icd.variable_length import (
     Lengths,
     count_key,
     counting,
-    element_bits,
     fault_without_most,
+    faults_of_bytes,
+    faults_of_keys,
     is_variable,
     placed_fields,
     reason_against,
+    sequence_of,
     variable_fields,
 )
 
 
-def sequence_of_struct(struct: Map) -> list[Map]:
-    """Return the variable-length arrays of a struct and the fields behind them, in the
-    order of the file.
-    """
-    return placed_fields(struct, lambda item: is_variable(item) or "after" in item)
-
-
 def arrays_of_struct(struct: Map) -> Iterator[Map]:
     """Yield the variable-length arrays of a struct."""
-    return (item for item in sequence_of_struct(struct) if is_variable(item))
+    return filter(is_variable, sequence_of(struct))
 
 
 def is_variable_struct(struct: Map) -> bool:
@@ -54,7 +49,7 @@ def faults_in_struct(
     count depends on the message: see `faults_of_inner_counts`.
     """
     before: Map | None = None
-    for item in sequence_of_struct(struct) if is_variable_struct(struct) else ():
+    for item in sequence_of(struct):
         name = f"`{item['name']}`"
         key = count_key(item)
         if before is None and not is_variable(item):
@@ -118,24 +113,9 @@ def faults_in_struct(
                 text,
                 "write its fields into the outer struct: one level is supported",
             )
-        elif (
-            element_bits(item, structs)
-            * (1 if is_variable(item) else item.get("count", 1))
-            % 8
-        ):
-            text = f"{name} does not have whole bytes, so what follows has no place"
-            yield Fault.at(
-                item, "bits", text, "combine it with its neighbours to whole bytes"
-            )
-        for key in ("view", "bitfields", "when"):
-            if item.get(key):
-                text = f"{name} has no fixed place, so it cannot have `{key}`"
-                yield Fault.at(
-                    item,
-                    key,
-                    text,
-                    f"remove `{key}`, or place the field in front of `{item.get('after')}`",
-                )
+        else:
+            yield from faults_of_bytes(item, structs)
+        yield from faults_of_keys(item, ("view", "bitfields", "when"))
 
 
 def faults_of_inner_counts(

@@ -89,19 +89,19 @@ def remarks(
     variable-length parts.
     """
     part = _variable_part(message, field)
-    if part is not None and message is not None:
+    if part is not None:
         yield (
-            "up to the end of the frame"
+            (
+                "up to the fields behind it"
+                if part.behind
+                else "up to the end of the frame"
+            )
             if part.is_rest
             else f"as many as {count_text(part.counter, part.plus)} says"
         )
-        earlier = [
-            other
-            for other in message.layout.parts[:-1]
-            if other.begin < field.at // 8 and other is not part
-        ]
-        if earlier:
-            yield f"behind {earlier[-1].name}"
+    front = message.layout.part_in_front_of(field.steps[0].node) if message else None
+    if front is not None:
+        yield f"behind {front.name}"
     if field.conditions:
         yield f"only there if {' and '.join(condition_text(condition, message) for condition in field.conditions)}"
     if field.aliases:
@@ -145,9 +145,4 @@ def _variable_part(
     """Return the variable-length part that contains a field; None for a field of the
     fixed part.
     """
-    node = field.steps[0].node
-    return (
-        next((part for part in message.layout.parts if part.node is node), None)
-        if message
-        else None
-    )
+    return message.layout.part_of(field.steps[0].node) if message else None

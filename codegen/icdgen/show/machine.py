@@ -138,6 +138,7 @@ def _variable_part(part: VariablePart) -> _Object:
         step=part.step,
         most=part.most,
         plus=part.plus or None,
+        behind=part.behind or None,
     )
 
 

@@ -14,7 +14,7 @@ from icdgen import codec
 from icdgen.describe.comments import condition_text
 from icdgen.errors import UserError
 from icdgen.icd.frames import FrameField
-from icdgen.icd.layout import VariablePart, struct_layout_of
+from icdgen.icd.layout import VariablePart, is_variable, struct_layout_of
 from icdgen.icd.model import Icd, Message
 from icdgen.values import numbers
 from icdgen.values.entry import members, out_of_range, typed, without_unit
@@ -303,7 +303,7 @@ def split(
         )
     elements = find_array(fields, name.strip(), vocabulary)
     if elements:
-        has_variable_length = elements[0].steps[0].node in message.layout.sequence
+        has_variable_length = is_variable(elements[0].steps[0].node)
         texts = listed(name.strip(), text, len(elements), has_variable_length)
         return list(zip(elements[: len(texts)], texts, strict=True))
     structs = by_name(
@@ -312,7 +312,7 @@ def split(
         vocabulary,
     )
     if structs:
-        has_variable_length = structs[0] in message.layout.sequence
+        has_variable_length = is_variable(structs[0])
         if has_variable_length and text.strip() == "[]":
             return []
         none = f", or `{name.strip()}=[]` for none" if has_variable_length else ""

@@ -125,7 +125,8 @@ def _message(vectors: MessageVectors) -> str:
     # `view` an overlay.
     if message.layout.parts:
         *inner, last = message.layout.parts
-        head["tail"] = _variable_part(last, {"least": last.begin})
+        behind = {"behind": last.behind} if last.behind else {}
+        head["tail"] = _variable_part(last, {"least": last.begin, **behind})
         if inner:
             head["inner"] = [
                 _variable_part(part, {"begin": part.begin}) for part in inner

@@ -287,13 +287,20 @@ class FieldInfo:
 class Tail:
     """A variable-length field.
 
-    A frame is the beginning of the longest frame, which has ``LENGTH`` bytes.
+    A frame is the beginning of the longest frame, which has ``LENGTH`` bytes, and the
+    last ``behind`` bytes of it.
     """
 
-    __slots__ = ("part", "counter", "step", "most", "plus")
+    __slots__ = ("part", "counter", "step", "most", "plus", "behind")
 
     def __init__(
-        self, part: str, counter: str, step: int, most: int, plus: int = 0
+        self,
+        part: str,
+        counter: str,
+        step: int,
+        most: int,
+        plus: int = 0,
+        behind: int = 0,
     ) -> None:
         self.part = part
         """The attribute that holds the elements: a tuple, or `bytes`."""
@@ -308,6 +315,8 @@ class Tail:
         """Maximum number of elements."""
         self.plus = plus
         """Number of elements in addition to the counter."""
+        self.behind = behind
+        """Bytes of the fields of fixed size behind it."""
 
 
 class StructFacts:
@@ -350,7 +359,7 @@ class MessageFacts(StructFacts):
         PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
         """Parts of a composite message: node, class and first bit of each."""
         TAIL: ClassVar[Tail | None]
-        """The variable-length field at the end of the frame."""
+        """The last variable-length field of the frame."""
         INNER: ClassVar[
             tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
         ]

@@ -20,10 +20,10 @@ def decoder(owner: _types.Any, longest: _types.Any) -> _types.Any:
     def from_bytes(cls: _types.Any, data: _types.Buffer) -> _types.Any:
         frame, lacking = spread(cls, data)
         count = count_in(cls, frame, lacking)
-        self = longest(cls, frame.ljust(cls.LENGTH, b"\0"))
+        self = longest(cls, _completed(cls, frame, data))
         if tail.counter and getattr(self, tail.counter) + tail.plus != count:
             counted = getattr(self, tail.counter) + tail.plus
-            expected = cls.LENGTH - (tail.most - counted) * tail.step - lacking
+            expected = _end(cls) - (tail.most - counted) * tail.step - lacking
             raise LengthError(cls.NAME, max(0, expected), memoryview(data).nbytes)
         setattr(self, tail.part, getattr(self, tail.part)[:count])
         return self
@@ -57,7 +57,8 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
     tail = owner.TAIL
     info = next(field for field in owner.FIELDS if field.attribute == tail.part)
     is_array = info.elements > 0
-    least = owner.LENGTH - tail.most * tail.step
+    end = _end(owner)
+    least = end - tail.most * tail.step
 
     def to_bytes(self: _types.Any) -> bytes:
         gaps = (
@@ -82,7 +83,7 @@ def encoder(owner: _types.Any, longest: _types.Any, padding: _types.Any) -> _typ
             setattr(message, field.attribute, getattr(self, field.attribute))
         setattr(message, tail.part, values + padding[count:])
         frame: bytes = longest(message)
-        frame = frame[: least + count * tail.step]
+        frame = frame[: least + count * tail.step] + frame[end:]
         for place, lacking in reversed(gaps):
             frame = frame[:place] + frame[place + lacking :]
         return frame
@@ -127,6 +128,23 @@ def _gaps(
     return gaps
 
 
+def _end(message: _types.Any) -> int:
+    """Return the offset of the first byte behind the variable-length end in the longest
+    frame.
+    """
+    end: int = message.LENGTH - (message.TAIL.behind if message.TAIL else 0)
+    return end
+
+
+def _completed(message: _types.Any, frame: bytes, data: _types.Buffer) -> bytes:
+    """Return the longest frame, from its beginning as `spread` returns it, with missing
+    bytes 0 and the fields that ``data`` has behind the variable-length end.
+    """
+    end, given = _end(message), memoryview(data).tobytes()
+    behind = given[len(given) - (message.LENGTH - end) :]
+    return frame.ljust(end, b"\0") + behind
+
+
 def _shortest(message: _types.Any) -> int:
     """Return the length of the shortest frame."""
     length: int = message.LENGTH
@@ -150,11 +168,13 @@ def _most_missing(part: _types.Any) -> int:
 def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
     """Insert the missing elements in front of the variable-length end.
 
-    Return the beginning of the longest frame, and the number of inserted bytes. Raise
-    `LengthError` if the frame is too short, or if its counter is out of range.
+    Return the beginning of the longest frame, without fields behind this end, and the
+    number of inserted minus removed bytes. Raise `LengthError` if the frame is too
+    short, or if its counter is out of range.
     """
     frame, actual = memoryview(data).tobytes(), memoryview(data).nbytes
-    if not message.INNER:
+    behind = message.LENGTH - _end(message)
+    if not message.INNER and not behind:
         return frame, 0
     if actual < (shortest := _shortest(message)):
         raise LengthError(message.NAME, shortest, actual)
@@ -170,8 +190,15 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
             raise LengthError(message.NAME, expected, actual)
         return count
 
-    whole = frame
-    for place, lacking in _gaps(message, count_of):
+    gaps = _gaps(message, count_of)
+    for part, _, pieces in message.INNER:
+        if part.part == message.TAIL.part:  # then counters give the whole length
+            elements = (part.most - count_of(part, pieces)) * part.step
+            expected = message.LENGTH - sum(size for _, size in gaps) - elements
+            if actual != expected:
+                raise LengthError(message.NAME, expected, actual)
+    whole = frame[: actual - behind]
+    for place, lacking in gaps:
         whole = whole[:place] + bytes(lacking) + whole[place:]
     return whole, len(whole) - actual
 
@@ -179,14 +206,14 @@ def spread(message: _types.Any, data: _types.Buffer) -> tuple[bytes, int]:
 def count_in(message: _types.Any, frame: bytes, lacking: int) -> int:
     """Return the number of elements at the end of a frame.
 
-    ``lacking`` is the number of bytes that `spread` inserted. Raise `LengthError`.
+    ``lacking`` is the number of bytes that `spread` added. Raise `LengthError`.
     """
-    tail, actual = message.TAIL, len(frame)
-    begin: int = message.LENGTH - tail.most * tail.step
+    tail, actual, end = message.TAIL, len(frame), _end(message)
+    begin: int = end - tail.most * tail.step
     step: int = tail.step
     count, part = divmod(actual - begin, step)
     least = begin + max(0, tail.plus) * step
-    expected = max(least, min(actual - part, message.LENGTH))
+    expected = max(least, min(actual - part, end))
     if expected != actual:
         raise LengthError(message.NAME, expected - lacking, actual - lacking)
     return count
@@ -194,4 +221,4 @@ def count_in(message: _types.Any, frame: bytes, lacking: int) -> int:
 
 def padded(message: _types.Any, data: _types.Buffer) -> bytes:
     """Return the longest frame: ``data`` with missing bytes 0."""
-    return spread(message, data)[0].ljust(message.LENGTH, b"\0")
+    return _completed(message, spread(message, data)[0], data)

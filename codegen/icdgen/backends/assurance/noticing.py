@@ -17,6 +17,7 @@ from operator import or_
 from typing import Any, NamedTuple
 
 from icdgen import codec
+from icdgen.icd.frames import frame_fields
 from icdgen.icd.layout import FixedNode, Layout
 from icdgen.icd.layout_copies import with_enum
 from icdgen.icd.layout_nodes import overlay_of
@@ -210,7 +211,7 @@ class MessageWatch:
         # An absent optional field has no initial value.
         if field.conditions and field.name not in self._initial:
             return False
-        return field.is_count or field.at < 8 * self._initial_length
+        return field.is_count or field.name in self._initial_names
 
     @cached_property
     def _initial(self) -> dict[str, int | bytes]:
@@ -218,8 +219,12 @@ class MessageWatch:
         return codec.initial_values(self.node, self.message)
 
     @cached_property
-    def _initial_length(self) -> int:
-        return len(codec.encode(self.node, self.message, self._initial))
+    def _initial_names(self) -> frozenset[str]:
+        """Names of the scalars with bits in the frame of a new message."""
+        sizes = codec.sizes_of_values(self.message, self._initial)
+        fields = frame_fields(self.message.layout, self.node.orders, sizes)
+        with_bits = (f for f in fields if f.role in ("field", "overlay") and f.bits)
+        return frozenset(field.name for field in with_bits)
 
     @cached_property
     def _long_rows(self) -> list[LongRow]:

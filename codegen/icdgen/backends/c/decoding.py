@@ -103,7 +103,12 @@ def _count(part: VariablePartDescription) -> str:
 
 def misfit_length(message: MessageDescription) -> str:
     """Return the condition for a ``length`` that no frame has."""
-    longest = constant(message, "length")
+    last = message.last_part
+    longest = (
+        f"{last.model.end}u"
+        if last is not None and last.model.behind
+        else constant(message, "length")
+    )
     return either([length_test(test, longest, FAILED) for test in message.length_tests])
 
 

@@ -42,8 +42,8 @@ def size(message: MessageDescription) -> list[str]:
         )
         for part in message.variable_parts
     ]
-    fixed = message.model.layout.length
-    if message.spread_parts:
+    fixed = message.steady_bytes
+    if message.has_gaps:
         return [f"{fixed}u", *parts]
     if not fixed:
         return parts
@@ -81,20 +81,17 @@ def counted_text(last: VariablePartDescription) -> str:
 
 
 def encode_statements(message: MessageDescription) -> list[str]:
-    """Return the statements that write every byte of the frame once; the elements of
-    the last variable part come last.
-    """
+    """Return the statements that write every byte of the frame once."""
     fields, last = groups(message, THRESHOLDS), message.last_part
+    frame = _Frame(message, message, fields, message.model.length)
     if last is not None and last.element_struct is not None:
-        function = writing(message, last.field.name)
-        return [
-            *_Frame(message, message, fields, last.model.begin).in_order(),
-            for_each(last.field.member, elements(last), function, last.place),
-        ]
+        function, (begin, step) = writing(message, last.field.name), last.place
+        each = for_each(last.field.member, elements(last), function, last.place)
+        frame.bytes.add_whole(begin, last.model.most * step, each)
     unused = [] if message.members else ["(void)message;"]
     if not message.members and not message.model.length:
         unused.append("(void)buffer;")
-    return unused + _Frame(message, message, fields, message.model.length).in_order()
+    return unused + frame.in_order()
 
 
 def write_statements(message: MessageDescription, array: StructArray) -> list[str]:

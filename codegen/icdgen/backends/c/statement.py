@@ -87,7 +87,7 @@ def length_test(
     """Return the condition for a ``length`` that passes a test, or fails it with the
     operators `FAILED`.
 
-    ``longest`` is the macro of the longest.
+    ``longest`` is the macro or number of the longest.
     """
     operator = operators[test.kind]
     if test.kind == "multiple":

@@ -132,7 +132,7 @@ class CNames(NamingPolicy):
         if (
             last is not None
             and last.element_struct is not None
-            and not composite.spread_parts
+            and not composite.has_gaps
         ):
             yield composite.identifier(FILE, names.walking(composite, last.field.name))
         for part in contained_messages(composite):

@@ -290,7 +290,7 @@ def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVecto
     """Return the vectors as C represents optional fields: absent members have initial
     values, and other bits are 0.
     """
-    if message.earlier_parts:  # the position of reserved bits varies between frames
+    if message.has_gaps:  # the position of reserved bits varies between frames
         return replace(
             vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows)
         )

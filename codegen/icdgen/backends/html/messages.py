@@ -150,13 +150,14 @@ def _open_parts(message: Message) -> Iterator[tuple[str, str, str]]:
     parts = message.layout.parts
     for part in parts:
         until = (
-            "up to the end"
+            ("up to the fields behind it" if part.behind else "up to the end")
             if part.is_rest
             else f"as many as {count_text(part.counter, part.plus)} says"
         )
         most = count(part.most, "element" if part.is_array else "byte")
+        is_end = part is parts[-1] and not part.behind
         yield (
-            "Variable end" if part is parts[-1] else "Variable part"
+            "Variable end" if is_end else "Variable part"
         ), f"{part.name}: up to {most}, {until}", ""
         for inner in part.inner:
             until = f"as many as {count_text(inner.counter, inner.plus)} says"

@@ -50,7 +50,7 @@ def message_plan(
         tail = parts[-1]
         plan["tail"] = {
             "part": tail.name, "counter": tail.counter, "least": tail.begin, "step": tail.step, "most": tail.most,
-            **({"plus": tail.plus} if tail.plus else {}),
+            **({"plus": tail.plus} if tail.plus else {}), **({"behind": tail.behind} if tail.behind else {}),
         }  # fmt: skip
     return plan
 

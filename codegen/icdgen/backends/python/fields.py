@@ -191,8 +191,10 @@ def open_part(part: VariablePartDescription) -> str:
     and sizes.
     """
     counter = "" if part.is_rest else part.counter.name
-    plus = f", {part.model.plus}" if part.model.plus else ""
-    return f'_base.Tail("{part.field.name}", "{counter}", {part.model.step}, {part.model.most}{plus})'
+    plus, behind = part.model.plus, part.model.behind
+    more = f", {plus}" if plus or behind else ""
+    more += f", {behind}" if behind else ""
+    return f'_base.Tail("{part.field.name}", "{counter}", {part.model.step}, {part.model.most}{more})'
 
 
 def view_info(field: FieldDescription) -> str:

@@ -81,7 +81,7 @@ class RustNames(NamingPolicy):
         yield from _used(constants, _CONSTANTS)
         if composite.last_part is not None:
             yield from _used(methods, _METHODS_OF_VARIABLE_LENGTH)
-        if composite.spread_parts:
+        if composite.spread_parts:  # `inner` returns their sizes
             yield from _used(methods, ("inner",))
         for _, name in looped_arrays(composite):
             yield composite.identifier(methods, names.reader(name))

@@ -18,6 +18,7 @@ from icdgen.backends.xtce.types import (
 )
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.description import Into, VariablePartDescription
+from icdgen.icd.layout import is_variable
 from icdgen.icd.model import TELECOMMAND, Special
 
 
@@ -152,9 +153,7 @@ class Frames:
             else:
                 entries.append(self._entry(frame, part, run))
         last = message.last_part
-        can_stand = not message.earlier_parts and not any(
-            entry.needs for entry in entries
-        )
+        can_stand = not message.has_gaps and not any(entry.needs for entry in entries)
         behind = (
             self._variable_entry(frame, last)
             if last is not None and can_stand
@@ -162,8 +161,8 @@ class Frames:
         )
         if behind is None:
             frame.lacks += (
-                f"`{part.name}`, which has no fixed size, is left out"
-                for part in message.model.layout.sequence
+                f"`{node.name}`, which has no fixed {'size' if is_variable(node) else 'place'}, is left out"
+                for node in message.model.layout.sequence
             )
         if message.model.may_end_early:
             frame.notes.append("it is sent with the zeros that it may be sent without")
@@ -373,7 +372,7 @@ def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     XTCE permits it), and finally overlays.
     """
     for part in message.walk(Into.ARRAYS_OF_STRUCTS):
-        if part.is_in_last_part or part.is_in_earlier_part or part.model.is_count:
+        if part.is_in_sequence or part.model.is_count:
             continue
         is_array = (
             part.model.const is None

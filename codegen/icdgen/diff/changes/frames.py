@@ -136,7 +136,7 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         if (
             old.layout.sequence
             and new.layout.sequence
-            and old.layout.length != new.layout.length
+            and old.layout.steady_bytes != new.layout.steady_bytes
         ):
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield CheckResult(text, ("length",), length_text(old), length_text(new))
@@ -180,11 +180,16 @@ def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
 
 
 def _variable_parts(message: Message) -> str:
-    """Return the variable parts: ``up to 12 of `Levels`, counted by `Levels Count` ``."""
-    return (
-        ", behind it ".join(map(_variable_part, message.layout.parts))
-        or "of fixed size"
+    """Return the variable parts and the fields behind them: ``up to 12 of `Levels`,
+    counted by `Levels Count`, behind it `CRC` ``.
+    """
+    layout = message.layout
+    parts = (
+        quote(node.name) if part is None else _variable_part(part)
+        for node in layout.sequence
+        for part in [layout.part_of(node)]
     )
+    return ", behind it ".join(parts) or "of fixed size"
 
 
 def _variable_part(part: VariablePart) -> str:

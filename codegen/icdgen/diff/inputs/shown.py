@@ -24,7 +24,6 @@ from icdgen.icd.layout import (
     FixedNode,
     Layout,
     Orders,
-    Overlay,
     Rest,
     Scalar,
     Size,
@@ -236,19 +235,19 @@ class _Reader:
             field["name"]: self.layout_node(field, variable.get(field["name"]))
             for field in item["fields"]
         }
+        # The sequence begins with the first variable-length field.
+        first = next(
+            (index for index, name in enumerate(nodes) if name in variable), len(nodes)
+        )
+        in_order = tuple(nodes.values())
+        behind = sum(
+            part["most"] * part["step"] + part.get("behind", 0) for part in parts
+        )
         layout = Layout(
             name=item["name"],
-            length=item["length"] - sum(part["most"] * part["step"] for part in parts),
-            fixed=tuple(
-                layout_node
-                for name, layout_node in nodes.items()
-                if name not in variable
-            ),
-            sequence=tuple(
-                layout_node
-                for name in variable
-                if not isinstance(layout_node := nodes[name], StructRef | Overlay)
-            ),
+            length=item["length"] - behind,
+            fixed=in_order[:first],
+            sequence=in_order[first:],
             may_end_early="may_end_early" in item,
             owner=node,
         )

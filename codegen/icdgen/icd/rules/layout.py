@@ -18,8 +18,7 @@ from icdgen.icd.layout import (
     Array,
     Derived,
     Layout,
-    LayoutNode,
-    stride,
+    bits_of_node,
     struct_layout_of,
 )
 from icdgen.icd.model import Message, Node
@@ -57,7 +56,7 @@ class Overlap(NamedTuple):
 def fields_end_within_the_message(ctx: Context) -> Iterator[Fault]:
     for node, owner, _ in ctx.lines:
         source, room = node.source, owner.length * 8
-        end = node.at + _fixed_bits(node)
+        end = node.at + bits_of_node(node)
         # ICD121 reports fields of fixed size after a variable-length field.
         if end > room and id(source) not in ctx.behind_variable_fields:
             is_array, size_key = isinstance(node, Array), (
@@ -129,13 +128,8 @@ def _are_apart(layout: Layout) -> bool:
     for node in sorted(layout.fixed, key=attrgetter("at")):
         if node.at < end or node.orders.bit:
             return False
-        end = node.at + _fixed_bits(node)
+        end = node.at + bits_of_node(node)
     return not layout.sequence or end <= 8 * layout.length
-
-
-def _fixed_bits(node: LayoutNode) -> int:
-    """Return the bits of a node of `Layout.fixed`."""
-    return stride(node) * (node.most if isinstance(node, Array) else 1)
 
 
 def _has_own_bits(place: NodePlace) -> bool:
@@ -359,7 +353,7 @@ def covered_bytes(message: Message) -> int:
         return message.layout.longest
     return (
         max(
-            (node.at + _fixed_bits(node) + 7 for node in message.layout.fixed),
+            (node.at + bits_of_node(node) + 7 for node in message.layout.fixed),
             default=0,
         )
         // 8

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd import division, variable_structs
+from icdgen.icd import division, variable_length, variable_structs
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import struct_layout_of
 from icdgen.icd.located import Map
@@ -155,7 +155,7 @@ def variable_lengths_in_structs_are_determined(ctx: Context) -> Iterator[Fault]:
             yield from variable_structs.faults_in_struct(
                 struct.source, lengths, variable
             )
-            sequence = set(map(id, variable_structs.sequence_of_struct(struct.source)))
+            sequence = set(map(id, variable_length.sequence_of(struct.source)))
             for row in mappings(struct.source.get("fields")):
                 if (
                     row.get("struct") in variable

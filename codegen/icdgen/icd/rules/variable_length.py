@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Related
-from icdgen.icd import variable_length, variable_structs
+from icdgen.icd import variable_length
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, stride
 from icdgen.icd.model import Message
@@ -34,36 +34,33 @@ def counts_are_determined(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD121")
 def variable_parts_are_at_the_end(ctx: Context) -> Iterator[Fault]:
-    in_structs = {
+    sequences = {
         id(item)
-        for struct, _ in ctx.structs
-        if variable_structs.is_variable_struct(struct.source)
-        for item in variable_structs.sequence_of_struct(struct.source)
+        for owner, _ in ctx.owners
+        for item in variable_length.sequence_of(owner.source)
     }
     for line in ctx.lines:
         source = line.node.source
-        if (
-            "after" in source
-            and not variable_length.is_variable(source)
-            and id(source) not in in_structs
-        ):
-            text = f"{quote(line.node.name)} has a fixed size, so its place is `at` and it cannot have `after`"
-            help = "remove `after`; only a variable-length field can follow another one"
-            yield Fault.at(source, "after", text, help)
+        if "after" in source and id(source) not in sequences:
+            text = (
+                f"{quote(line.node.name)} has `after`, but {quote(line.owner.name)} "
+                "has no variable-length field, so its place is `at`"
+            )
+            yield Fault.at(source, "after", text, "remove `after`")
     for message, node in ctx.messages:
         lengths = {
             struct.name: struct.length
             for owner in ctx.scope(node)
             for struct in owner.structs
         }
-        for item in variable_length.variable_fields(message.source):
+        for item in variable_length.sequence_of(message.source):
             yield from variable_length.faults_of_place(message.source, item, lengths)
         for item in variable_length.fixed_fields_after(message.source):
             first = variable_length.variable_fields(message.source)[0]
             text = f"{quote(item['name'])} follows {quote(first['name'])}, whose length varies, so it has no fixed place"
             help = (
-                f"place it in front of {quote(first['name'])}: fields of fixed size after it are not supported, "
-                "but a checksum at the end of a frame can be part of the link (`protocol`)"
+                f"place it in front of {quote(first['name'])}; or write `after`, the name of the field in front of it, "
+                f"and `at: {first['at']}`"
             )
             related = Related(first.at("name"), "the variable-length field")
             yield Fault.at(item, "at", text, help, related=related)

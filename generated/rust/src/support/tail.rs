@@ -127,8 +127,10 @@ pub(crate) fn told(
     }
 }
 
-/// Puts the open parts of a frame where they begin in the longest one: those in `inner` with the bytes that they have, and the
-/// end, of which every frame has `fewest` bytes. The bytes of a frame that has no more, and how many elements there are then.
+/// Puts the parts of a frame where they begin in the longest one: those in `inner` with the bytes that they have, the open end,
+/// of which every frame has `fewest` bytes, and the last `behind` bytes. The bytes of a frame that has no more, and how many
+/// elements there are then.
+#[allow(clippy::too_many_arguments)] // all of them are constants of a message
 pub(crate) fn spread<const N: usize>(
     longest: &mut [u8; N],
     bytes: &[u8],
@@ -137,6 +139,7 @@ pub(crate) fn spread<const N: usize>(
     end: usize,
     fewest: usize,
     step: usize,
+    behind: usize,
 ) -> Result<(usize, usize), Error> {
     let (actual, mut before) = (bytes.len(), fixed);
     for (_, size) in inner {
@@ -146,7 +149,7 @@ pub(crate) fn spread<const N: usize>(
             None => return Error::length(if actual == N { fixed } else { N }, actual),
         }
     }
-    let (least, most) = (before + fewest, before + (N - end));
+    let (least, most) = (before + fewest + behind, before + (N - end));
     let rest = match actual.checked_sub(least) {
         Some(rest) => rest,
         None => return Error::length(least, actual),
@@ -161,7 +164,8 @@ pub(crate) fn spread<const N: usize>(
         .iter()
         .map(|(begin, size)| (*begin, size.unwrap_or_default()));
     let mut from = fixed;
-    for (begin, size) in parts.chain([(end, actual - before)]) {
+    let last = [(end, actual - before - behind), (N - behind, behind)];
+    for (begin, size) in parts.chain(last) {
         let part = bytes.get(from..from + size).unwrap_or_default();
         copy(longest.get_mut(begin..).unwrap_or_default(), part);
         from += size;

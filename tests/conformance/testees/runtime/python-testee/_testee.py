@@ -87,10 +87,14 @@ def _names(message: type[Message]) -> dict[str, str]:
 def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
     try:
+        count = ""
         for held in _held(message, is_made=True):
-            _set(held, words)
+            if held.info.attribute:
+                _set(held, words)
+            else:
+                count = next(words)
         if message.TAIL is not None:
-            _cut(message, words)
+            _cut(message, count)
         return _described(message)
     except RangeError as error:
         name = _names(type(message))[error.field]
@@ -143,20 +147,30 @@ class Held(NamedTuple):
 
 
 def _held(owner: Any, head: str = "", is_made: bool = False) -> Iterator[Held]:
-    """The fields of a message, those of structs among them; what an open end lacks reads as 0, and where it is made, is made."""
+    """The fields of a message, those of structs and a count without a field among them;
+    what an open end lacks reads as 0, and where it is made, is made.
+    """
     for info in owner.FIELDS:
         name = f"{head}{info.name}"
         if info.struct is None:
             yield Held(owner, info, name)
-            continue
-        value = getattr(owner, info.attribute)
-        if info.is_open:
-            value += _rest(owner)[len(value) :]
-        if info.is_open and is_made:
-            setattr(owner, info.attribute, value)
-        for index in range(info.elements or 1):
-            one = value[index] if info.elements else value
-            yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
+        else:
+            yield from _held_in(owner, info, name, is_made)
+        if info.is_open and not owner.TAIL.counter:
+            count = _implied(owner)
+            yield Held(owner, count, count.name)
+
+
+def _held_in(owner: Any, info: FieldInfo, name: str, is_made: bool) -> Iterator[Held]:
+    """The fields of a struct, or of each in an array."""
+    value = getattr(owner, info.attribute)
+    if info.is_open:
+        value += _rest(owner)[len(value) :]
+    if info.is_open and is_made:
+        setattr(owner, info.attribute, value)
+    for index in range(info.elements or 1):
+        one = value[index] if info.elements else value
+        yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
 
 
 @cache
@@ -172,13 +186,15 @@ def _rest(message: Any) -> Any:
     return getattr(zeros, message.TAIL.part)
 
 
-def _cut(message: Message, words: Words) -> None:
-    """Leaves the elements that are to be in the frame."""
+def _cut(message: Message, word: str) -> None:
+    """Leaves the elements that are to be in the frame: as many as the counter says, or
+    ``word`` without one.
+    """
     tail: Any = message.TAIL
     if tail.counter:
         count = getattr(message, tail.counter) + tail.plus
     else:
-        count = int(next(words)[1:])
+        count = int(word[1:])
         if not 0 <= count <= tail.most:
             raise Refusal(f"range field={_hex(_implied(message).name)}")
     values = getattr(message, tail.part)
@@ -233,9 +249,6 @@ class Element:
 
 def _elements(message: Message) -> list[Element]:
     found = list(_held(message))
-    if message.TAIL is not None and not message.TAIL.counter:
-        info = _implied(message)
-        found.append(Held(message, info, info.name))
     found += (Held(message, info, info.name) for info in message.VIEWS)
     return [
         Element(held, index)
