@@ -182,6 +182,56 @@ def test_groups_in_a_counted_group_have_as_many_elements_as_a_point_of_the_model
             codec.decode(node, layout, frame + bytes(2))
 
 
+def test_points_and_groups_behind_a_repeated_group_are_imported(tmp_path):
+    register = {"type": "uint16", "size": 1}
+    model = {
+        "id": 65004,
+        "group": {
+            "name": "solar",
+            "points": [{"name": name, **register} for name in ("ID", "L", "N", "M")],
+            "groups": [
+                {"name": "Str", "count": "N", "points": [{"name": "A", **register}]},
+                {"name": "Sum", "points": [{"name": "W", **register}]},
+                {"name": "Ph", "count": "M", "points": [{"name": "V", **register}]},
+                {"name": "End", "points": [{"name": "Evt", **register}]},
+            ],
+        },
+    }
+    (tmp_path / "solar.json").write_text(json.dumps(model))
+    read = run.read(tmp_path / "solar.json", sunspec.SunSpec())
+    assert not read.failed
+    (tmp_path / "solar.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    loaded = load([tmp_path / "solar.yaml"])
+    assert loaded.ok
+    (node,) = loaded.icd.nodes
+    (solar,) = node.messages
+    registers = (65004, 9, 2, 3, 10, 11, 70, 20, 21, 22, 90)
+    frame = struct.pack(f">{len(registers)}H", *registers)
+    raw = codec.decode_frame(node, solar, frame)
+    assert (raw["Str[1].A"], raw["Sum W"]) == (11, 70)
+    assert (raw["Ph[2].V"], raw["End Evt"]) == (22, 90)
+
+
+def test_what_follows_a_group_without_a_number_must_have_a_fixed_size(tmp_path):
+    register = {"type": "uint16", "size": 1}
+    model = {
+        "id": 65004,
+        "group": {
+            "name": "solar",
+            "points": [{"name": name, **register} for name in ("ID", "L", "N")],
+            "groups": [
+                {"name": "Str", "count": 0, "points": [{"name": "A", **register}]},
+                {"name": "Ph", "count": "N", "points": [{"name": "V", **register}]},
+            ],
+        },
+    }
+    (tmp_path / "solar.json").write_text(json.dumps(model))
+    with pytest.raises(Findings) as refused:
+        run.read(tmp_path / "solar.json", sunspec.SunSpec())
+    (finding,) = refused.value.findings
+    assert "`Ph` follows a group whose repetitions no point counts" in finding.message
+
+
 def test_a_group_in_a_repeated_group_is_imported_with_the_number_of_a_device(tmp_path):
     curves = copy.deepcopy(
         next(one for one in MODELS if one["group"]["name"] == "curves")

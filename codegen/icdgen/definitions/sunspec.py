@@ -230,20 +230,19 @@ class _Model:
         """Append the points of a group and of its nested groups to ``fields``, and
         return the bit behind them.
 
-        A group with any number of repetitions does not count, nor does what follows it
-        in a struct. Raises `NotSupported`.
+        A group with any number of repetitions does not count, nor does what follows it.
+        Raises `NotSupported`.
         """
         if depth > _MOST_DEPTH:
             raise NotSupported(f"groups are nested more than {_MOST_DEPTH} deep")
 
         def append(item: Item, bits: int) -> int:
             """Append a field, and return the bit behind it."""
-            is_behind = _is_open(fields)
-            if is_behind and fields is self.fields:
+            if any(field.get("count") == REST for field in fields) and "up_to" in item:
                 raise NotSupported(
-                    f"`{item['name']}` follows a group with any number of repetitions"
+                    f"`{item['name']}` follows a group whose repetitions no point counts"
                 )
-            if is_behind:
+            if _is_open(fields):
                 item["after"] = fields[-1]["name"]
             fields.append(item)
             return at if _is_open(fields) else at + bits
@@ -316,7 +315,9 @@ class _Model:
         item = {"at": at, "name": f"{before}{name}", "struct": struct["name"]}
         if not is_open:
             return {**item, "count": count}
-        if count != 0 and not any(part["name"] == count for part in self.fields):
+        if count != 0 and not any(
+            part["name"] == count and "after" not in part for part in self.fields
+        ):
             raise NotSupported(
                 f"`{name}` is counted by `{line(str(count), 60)}`, which is not in front of it"
             )
@@ -325,12 +326,8 @@ class _Model:
         longest = length + sum(
             self.size(part) for part in parts if "up_to" in part or "after" in part
         )
-        count = count or REST
-        return {
-            **item,
-            "count": count,
-            "up_to": max(1, min((_LONGEST - at // 8) // longest, MOST_ELEMENTS)),
-        }
+        most = max(1, min((_LONGEST - at // 8) // longest, MOST_ELEMENTS))
+        return {**item, "count": count or REST, "up_to": most}
 
     def size(self, item: Item) -> int:
         """Return the most bytes of a field."""
@@ -341,7 +338,7 @@ class _Model:
             for struct in self.structs
             if struct["name"] == item["struct"]
         )
-        return length * int(item.get("up_to") or item["count"])
+        return length * int(item.get("up_to") or item.get("count", 1))
 
     def point(self, point: dict[str, Any], before: str, at: int, is_head: bool) -> Item:
         """Return the field of a point.
