@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen import codec
 from icdgen.definitions import kaitai, kaitai_parts, kinds, run
 from icdgen.diagnostics import Findings
+from icdgen.icd.fmt import emit
+from icdgen.icd.load import load
 from tests.definitions.test_can import FILES, field, message
 
 
@@ -220,10 +223,61 @@ def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tm
         "name": "b",
         **held,
     } and "formula" not in field(read, "bad", "a")
+    assert field(read, "bad", "z") == {
+        "at": 8,
+        "after": "b",
+        "bits": 8,
+        "name": "z",
+        "type": "uint",
+    }
     assert [one.message for one in import_findings(read.definitions)] == [
-        "`z` is not imported: it follows a part of variable size",
         "`d`: `a * 0.5` is not a linear function of one field",
     ]
+
+
+def test_what_follows_parts_of_variable_size_is_read_behind_them(tmp_path):
+    text = ksy(
+        "{id: n, type: u1}",
+        "{id: words, size: a}",
+        "{id: mark, contents: [0x55, 0xAA]}",
+        "{id: points, type: u2be, repeat: expr, repeat-expr: n}",
+        "{id: last, type: t}",
+        "{id: crc, type: u2le}",
+        more="types:\n  t:\n    seq: [{id: c, type: s2be}, {id: d, type: u1}]\n",
+    )
+    (tmp_path / "bad.ksy").write_text(text)
+    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    assert import_findings(read.definitions) == []
+    (tmp_path / "frame.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    loaded = load([tmp_path / "frame.yaml"])
+    assert loaded.ok, loaded.findings
+    (node,) = loaded.icd.nodes
+    (message,) = node.messages
+    frame = bytes.fromhex("03 02 414243 55AA 0001 0002 FFFF 07 3412")
+    raw = codec.decode_frame(node, message, frame)
+    assert (raw["words"], raw["points[1]"], raw["crc"]) == (b"ABC", 2, 0x1234)
+    assert {raw[name] for name in raw if name.endswith((" c", ".c"))} <= {-1}
+    assert codec.encode(node, message, codec.decode(node, message, frame)) == frame
+
+
+@pytest.mark.parametrize(
+    ("attributes", "says"),
+    [
+        (["{id: b, size: a}", "{id: c, type: b4}", "{id: d, type: b4}"],
+         "`c` is not imported: it follows a part of variable size, and does not have whole bytes"),
+        (["{id: b, size: a}", "{id: c, type: u1}", "{id: d, size: c}"],
+         "`d` is not imported: its size is `c`, which is not a number in front of it"),
+        (["{id: b, size: a}", "{id: c, type: u1}", "{id: d, type: u1, if: c == 1}"],
+         "`d` is not imported: it depends on `c`, which follows a part of variable size"),
+        (["{id: b, size-eos: true}", "{id: c, type: u1}"],
+         "`c` is not imported: it follows a part up to the end of the frame"),
+    ],
+)  # fmt: skip
+def test_what_depends_on_bytes_that_move_is_left_out(attributes, says, tmp_path):
+    (tmp_path / "bad.ksy").write_text(ksy(*attributes))
+    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    assert [one.message for one in import_findings(read.definitions)] == [says]
+    assert field(read, "bad", "b")["type"] == "bytes"
 
 
 BYTE = "{id: a, type: u1}"

@@ -9,7 +9,7 @@ field. The module also creates the fields of the ICD.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
@@ -125,6 +125,26 @@ class Container(Generic[AnyPart]):
         """
         return bool(self.parts) and not self.parts[-1].bits
 
+    @property
+    def first_variable(self) -> AnyPart | None:
+        """The first part of variable length; None without one."""
+        return next((part for part in self.parts if not part.bits), None)
+
+    @property
+    def length(self) -> int:
+        """Bytes in front of the first part of variable length, or of the whole
+        container.
+        """
+        first = self.first_variable
+        return -(-(self.at if first is None else first.at) // 8)
+
+    def is_behind(self, part: AnyPart) -> bool:
+        """Return whether a part follows one of variable length."""
+        parts = iter(self.parts)
+        return any(not other.bits for other in parts) and any(
+            other is part for other in parts
+        )
+
     def add(self, part: AnyPart) -> None:
         """Add a part, and move ``at`` to its end."""
         self.parts.append(part)
@@ -143,15 +163,15 @@ class Container(Generic[AnyPart]):
         """Replace all but the first ``before`` parts by ``remainder``, the bytes up to
         the end of the frame.
 
-        Raises ``why`` if ``remainder`` does not begin at a byte boundary, or if the
-        part in front of it is missing or has a variable length. Also raises ``why`` if
+        Raises ``why`` if ``remainder`` does not begin at a byte boundary, or if no part
+        is in front of it or one has a variable length. Also raises ``why`` if
         parts were replaced before.
         """
         if (
             self.lost is not None
             or not before
             or remainder.at % 8
-            or not self.parts[before - 1].bits
+            or not all(part.bits for part in self.parts[:before])
         ):
             raise why
         del self.parts[before:]
@@ -199,10 +219,38 @@ def fixed_field(part: Part, name: str, at: int) -> Item:
     )
 
 
-def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> Item:
+def bits_of_counted(parts: Iterable[Part]) -> int:
+    """Return the most bits of the counted parts, which a part up to the end of the
+    frame leaves to them.
+    """
+    counted = (part for part in parts if part.counter is not None)
+    return sum(int(part.item["up_to"]) * part.element for part in counted)
+
+
+def in_sequence(fields: list[Item]) -> list[Item]:
+    """Return fields in the order of the frame with the keys of those that follow one of
+    variable length: each names the field in front of it.
+    """
+    result: list[Item] = []
+    first: Item | None = None
+    for field_item in fields:
+        if first is not None:
+            rest = {key: value for key, value in field_item.items() if key != "at"}
+            place = {"at": first["at"], "after": result[-1]["name"]}
+            field_item = replace_keys(field_item, {**place, **rest})
+        elif "up_to" in field_item:
+            first = field_item
+        result.append(field_item)
+    return result
+
+
+def variable_field(
+    part: Part, name: str, at: int, names: Mapping[int, str], behind: int = 0
+) -> Item:
     """Return the ICD field of a variable-length part.
 
-    ``names`` maps the `id` of each part of the message to its name.
+    ``names`` maps the `id` of each part of the message to its name. ``behind`` is the
+    number of bits of the fixed parts that follow.
 
     Raises `NotSupported` if the field does not begin at a byte boundary, or if its
     counter is not in the message.
@@ -219,9 +267,9 @@ def variable_field(part: Part, name: str, at: int, names: Mapping[int, str]) -> 
             if part.counter.plus
             else counter
         )
-    # The largest frame leaves room for this number of elements after the preceding
+    # The largest frame leaves room for this number of elements between the other
     # fields.
-    room = max(1, (8 * MOST_BYTES - at) // part.element)
+    room = max(1, (8 * MOST_BYTES - at - behind) // part.element)
     key = "count" if part.item.keys() & {"bits", "struct"} else "size"
     return replace_keys(
         part.item,

@@ -10,7 +10,11 @@ import re
 from collections import Counter
 
 from icdgen.definitions.accounting import Account, accounted
-from icdgen.definitions.containers import variable_field
+from icdgen.definitions.containers import (
+    bits_of_counted,
+    in_sequence,
+    variable_field,
+)
 from icdgen.definitions.frames import ORDERS, usual
 from icdgen.definitions.kaitai_layout import Layout
 from icdgen.definitions.kaitai_parts import File, Key, Part, Undecided
@@ -107,7 +111,7 @@ class Kaitai:
                 "name": called,
                 "id": _ID,
                 "kind": "telemetry",
-                "length": -(-layout.at // 8),
+                "length": layout.length,
             }
             item |= summary(str(body.get("doc") or "")) if len(layouts) == 1 else {}
             network.messages.append({**item, "fields": _fields(layout, order)})
@@ -204,7 +208,9 @@ def _fields(layout: Layout, order: str) -> list[Item]:
     for part in layout.parts:
         item, name = part.item, names[id(part)]
         if not part.bits:
-            fields.append(variable_field(part, name, part.at, names))
+            behind = layout.at - part.at
+            behind += bits_of_counted(layout.parts) if part.counter is None else 0
+            fields.append(variable_field(part, name, part.at, names, behind))
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})
         elif not part.mask:
@@ -234,7 +240,7 @@ def _fields(layout: Layout, order: str) -> list[Item]:
             fields.append(replace_keys(item, keys))
         else:
             fields += _split_fields(part, name, order)
-    return fields
+    return in_sequence(fields)
 
 
 def _split_fields(part: Part, name: str, order: str) -> list[Item]:

@@ -64,6 +64,11 @@ class Layout(Container[Part]):
         default_factory=list
     )  # bit behind each enclosing part that states its `size`
 
+    @property
+    def is_open(self) -> bool:
+        """Whether the last part extends to the end of the frame."""
+        return super().is_open and self.parts[-1].counter is None
+
     def read(self, root: Type) -> None:
         """Add the parts of the root type.
 
@@ -101,7 +106,7 @@ class Layout(Container[Part]):
             is_present = False
             try:
                 if self.is_open:
-                    raise NotSupported("it follows a part of variable size")
+                    raise NotSupported("it follows a part up to the end of the frame")
                 if "if" in attribute and not self._is_present(attribute, name, scope):
                     continue
                 is_present = True
@@ -233,6 +238,7 @@ class Layout(Container[Part]):
             of.item.get("type") != "uint"
             or "count" in of.item
             or of.mask
+            or self.is_behind(of)
             or not any(of is part for part in self.parts)
         ):
             raise NotSupported(f"{why}, which is not a number in front of it")
@@ -308,6 +314,10 @@ class Layout(Container[Part]):
         """
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotSupported("it is longer than the part that contains it")
+        if self.first_variable is not None and part.bits % 8:
+            raise NotSupported(
+                "it follows a part of variable size, and does not have whole bytes"
+            )
         self.add(part)
 
     def _valid(self, part: Part, valid: Any, scope: Scope) -> None:
@@ -382,7 +392,7 @@ class Layout(Container[Part]):
             ) from None
         if not layout.parts and not layout.at:
             return  # a type without bytes, such as an empty `seq`
-        if layout.is_open or layout.at % 8:
+        if layout.first_variable is not None or layout.at % 8:
             raise NotSupported("they are not of a fixed number of bytes")
         counter = count if isinstance(count, Counter) else None
         item: Item = {
@@ -417,8 +427,10 @@ class Layout(Container[Part]):
             )
         except NotSupported:
             size = None
-        is_end = self.is_open or size is None
-        if self.is_open:
+        # Bytes up to the end of the frame could be more than a frame can have.
+        is_lost = self.is_open or (size is None and self.first_variable is not None)
+        is_end = is_lost or size is None
+        if is_lost:
             effect = "no part of it is imported"
         elif size is not None:
             effect = "its bytes are imported"
@@ -530,6 +542,10 @@ class Layout(Container[Part]):
         }
         if part.mask & mask == mask:
             return raw.get(part.value & mask), False
+        if self.is_behind(part):
+            raise NotSupported(
+                f"it depends on `{of.path}`, which follows a part of variable size"
+            )
         common = part.mask & mask
         possible = [
             value
@@ -611,7 +627,7 @@ class Layout(Container[Part]):
             or type_.seq
         ):
             return False
-        if self.is_open or 8 * at < self.at or at > MOST_BYTES:
+        if self.first_variable is not None or 8 * at < self.at or at > MOST_BYTES:
             return False
         self.at = 8 * at
         try:
