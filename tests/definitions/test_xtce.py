@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen import codec
 from icdgen.definitions import kinds, run, xtce, xtce_types
 from icdgen.diagnostics import Findings
+from icdgen.icd.fmt import emit
+from icdgen.icd.load import load
 from tests.definitions.test_can import FILES, field, message
 
 END = "</xtce:ContainerSet></xtce:TelemetryMetaData></xtce:SpaceSystem>"
@@ -466,6 +469,67 @@ def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
     (tmp_path / "one.xml").write_text(text)
     read = run.read(tmp_path / "one.xml", xtce.Xtce())
     assert field(read, "A", "D") == {"at": 8, "name": "D", **held}
+
+
+def behind(text, *entries):
+    """The system with further entries behind what the value counts: `E` is a
+    little-endian word, `F` has four bits.
+    """
+    order = "bitOrder='mostSignificantBitFirst' byteOrder='leastSignificantByteFirst'"
+    types = (
+        f"<IntegerParameterType name='word' signed='false'><IntegerDataEncoding sizeInBits='16' {order}/></IntegerParameterType>"
+        "<IntegerParameterType name='half' signed='false'><IntegerDataEncoding sizeInBits='4'/></IntegerParameterType>"
+    )
+    parameters = "".join(
+        f'<Parameter name="{name}" parameterTypeRef="{kind}"/>'
+        for name, kind in (("E", "word"), ("F", "half"))
+    )
+    added = "".join(
+        one if one[0] == "<" else f'<ParameterRefEntry parameterRef="{one}"/>'
+        for one in entries
+    )
+    return (
+        text.replace("</ParameterTypeSet>", f"{types}</ParameterTypeSet>")
+        .replace("</ParameterSet>", f"{parameters}</ParameterSet>")
+        .replace("</EntryList>", f"{added}</EntryList>")
+    )
+
+
+def test_what_follows_what_a_parameter_counts_is_read_behind_it(tmp_path):
+    fixed = '<FixedValueEntry binaryValue="00" sizeInBits="8"/>'
+    text = behind(counted(value(8, 0), "bytes"), "E", fixed, "E")
+    (tmp_path / "one.xml").write_text(text)
+    read = run.read(tmp_path / "one.xml", xtce.Xtce())
+    assert not read.failed
+    (tmp_path / "one.yaml").write_text(emit.text(next(iter(read.trees.values()))))
+    loaded = load([tmp_path / "one.yaml"])
+    assert loaded.ok, loaded.findings
+    (node,) = loaded.icd.nodes
+    (message,) = node.messages
+    frame = bytes.fromhex("02 AABB 3412 00 7856")
+    raw = codec.decode_frame(node, message, frame)
+    assert (raw["D"], raw["E"], raw["E 2"]) == (b"\xaa\xbb", 0x1234, 0x5678)
+    assert codec.encode(node, message, codec.decode(node, message, frame)) == frame
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        ("F",),
+        ("E", "F"),
+        ('<ParameterRefEntry parameterRef="E"><LocationInContainerInBits>'
+         "<FixedValue>8</FixedValue></LocationInContainerInBits></ParameterRefEntry>",),
+    ],
+)  # fmt: skip
+def test_what_has_no_whole_bytes_behind_what_a_parameter_counts_is_refused(
+    entries, tmp_path
+):
+    text = behind(counted(value(8, 0), "bytes"), *entries)
+    (tmp_path / "one.xml").write_text(text)
+    with pytest.raises(Findings) as refused:
+        run.read(tmp_path / "one.xml", xtce.Xtce())
+    (finding,) = refused.value.findings
+    assert "follows `D`, whose size is not fixed" in finding.message
 
 
 @pytest.mark.parametrize("dynamic", [value(2, 0), value(1, 0.5), "<DynamicValue/>"])

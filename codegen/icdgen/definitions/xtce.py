@@ -16,8 +16,9 @@ from icdgen.definitions.accounting import Account, settle
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotSupported, Source
 from icdgen.definitions.wording import line, node_name
-from icdgen.definitions.xtce_layout import Layout, Part, RequiredValue
+from icdgen.definitions.xtce_layout import Layout, RequiredValue
 from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
+from icdgen.definitions.xtce_parts import Part
 from icdgen.definitions.xtce_types import Types, described
 from icdgen.diagnostics import Findings
 

@@ -6,24 +6,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
-from icdgen.definitions import containers
 from icdgen.definitions.containers import (
     MOST_FIELDS,
     Container,
-    Counter,
     check_only_value,
     fixed_field,
-    variable_field,
 )
-from icdgen.definitions.frames import LITTLE, ORDERS, Place, laid_out
+from icdgen.definitions.frames import LITTLE, Place, laid_out
 from icdgen.definitions.model import Definitions, Item, NotSupported, replace_keys
 from icdgen.definitions.reading import TooMuch
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, ancillary_data, name_of
+from icdgen.definitions.xtce_parts import (
+    Part,
+    Reference,
+    numbered,
+    sequence_fields,
+)
 from icdgen.definitions.xtce_types import (
     Piece,
     Types,
@@ -31,37 +35,12 @@ from icdgen.definitions.xtce_types import (
     repeated,
     special_values,
 )
-from icdgen.icd.roles import COUNTER, reasons_against
 from icdgen.icd.variable_length import MOST_BYTES, MOST_ELEMENTS
 
-OPEN = "IMP080"
 MOST_PLACED = 500  # fields of a message with explicit positions
 _DEEPEST = 50  # levels of inheritance and inclusion
 _REFERENCES = {"ParameterRefEntry": "parameterRef", "ArgumentRefEntry": "argumentRef",
                "ArrayParameterRefEntry": "parameterRef", "ArrayArgumentRefEntry": "argumentRef"}  # fmt: skip
-
-
-class Reference(NamedTuple):
-    """Parameter or argument. ``path`` leads to a member of an aggregate."""
-
-    of: Element
-    path: tuple[str, ...]
-
-    @property
-    def name(self) -> str:
-        """Name in the notation of XTCE: ``Packet_ID/Version``."""
-        return "/".join((self.of.get("name", ""), *self.path))
-
-
-@dataclass
-class Part(containers.Part):
-    """Entry of an XTCE container at its position. A fixed value has no reference."""
-
-    piece: Piece = field(kw_only=True)
-    reference: Reference | None = None
-    is_reserved: bool = False  # has a size but no meaning
-    # Earlier parts, and the values with which this one is present.
-    conditions: list[tuple[Part, object]] = field(default_factory=list)
 
 
 class RequiredValue(NamedTuple):
@@ -257,10 +236,6 @@ class Layout(Container[Part]):
                 raise NotSupported(f"it has more than {MOST_FIELDS} fields")
         if piece.members:
             return
-        if self.is_open:
-            raise NotSupported(
-                f"`{name}` follows `{self.parts[-1].path[-1]}`, whose size is not fixed"
-            )
         if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
                 raise NotSupported(
@@ -280,7 +255,7 @@ class Layout(Container[Part]):
             piece=piece,
         )
         part.reference, part.is_reserved = reference, "reserved" in ancillary_data(of)
-        self.add(part)
+        self._add(part)
 
     def _fixed(self, entry: Element) -> None:
         """Add a fixed value: the least significant `sizeInBits` bits of a hexadecimal
@@ -305,6 +280,22 @@ class Layout(Container[Part]):
             (name or f"Fixed {self.at}",), item, self.at, bits, piece=Piece(item, bits)
         )
         part.is_reserved = not (name and bits <= 64) and not value
+        self._add(part)
+
+    def _add(self, part: Part) -> None:
+        """Add a part.
+
+        Raises `NotSupported` if it follows a part of variable length, and does not have
+        whole bytes directly behind the previous part.
+        """
+        first = self.first_variable
+        if first is not None and (
+            part.bits % 8 or part.width % 8 or part.at != self.parts[-1].end
+        ):
+            raise NotSupported(
+                f"`{part.path[-1]}` follows `{first.path[-1]}`, whose size is not fixed, "
+                "and does not have whole bytes directly behind the entry in front of it"
+            )
         self.add(part)
 
     def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Reference:
@@ -512,9 +503,11 @@ class Layout(Container[Part]):
 
         Raises `NotSupported`.
         """
+        first = self.first_variable
+        front = list(takewhile(lambda part: part is not first, self.parts))
+        sequence = self.parts[len(front) :]
         always = max(
-            (part.end for part in self.parts if part.bits and "when" not in part.item),
-            default=start,
+            (part.end for part in front if "when" not in part.item), default=start
         )
         always = max(always, self.size)
         late = next(
@@ -531,17 +524,15 @@ class Layout(Container[Part]):
             or end > 8 * MOST_BYTES
         ):
             raise NotSupported(f"its frames have more than {MOST_BYTES:,} bytes")
-        parts = [
-            part for part in self.parts if part.at >= start and not part.is_reserved
-        ]
-        names = _numbered(parts)
+        closed = [part for part in front if part.at >= start and not part.is_reserved]
+        parts = [*closed, *sequence]
+        names = numbered(parts)
         for part in parts:
             if part.conditions:  # conditions refer to the final, numbered names
                 part.item["when"] = {
                     names.get(id(of), of.path[-1]): values
                     for of, values in part.conditions
                 }
-        closed = [part for part in parts if part.bits]
         message["length"] = -(-end // 8)
         fields: list[Item] = []
         if self.jumps:
@@ -568,80 +559,15 @@ class Layout(Container[Part]):
                 if (padding := message["length"] - -(-last // 8))
                 else {}
             )
-        for part in parts:
-            if not part.bits:
-                if end % 8:
-                    raise NotSupported(
-                        f"`{names[id(part)]}`, whose size is not fixed, begins within a byte"
-                    )
-                message.pop(
-                    "reserved", 0
-                )  # the unnamed bytes in front of the field are part of the length
-                at = 8 * message["length"]
-                _count(part, names[id(part)], at, parts, message["name"], to)
-                field = variable_field(part, names[id(part)], at, names)
-                is_other = part.element > 8 and part.order != message.get(
-                    "byte_order", order
+        if first is not None:
+            if end % 8:
+                raise NotSupported(
+                    f"`{names[id(first)]}`, whose size is not fixed, begins within a byte"
                 )
-                field |= ORDERS[part.order] if is_other else {}
-                fields.append(field)
+            # The unnamed bytes in front of the field are part of the length.
+            message.pop("reserved", 0)
+            fields += sequence_fields(sequence, closed, names, message, order, to)
         return {**message, "fields": fields} if fields else message
-
-
-def _numbered(parts: Iterable[Part]) -> dict[int, str]:
-    """Return the names of parts by `id`.
-
-    Repeated names get a number: ``Mode``, ``Mode 2``.
-    """
-    times: dict[str, int] = {}
-    names: dict[int, str] = {}
-    for part in parts:
-        name = part.path[-1]
-        times[name] = times.get(name, 0) + 1
-        names[id(part)] = name if times[name] == 1 else f"{name} {times[name]}"
-    return names
-
-
-def _count(
-    part: Part, name: str, at: int, parts: list[Part], message: str, to: Definitions
-) -> None:
-    """Set the counter of a variable-length part, if another part can count it, and its
-    maximum number of elements.
-    """
-    item, piece = part.item, part.piece
-    most = min(item["up_to"], (8 * MOST_BYTES - at) // part.element)
-    if (
-        part.reference is not None
-        and (limit := ancillary_data(part.reference.of).get("up_to")) is not None
-    ):
-        most = min(most, max(1, number(limit, "a size")))
-    counter = next((other for other in parts if _is_named(other, piece.size)), None)
-    counted = _counted(counter, piece, most) if counter is not None else 0
-    if counter is not None and counted:
-        part.counter, most = Counter(counter, piece.plus or 0), counted
-    elif counter is not None:
-        text = f"message `{message}`: `{name}` is as long as `{piece.size}` says"
-        to.warn(OPEN, text, "it is imported up to the end of the frame")
-    item["up_to"] = most
-
-
-def _is_named(part: Part, reference: str) -> bool:
-    """Whether a reference, which may include a path of systems, ends with the name of a
-    part.
-    """
-    return part.reference is not None and f"/{reference}".endswith(
-        f"/{part.reference.name}"
-    )
-
-
-def _counted(counter: Part, piece: Piece, most: int) -> int:
-    """Return the maximum number of elements, or bytes, that a field can count; 0 if it
-    cannot count them.
-    """
-    if piece.plus is None or not counter.bits or reasons_against(counter.item, COUNTER):
-        return 0
-    counted = min(most, (1 << counter.bits) - 1 + piece.plus)
-    return counted if counted >= max(1, piece.plus) else 0
 
 
 def _reference(entry: Element) -> str:
