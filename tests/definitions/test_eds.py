@@ -11,8 +11,11 @@ import shutil
 
 import pytest
 
+from icdgen import codec
 from icdgen.definitions import eds, eds_interfaces, eds_sheets, eds_types, kinds, run
 from icdgen.diagnostics import Findings
+from icdgen.icd.fmt import emit
+from icdgen.icd.load import load
 from tests.definitions.test_can import FILES, field, message
 from tests.importer.test_command import icdgen
 
@@ -380,6 +383,29 @@ OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringData
 )  # fmt: skip
 def test_containers_that_cannot_be_held_are_left_out_and_end(types, says, tmp_path):
     assert says in refused(sheet(types), tmp_path)
+
+
+LONG = '<IntegerDataType name="long"><IntegerDataEncoding sizeInBits="16" byteOrder="littleEndian"/></IntegerDataType>'
+
+
+def test_an_error_control_behind_a_list_is_imported_behind_it(tmp_path):
+    entries = (
+        ENTRY
+        + '<ListEntry name="L" type="long" listLengthField="P"/>'
+        + '<Entry name="M" type="byte"/>'
+        + '<ErrorControlEntry name="CRC" type="long" errorControlType="CRC16_CCITT"/>'
+    )
+    (tmp_path / "one.xml").write_text(sheet(LONG + container("A", entries)))
+    read = run.read(tmp_path / "one.xml", eds.Eds())
+    (tree,) = read.trees.values()
+    (tmp_path / "one.yaml").write_text(emit.text(tree))
+    loaded = load([tmp_path / "one.yaml"])
+    assert loaded.ok, loaded.findings
+    (node,) = loaded.icd.nodes
+    (message,) = node.messages
+    frame = bytes.fromhex("02 0100 0200 07 3412")
+    raw = codec.decode_frame(node, message, frame)
+    assert (raw["L[1]"], raw["M"], raw["CRC"]) == (2, 7, 0x1234)
 
 
 def integer(said):

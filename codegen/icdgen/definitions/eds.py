@@ -157,10 +157,10 @@ class _Message:
         """
         fields = self.layout.fields(start)
         covered = max((part.end for part in self.layout.parts), default=start)
+        first = self.layout.first_variable
+        end = self.layout.at if first is None else first.at
         # Trailing padding belongs to the length, but no field covers it.
-        length, covered = -(-(self.layout.at - start) // 8), -(
-            -(max(covered, start) - start) // 8
-        )
+        length, covered = -(-(end - start) // 8), -(-(max(covered, start) - start) // 8)
         item: Item = {
             "name": self.name,
             "id": id,

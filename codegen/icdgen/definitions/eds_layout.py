@@ -13,7 +13,9 @@ from icdgen.definitions import eds_parts, eds_ranges, packets
 from icdgen.definitions.containers import (
     Container,
     Counter,
+    bits_of_counted,
     fixed_field,
+    in_sequence,
     variable_field,
 )
 from icdgen.definitions.eds_parts import Line, Part, Told
@@ -66,11 +68,15 @@ class Layout(Container[Part]):
             )
             if part is None and self.lost is not None:
                 raise self.missing(line(".".join(constraint.path), 100))
+            if part is not None and self.is_behind(part):
+                raise NotSupported(
+                    f"it depends on `{part.path[-1]}`, which follows a part of variable length"
+                )
             raw = eds_parts.constrain(part, constraint, self.sheets, self.types)
             if raw is not None and part is not None:
                 self.constants[part.path, part.entry] = raw
         # The length entry of a fixed-length container is a constant.
-        if self.parts and self.parts[-1].bits:
+        if self.first_variable is None:
             for part in self.parts:
                 if part.entry.tag == "LengthEntry" and len(part.path) == 1:
                     eds_parts.measure(part, -(-self.at // 8), self.sheets)
@@ -160,9 +166,10 @@ class Layout(Container[Part]):
         name = line(self.sheets.attribute(entry, "name"), 100) or f"unnamed {self.at}"
         if entry.find("PresentWhen") is not None:
             raise NotSupported(f"`{name}` is present only on a condition")
-        if self.is_open:
+        first = self.first_variable
+        if first is not None and (self.is_open or entry.tag == "PaddingEntry"):
             raise NotSupported(
-                f"`{name}` follows `{self.parts[-1].path[-1]}`, whose length is not fixed"
+                f"`{name}` follows `{first.path[-1]}`, whose length is not fixed"
             )
         if entry.tag == "PaddingEntry":
             self.at += whole(
@@ -406,6 +413,7 @@ class Layout(Container[Part]):
         )
         if (
             length_part is None
+            or self.is_behind(length_part)
             or length_part.piece is None
             or length_part.piece.item["type"] != "uint"
             or length_part.piece.bits != length_part.bits
@@ -492,18 +500,58 @@ class Layout(Container[Part]):
         names = {id(part): name for part, name in zip(parts, short_names, strict=True)}
         fields: list[Item] = []
         for part in parts:
-            if not part.bits and part.counter is None:
-                part.counter = self._length_of(part, names)
             name, at = names[id(part)], part.at - start
-            fields.append(
-                fixed_field(part, name, at)
-                if part.bits
-                else variable_field(part, name, at, names)
-            )
-        return fields
+            if part.bits:
+                fields.append(fixed_field(part, name, at))
+                continue
+            if part.counter is None and sum(not other.bits for other in parts) == 1:
+                part.counter = self._length_of(names)
+            behind = self.at - part.at
+            behind += bits_of_counted(parts) if part.counter is None else 0
+            fields.append(variable_field(part, name, at, names, behind))
+        return in_sequence(fields)
 
-    def _length_of(self, part: Part, names: Mapping[int, str]) -> Counter | None:
-        """Return the container length field as counter of a variable-length part, or
+    @property
+    def is_open(self) -> bool:
+        """Whether a part extends to the end of the frame, and no field has the length
+        of the container.
+        """
+        has_length = any(
+            part.entry.tag == "LengthEntry"
+            and len(part.path) == 1
+            and not self.is_behind(part)
+            for part in self.parts
+        )
+        return not has_length and any(
+            not part.bits and part.counter is None for part in self.parts
+        )
+
+    def add(self, part: Part) -> None:
+        """Add a part.
+
+        Raises `NotSupported` if it follows a part of variable length, and does not have
+        whole bytes.
+        """
+        first, width = self.first_variable, int(part.item.get("bits", part.bits))
+        if first is not None and (part.bits % 8 or width % 8):
+            raise NotSupported(
+                f"`{part.path[-1]}` follows `{first.path[-1]}`, whose length is not fixed, "
+                "and does not have whole bytes"
+            )
+        if first is not None and not part.bits and self._has_uncounted(part):
+            raise NotSupported(
+                f"`{part.path[-1]}` follows `{first.path[-1]}`, and no field counts both"
+            )
+        super().add(part)
+
+    def _has_uncounted(self, added: Part) -> bool:
+        """Return whether no field counts a variable-length part, or one that is added."""
+        return any(
+            not part.bits and part.counter is None for part in (*self.parts, added)
+        )
+
+    def _length_of(self, names: Mapping[int, str]) -> Counter | None:
+        """Return the container length field as counter of the variable-length part, or
         None without one.
         """
         counter = None
@@ -512,6 +560,7 @@ class Layout(Container[Part]):
                 other.entry.tag == "LengthEntry"
                 and len(other.path) == 1
                 and id(other) in names
+                and not self.is_behind(other)
             )
             if is_length and other.item["type"] == "uint":
                 length = eds_parts.line_of(other.entry, self.sheets)
@@ -520,7 +569,7 @@ class Layout(Container[Part]):
                     and length.factor == 1
                     and length.offset.denominator == 1
                 ):
-                    counter = Counter(other, int(length.offset) - part.at // 8)
+                    counter = Counter(other, int(length.offset) - self.at // 8)
         return counter
 
 
