@@ -44,8 +44,11 @@ function messageOf(node, direction, word) {
 }
 
 /** What not every frame of a message has all of. */
-const endOf = (plan) => (plan.endsEarly ? { least: 1, step: 1 } : plan.tail && shortest(plan.tail));
-const shortest = ({ least, step, plus = 0 }) => ({ least: least + Math.max(0, plus) * step, step });
+const endOf = (plan) => (plan.endsEarly ? { least: 1, step: 1 } : plan.tail && { least: shortest(plan), step: stepOf(plan) });
+const shortest = ({ fewest, tail }) => fewest ?? tail.least + Math.max(0, tail.plus ?? 0) * tail.step;
+const stepOf = ({ inner = [], tail }) => [...inner.flatMap(stepsOf), ...(inner.some((part) => part.begin === tail.least) ? [] : [tail.step])].reduce(gcd);
+const stepsOf = ({ step, nested = [] }) => [step - nested.reduce((sum, part) => sum + (part.most - Math.max(0, part.plus)) * part.step, 0), ...nested.map((part) => part.step)];
+const gcd = (one, other) => (other ? gcd(other, one % other) : one);
 
 /** Name and bytes of the message that a frame of a shared id is. */
 function told(candidates, frame) {
