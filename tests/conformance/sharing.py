@@ -88,11 +88,11 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
             ]
             del selector["const"]
         parts = iter(
-            [field for field in moved if "up_to" in field]
+            [field for field in moved if _is_open(field)]
         )  # open parts are written as they stand
         order = draw(st.permutations([selector, *moved]))
         message["fields"] = [
-            next(parts) if "up_to" in field else field for field in order
+            next(parts) if _is_open(field) else field for field in order
         ]
         message["length"] += size
     longest = max(message["length"] for message in group)
@@ -106,10 +106,15 @@ def _close(message: dict) -> None:
     message.pop("may_end_early", None)
     if "fields" in message:
         message["fields"] = [
-            field for field in message["fields"] if "up_to" not in field
+            field for field in message["fields"] if not _is_open(field)
         ]
         if not message["fields"]:
             del message["fields"]
+
+
+def _is_open(field: dict) -> bool:
+    """Whether it has a variable length, or is behind such a field."""
+    return "up_to" in field or "after" in field
 
 
 def _grow(message: dict, size: int) -> None:
