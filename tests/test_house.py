@@ -78,6 +78,8 @@ def test_the_reference_of_the_protocol_judges_and_does_nothing_else():
         "places",
         "envelope",
         "enveloping",
+        "exchange",
+        "responding",
     }
     machines = (
         {path.stem for path in (ROOT / "codegen/icdgen/protocol").glob("*.py")}
@@ -87,10 +89,8 @@ def test_the_reference_of_the_protocol_judges_and_does_nothing_else():
     assert {"client", "uart", "can", "transfer", "logs", "crc"} <= machines
     importing = []
     for path in (ROOT / "codegen").rglob("*.py"):
-        if path.relative_to(ROOT / "codegen/icdgen").parts[0] in (
-            "protocol",
-            "vectors",
-        ):
+        inside = path.relative_to(ROOT / "codegen/icdgen")
+        if inside.parts[0] in ("protocol", "vectors") or inside.name == "reference.py":
             continue
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module:

@@ -20,8 +20,9 @@ LAYERS = [  # what stands in one row does not know each other
     "codec frame_bits reports",
     "protocol",
     "describe",
-    "link_calls values vectors",
+    "link_calls values",
     "runtime_objects",
+    "vectors",
     "link recognize show sim",
     "logfile",
     "backends",
@@ -65,6 +66,7 @@ USERS = {
         "icdgen.recognize",
         "icdgen.runtime_objects",
         "icdgen.sim",
+        "icdgen.vectors",
     ],
     "icdgen.backends.c": [
         "icdgen.backends.c_selftest",

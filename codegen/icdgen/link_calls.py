@@ -15,6 +15,7 @@ from typing import Any
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import Check, Stream, StreamRow
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.sections import (
     Crc,
     Download,
@@ -312,9 +313,11 @@ def _stream(form: Stream) -> Call:
     parts["fields"] = tuple(
         _row("EnvelopeField", *_members(field).values()) for field in form.fields
     )
-    parts["telecommands"], parts["telemetry"] = map(
-        _stream_rows, (form.telecommands, form.telemetry)
-    )
+    parts["telecommands"] = _stream_rows(form.telecommands, form.exchanges)
+    parts["telemetry"] = _stream_rows(form.telemetry, ())
+    if form.exchanges:
+        parts["exchanges"] = tuple(map(_exchange, form.exchanges))
+        parts["confirming"] = form.confirming
     check = parts.pop("check")
     if isinstance(check, Check):
         crc = {fact.name: getattr(check.crc, fact.name) for fact in facts_of(check.crc)}
@@ -327,17 +330,65 @@ def _stream(form: Stream) -> Call:
     return _call("Stream", **parts)
 
 
-def _stream_rows(rows: tuple[StreamRow, ...]) -> tuple[Call, ...]:
-    """Return the calls for the messages of a direction; the last argument is the
-    response, if the ICD declares one.
-    """
-    values = (
-        (row.id, row.least, row.most, row.cuts_zeros, row.seed, row.reply)
-        for row in rows
+def _stream_rows(
+    rows: tuple[StreamRow, ...], exchanges: tuple[Exchange, ...]
+) -> tuple[Call, ...]:
+    """Return the calls for the messages of a direction."""
+    calls = []
+    for row in rows:
+        more: dict[str, object] = {}
+        if row.exchange:
+            more["exchange"] = exchanges.index(row.exchange)
+        if row.repeats:
+            more["repeats"] = True
+        if row.requests is not None:
+            more["requests"] = row.requests
+        calls.append(
+            _row(
+                "StreamRow",
+                row.id,
+                row.least,
+                row.most,
+                row.cuts_zeros,
+                row.seed,
+                **more,
+            )
+        )
+    return tuple(calls)
+
+
+def _exchange(exchange: Exchange) -> Call:
+    """Return the call for the responses to a telecommand."""
+    parts: dict[str, object] = {
+        "sources": tuple(map(_number_place, exchange.sources)),
+        "responses": tuple(map(_response, exchange.responses)),
+    }
+    if exchange.timeout:
+        parts["timeout"] = exchange.timeout
+    return _call("Exchange", **parts)
+
+
+def _response(response: Response) -> Call:
+    places = {"status": response.status, "reason": response.reason}
+    echoes = tuple(
+        _row("Echo", _number_place(echo.place), echo.source) for echo in response.echoes
     )
-    return tuple(
-        _row("StreamRow", *(row if row[-1] is not None else row[:-1])) for row in values
+    optional = {
+        "echoes": echoes,
+        **{key: place and _number_place(place) for key, place in places.items()},
+        "meanings": response.meanings,
+        "reasons": response.reasons,
+    }
+    return _call(
+        "Response",
+        telemetry=response.telemetry,
+        verdict=response.verdict,
+        **{key: value for key, value in optional.items() if value},
     )
+
+
+def _number_place(place: NumberPlace) -> Call:
+    return _row("NumberPlace", *_members(place).values())
 
 
 def _flat(name: str, part: Any) -> Call:

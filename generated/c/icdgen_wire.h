@@ -17,6 +17,9 @@
  * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
  * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
+ * ICDGEN_MOST_AWAITED
+ *                   Clients of framed links: largest number of requests whose responses are awaited or may still arrive
+ *                   late, 8 unless it is defined. Each takes 32 bytes of the client.
  * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
  *                   defined and those that the wire layer itself needs.
  */
@@ -518,15 +521,74 @@ typedef struct {
     bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */
 } icd_check_form_t;
 
-/** A message: id, shortest and longest data length in bytes, and seed. */
+/** What a response means for its telecommand. */
+typedef enum {
+    ICD_VERDICT_ACK = 0,     /**< The telecommand was accepted. */
+    ICD_VERDICT_REPLY = 1,   /**< This is the telemetry that the telecommand requested. */
+    ICD_VERDICT_NAK = 2,     /**< The telecommand was refused. */
+    ICD_VERDICT_BUSY = 3,    /**< The device is busy. */
+    ICD_VERDICT_PROGRESS = 4 /**< The telecommand is still being executed. */
+} icd_verdict_t;
+
+/**
+ * Place of a number in a message: its id, as 4 bytes with the most significant first, followed by its data. The number
+ * in the `size` bytes from byte `at` on is shifted right by `shift` and masked to `bits` bits. Bytes that the message
+ * does not have are 0. `bits` is 0 if there is no number.
+ */
+typedef struct {
+    uint32_t at;
+    uint8_t size;
+    uint8_t shift;
+    uint8_t bits;
+    bool little;
+} icd_number_place_t;
+
+/** A number of a response that repeats number `source` of the telecommand. */
+typedef struct {
+    icd_number_place_t place;
+    uint8_t source;
+} icd_echo_t;
+
+/** What a value of a status means. */
+typedef struct {
+    uint32_t value;
+    icd_verdict_t verdict;
+} icd_meaning_t;
+
+/** Telemetry that can end, refuse, defer or prolong a telecommand. */
+typedef struct {
+    uint32_t telemetry;
+    icd_verdict_t verdict; /**< With a status: the meaning of all values that are not in `meanings`. */
+    uint8_t echo_count;
+    uint16_t meaning_count;
+    const icd_echo_t *echoes;
+    const icd_meaning_t *meanings;
+    icd_number_place_t status;
+    icd_number_place_t reason; /**< Reason of a refusal. */
+} icd_response_t;
+
+#define ICD_MOST_SOURCES 4u /**< Largest number of numbers of a telecommand that its responses repeat. */
+
+/** The possible responses to a telecommand. */
+typedef struct {
+    const icd_number_place_t *sources; /**< Numbers of the telecommand that responses repeat. */
+    const icd_response_t *responses;
+    uint8_t source_count;
+    uint8_t response_count;
+    uint32_t timeout; /**< In milliseconds; 0: the time-out of the client. */
+} icd_exchange_t;
+
+/** A message: id, shortest and longest data length in bytes, and seed. The last members concern telecommands only. */
 typedef struct {
     uint32_t id;
     uint16_t least;
     uint16_t most;
     bool cuts_zeros; /**< Whether trailing zeros of the data are not sent, except for the first byte. */
     uint8_t seed;
-    bool is_answered; /**< Telecommand: whether telemetry `reply` is its reply. */
-    uint32_t reply;
+    bool repeats;                   /**< Whether it may be sent again after a time-out. */
+    bool is_request;                /**< Whether it requests telemetry `requested` if it is sent as `least` zeros. */
+    uint32_t requested;             /**< Id of this telemetry. */
+    const icd_exchange_t *exchange; /**< NULL if nothing responds to it. */
 } icd_stream_row_t;
 
 /** Framing of messages in a stream of bytes or in packets. */
@@ -541,6 +603,8 @@ typedef struct {
     const icd_check_form_t *check;
     const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, in ascending order of the ids. */
     uint16_t row_counts[2];
+    const uint32_t *confirming; /**< Ids of telemetry that only responds to telecommands, and is not requested. */
+    uint16_t confirming_count;
 } icd_stream_form_t;
 
 /** Timeouts (in milliseconds) and retries of a client. */
@@ -553,6 +617,16 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest processing time of a telecommand, in milliseconds. */
     uint32_t poll_timeout;
+    /** Time after a time-out in which a response can still come, in milliseconds. */
+    uint32_t late;
+    /** Pause before a request is sent to a busy device again, in milliseconds. */
+    uint32_t busy_pause;
+    /** Shortest time between two transmissions, in milliseconds. */
+    uint32_t gap;
+    /** Number of requests that the device handles at a time. */
+    uint8_t in_flight;
+    /** Longest time by which reports of progress extend a time-out, in milliseconds. */
+    uint32_t progress_for;
 } icd_client_settings_t;
 
 /** Description of the protocol of a node. Parts that the ICD does not describe are NULL. */
@@ -814,24 +888,38 @@ typedef enum {
     ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no message with this id. */
     ICD_STREAM_OVERRUN = 5,    /**< Dropped: the message is longer than the buffer. */
     ICD_STREAM_FRAMING = 6,    /**< Dropped: wrong constant or delimiter. */
-    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; `data` is its reply, if it has one. */
-    ICD_STREAM_TIMEOUT = 8     /**< Client: no reply. */
+    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded. */
+    ICD_STREAM_TIMEOUT = 8,    /**< Client: no response; it is not known whether the request was executed. */
+    ICD_STREAM_SENT = 9,       /**< Client: a telecommand to which nothing responds was sent. */
+    ICD_STREAM_REFUSED = 10,   /**< Client: the device refused the request. */
+    ICD_STREAM_BUSY = 11,      /**< Client: the device was busy each time, so the request was not executed. */
+    ICD_STREAM_PROGRESS = 12,  /**< Client: the request is still in progress. */
+    ICD_STREAM_REPLY = 13,     /**< Client: the requested telemetry; the acknowledge is still to come. */
+    ICD_STREAM_LATE = 14,      /**< Client: a response to a request that has ended. */
+    ICD_STREAM_STRAY = 15      /**< Client: a response without a request. */
 } icd_stream_kind_t;
 
-/** An event of a decoder or a client. The event and its data are valid only during the call of the callback. */
+/**
+ * An event of a decoder or a client. The event and its data are valid only during the call of the callback.
+ *
+ * Every request ends with one of DONE, SENT, REFUSED, BUSY and TIMEOUT. These events, PROGRESS and REPLY have the
+ * direction and the id of the request.
+ */
 typedef struct {
     icd_stream_kind_t kind;
     bool has_id; /**< Whether the id could be read. */
     uint32_t id;
-    const uint8_t *data;
+    const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
     icd_envelope_values_t values;
     uint32_t missing;
-    const icd_link_t *link;    /**< Client: link of the node; otherwise NULL. */
-    icd_direction_t direction; /**< DONE, TIMEOUT: direction of the request; `id` is its id. */
-    uint32_t attempts;         /**< DONE, TIMEOUT: number of times the request was sent. */
-    bool has_reply;            /**< DONE: whether the reply is telemetry. */
-    uint32_t reply;            /**< DONE: id of this telemetry. */
+    const icd_link_t *link; /**< Client: link of the node; otherwise NULL. */
+    icd_direction_t direction;
+    uint32_t attempts; /**< Outcomes: number of times the request was sent. */
+    bool has_reply;    /**< Events of a request: whether a response led to the event. */
+    uint32_t reply;    /**< Id of this response. */
+    bool has_code;     /**< REFUSED, BUSY: whether the response has a reason. */
+    uint32_t code;     /**< The reason. */
 } icd_stream_event_t;
 
 typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
@@ -1359,8 +1447,8 @@ ICDGEN_API void icd_client_transferred(
 /* ---- client for messages with header and trailer ----------------------------------------------------------------- */
 
 /**
- * A request. `repeat`: whether the client may send it again if the node may already have received it. Telemetry
- * requests are always repeated.
+ * A request. `repeat`: whether the client may send it again after a time-out, although the node may have received it.
+ * Telemetry requests are always repeated, and so are telecommands that the ICD marks.
  */
 typedef struct {
     icd_direction_t direction;
@@ -1372,41 +1460,64 @@ typedef struct {
     size_t length;
 } icd_stream_request_t;
 
-/** Memory for a request, and for the previous request if its reply may still arrive. */
+/** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
+#ifndef ICDGEN_MOST_AWAITED
+#define ICDGEN_MOST_AWAITED 8u
+#endif
+
+typedef enum {
+    ICD_STREAM_SLOT_QUEUED, /* is to be sent */
+    ICD_STREAM_SLOT_SENT,   /* was sent, and nothing responds to it */
+    ICD_STREAM_SLOT_WAIT,   /* waits for a response */
+    ICD_STREAM_SLOT_PAUSE   /* the device was busy */
+} icd_stream_slot_state_t;
+
+/* A request that was sent, and the responses that may arrive. */
 typedef struct {
-    icd_client_state_t state;
-    icd_direction_t direction;
-    uint32_t id;
-    uint32_t sent; /* id of the telecommand */
-    uint8_t *data; /* data of the telecommand */
-    size_t length;
-    bool repeat;
+    const icd_exchange_t *exchange;
+    uint32_t sources[ICD_MOST_SOURCES]; /* numbers that responses must repeat */
+    uint32_t reply;                     /* id of the reply that the caller specified */
     bool has_reply;
-    uint32_t reply;
-    uint32_t attempts;
-    uint32_t until;  /* time at which the state ends */
-    bool untaken;    /* the request is still to be sent */
-    uint32_t ticket; /* order of sending */
-    bool was_taken;  /* sent at least once */
-    bool late;       /* telemetry with late_id may arrive until late_end */
-    uint32_t late_id;
-    uint32_t late_end;
+    uint8_t needed; /* verdicts without which the request is not done, as a mask */
+    uint16_t owed;  /* number of responses that may still arrive */
+    uint32_t sent_at;
+} icd_stream_awaited_t;
+
+/** Memory for a request. */
+typedef struct {
+    icd_stream_awaited_t awaited;
+    const icd_stream_row_t *row; /* the telecommand */
+    uint8_t *data;
+    size_t length;
+    uint32_t until; /* time at which the state ends */
+    uint16_t attempts;
+    uint8_t missing; /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
+    bool repeat;
+    icd_direction_t direction;
+    icd_stream_slot_state_t state;
 } icd_stream_slot_t;
 
 /**
- * A client for messages with framing. Several requests may be in progress if their replies differ. Also reports
- * unsolicited telemetry.
+ * A client for messages with framing. Also reports unsolicited telemetry. Members without a description are internal.
+ *
+ * Requests are sent in the order in which they were started. A request waits while as many are in progress as the
+ * device handles, or while a response to another request could be taken for a response to it.
  */
 typedef struct {
     const icd_link_t *link;
     icd_client_settings_t
-        settings; /**< Timeouts and retries. They and `sender.values` may be changed while no request is in progress. */
+        settings; /**< Times and retries. They and `sender.values` may be changed while no request is in progress. */
     icd_stream_sender_t sender;
     icd_stream_decoder_t decoder;
-    icd_stream_slot_t *slots;
+    icd_stream_slot_t *slots; /* the requests, in the order in which they were started, then free memory */
     size_t slot_count;
-    uint32_t tickets;
-    bool ready; /* initialized without an error */
+    size_t started;   /* number of requests */
+    uint32_t now;     /* time of the last call */
+    uint32_t sent_at; /* time of the last transmission */
+    bool in_gap;      /* less than the gap has passed since */
+    bool ready;       /* initialized without an error */
+    uint8_t late_count;
+    icd_stream_awaited_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
 } icd_stream_client_t;
 
 /**
@@ -1415,9 +1526,9 @@ typedef struct {
 ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t requests);
 
 /**
- * Initialize a client with the timeouts and values of the ICD. `slot_count` is the number of requests that can be in
- * progress at the same time. `sequences` has twice NODE_SEQUENCES elements; with fewer elements, some messages are not
- * counted. All three arrays must stay valid while the client is in use.
+ * Initialize a client with the settings and values of the ICD. `slot_count` is the number of requests that can be
+ * in progress or waiting at the same time. `sequences` has twice NODE_SEQUENCES elements; with fewer elements, some
+ * messages are not counted. All three arrays must stay valid while the client is in use.
  * Return ICD_ERROR_UNSUPPORTED if the ICD describes no framing, ICD_ERROR_LENGTH if `size` is less than
  * icd_stream_client_bytes(). After an error the client rejects all requests.
  */
@@ -1438,48 +1549,40 @@ ICDGEN_API icd_status_t icd_stream_client_init(
 ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline);
 
 /**
- * Start a request. The data are copied. `now` is in milliseconds. A request without a reply is reported at once as
- * ICD_STREAM_DONE; `on_event` may be NULL to ignore this.
- * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if another request waits for the same
- * reply or no slot is free, ICD_ERROR_LENGTH if the data have the wrong length, ICD_ERROR_RANGE if a header or trailer
- * value does not fit into its field, or ICD_ERROR_UNSUPPORTED if no telecommand without parameters requests this
- * telemetry or the client is not initialized. After an error the client is unchanged.
+ * Start a request, which icd_stream_client_output() sends. The data are copied. `now` is in milliseconds.
+ * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if no slot is free, ICD_ERROR_LENGTH if
+ * the data have the wrong length, ICD_ERROR_RANGE if a header or trailer value does not fit into its field, or
+ * ICD_ERROR_UNSUPPORTED if no telecommand without parameters requests this telemetry or the client is not initialized.
+ * After an error the client is unchanged.
  */
-ICDGEN_API icd_status_t icd_stream_client_start(
-    icd_stream_client_t *client,
-    uint32_t now,
-    const icd_stream_request_t *request,
-    icd_stream_event_fn *on_event,
-    void *context);
+ICDGEN_API icd_status_t
+icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request);
 
 /** Request telemetry by sending the telecommand that it replies to. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id);
 
-/** Send a telecommand. The ICD decides which reply it has. Errors: see icd_stream_client_start(). */
+/** Send a telecommand. The ICD decides which responses it has. Errors: see icd_stream_client_start(). */
 ICDGEN_API icd_status_t icd_stream_client_send(
-    icd_stream_client_t *client,
-    uint32_t now,
-    uint32_t id,
-    const uint8_t *data,
-    size_t length,
-    bool repeat,
-    icd_stream_event_fn *on_event,
-    void *context);
+    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, bool repeat);
 
-/** Send a telecommand and wait for telemetry `reply`, regardless of the ICD. Errors: see icd_stream_client_start(). */
+/**
+ * Send a telecommand and wait for telemetry `reply`, whichever reply the ICD specifies. Errors: see
+ * icd_stream_client_start().
+ */
 ICDGEN_API icd_status_t icd_stream_client_ask(
     icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply);
 
 /**
- * Write the next message to send into the buffer. Return false if there is none or the buffer is too small;
- * NODE_LINE_BYTES are always enough.
+ * Write the next message to send into the buffer. Its time-outs count from the `now` of the previous call of another
+ * function. Return false if there is none or the buffer is too small; NODE_LINE_BYTES are always enough. Call it until
+ * it returns false, after each call of another function.
  */
 ICDGEN_API bool icd_stream_client_output(
     icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);
 
 /**
  * Pass received bytes to the client: a piece of the stream of any size, or one packet. Unsolicited telemetry is
- * reported as ICD_STREAM_MESSAGE. `now` is in milliseconds.
+ * reported as ICD_STREAM_MESSAGE. `now` is in milliseconds. The callback may start and cancel requests.
  */
 ICDGEN_API void icd_stream_client_received(
     icd_stream_client_t *client,
@@ -1490,15 +1593,13 @@ ICDGEN_API void icd_stream_client_received(
     void *context);
 
 /**
- * Process timeouts: send again or end the request whose time is up. Call at the time of the deadline function at the
+ * Process time-outs: send again or end the requests whose time is up. Call at the time of the deadline function at the
  * latest; calling more often is harmless. `now` is the current time in milliseconds.
  */
 ICDGEN_API void icd_stream_client_tick(
     icd_stream_client_t *client, uint32_t now, icd_stream_event_fn *on_event, void *context);
 
-/**
- * Cancel all requests without events, and drop their remaining output. A late reply is reported as ICD_STREAM_MESSAGE.
- */
+/** Cancel all requests without events, and drop their remaining output. A response is reported as ICD_STREAM_LATE. */
 ICDGEN_API void icd_stream_client_cancel(icd_stream_client_t *client);
 
 /** Cancel only the requests of this message. */
@@ -1506,7 +1607,7 @@ ICDGEN_API void icd_stream_client_cancel_request(icd_stream_client_t *client, ic
 
 /**
  * Return whether the event contains telemetry `id` of `node`, or of a node that includes `node`, unsolicited or as a
- * reply.
+ * response.
  */
 ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *node, uint32_t id);
 

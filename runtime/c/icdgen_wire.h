@@ -16,6 +16,9 @@
  * ICDGEN_NO_TABLES  Compute CRCs without lookup tables: slower, but saves up to 512 bytes per CRC.
  * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
+ * ICDGEN_MOST_AWAITED
+ *                   Clients of framed links: largest number of requests whose responses are awaited or may still arrive
+ *                   late, 8 unless it is defined. Each takes 32 bytes of the client.
  * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
  *                   defined and those that the wire layer itself needs.
  */

@@ -37,6 +37,7 @@ def run(folder, text, *icds):
         )
         done = subprocess.run([program], capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
 
 
 DOCUMENTED = r"""
@@ -87,6 +88,170 @@ def test_the_documented_client_asks_sends_and_reads_what_comes(tmp_path):
     assert len(in_event) == 1 and len(in_main) > 7
     program = DOCUMENTED % (in_event[0], "\n    ".join(in_main))
     run(tmp_path, program, EXAMPLES / "ubx.yaml")
+
+
+WHEEL = r"""
+#include "wheel.h"
+#include <assert.h>
+#include <stdio.h>
+
+static void uart_write(const uint8_t *bytes, size_t count)
+{
+    printf("> ");
+    for (size_t i = 3; i + 2u < count; ++i) {
+        printf("%%02x", (unsigned)bytes[i]);
+    }
+    printf("\n");
+}
+
+%s
+
+static wheel_client_t wheel;
+
+static void responds(uint32_t now, uint32_t id, const char *data, size_t length)
+{
+    uint8_t line[WHEEL_LINE_BYTES];
+    size_t count = 0;
+    assert(icd_stream_encode(
+        wheel_link(), ICD_TELEMETRY, id, (const uint8_t *)data, length, NULL, line, sizeof line, &count) == ICD_OK);
+    step(&wheel, now, line, count);
+}
+
+int main(void)
+{
+    static uint8_t buffer[WHEEL_LONGEST + 2u * WHEEL_REQUEST_BYTES];
+    static icd_stream_slot_t slots[2];
+    wheel_set_speed_t speed;
+    uint32_t deadline = 0;
+    assert(wheel_client_init(&wheel, slots, 2, buffer, sizeof buffer) == ICD_OK);
+    wheel_set_speed_init(&speed);
+    speed.speed = 0x010203;
+    assert(wheel_send_set_speed(&wheel, 0, &speed) == ICD_OK && wheel_request_events(&wheel, 0) == ICD_OK);
+    step(&wheel, 0, NULL, 0);
+    responds(10, WHEEL_NAK_ID, "\x02\x04", 2);
+    responds(20, WHEEL_EVENTS_ID, "\x00\x07", 2);
+    assert(wheel_send_save(&wheel, 30) == ICD_OK && wheel_send_set_speed(&wheel, 30, &speed) == ICD_OK);
+    step(&wheel, 30, NULL, 0);
+    responds(40, WHEEL_BUSY_ID, "\x05", 1);
+    while (icd_stream_client_deadline(&wheel.client, &deadline)) {
+        step(&wheel, deadline, NULL, 0);
+        if (deadline == 140) {
+            responds(150, WHEEL_ACK_ID, "\x05", 1);
+        }
+    }
+    return 0;
+}
+"""
+OUTCOMES = [
+    "> 02010203", "refused: set the mode first", "> 04", "7 events", "> 05", "> 05", "> 02010203",
+    "no response, 1 attempts",
+]  # fmt: skip
+
+
+def test_the_documented_program_reports_how_each_command_of_the_wheel_ends(tmp_path):
+    lines = "\n".join(shown("static void on_event(void *context"))
+    output = run(tmp_path, WHEEL % lines, EXAMPLES / "wheel.yaml")
+    assert output.splitlines() == OUTCOMES
+
+
+ARM = r"""
+#include "arm.h"
+#include <assert.h>
+
+static arm_client_t arm;
+static icd_stream_slot_t slots[3];
+static uint8_t buffer[ARM_LONGEST + 3u * ARM_REQUEST_BYTES];
+static char seen[200];
+
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    arm_position_t position;
+    arm_command_result_t result;
+    arm_detail_t detail = 0;
+    (void)context;
+    strcat(seen, event->kind == ICD_STREAM_REPLY ? "reply" : event->kind == ICD_STREAM_DONE ? "done"
+        : event->kind == ICD_STREAM_REFUSED ? "refused" : event->kind == ICD_STREAM_TIMEOUT ? "timeout"
+        : event->kind == ICD_STREAM_LATE ? "late" : event->kind == ICD_STREAM_STRAY ? "stray" : "?");
+    if (arm_receive_position(&position, event) == ICD_OK) {
+        strcat(seen, position.angle == 0x0302 ? " position" : "?");
+    }
+    if (arm_receive_command_result(&result, event) == ICD_OK) {
+        strcat(seen, result.number == event->data[3] ? " result" : "?");
+    }
+    if (arm_refusal(event, &detail)) {
+        assert(event->kind == ICD_STREAM_REFUSED && detail == ARM_DETAIL_BLOCKED);
+        strcat(seen, " blocked");
+    }
+    strcat(seen, "; ");
+    if (event->kind == ICD_STREAM_REFUSED) { /* a callback may cancel and start requests */
+        arm_move_joint_t move;
+        arm_move_joint_init(&move);
+        icd_stream_client_cancel(&arm.client);
+        assert(arm_send_move_joint(&arm, 70, &move) == ICD_OK);
+    }
+}
+
+static bool is_sent(uint32_t id)
+{
+    uint8_t line[ARM_LINE_BYTES];
+    size_t count = 0;
+    const bool is_output = icd_stream_client_output(&arm.client, line, sizeof line, &count);
+    return is_output && (((uint32_t)line[1] << 8) | line[2]) == id;
+}
+
+static void responds(uint32_t now, uint32_t id, uint8_t first, uint8_t second, uint8_t third, uint8_t fourth)
+{
+    static uint8_t sequence = 0;
+    const uint8_t data[6] = {first, second, third, fourth, 0, 0};
+    const size_t length = id == ARM_POSITION_ID ? ARM_POSITION_LENGTH : ARM_COMMAND_RESULT_LENGTH;
+    icd_envelope_values_t values = icd_envelope_values(arm_link(), ICD_TELEMETRY);
+    uint8_t line[ARM_LINE_BYTES];
+    size_t count = 0;
+    values.of[ICD_ENVELOPE_SEQUENCE] = sequence++;
+    assert(icd_stream_encode(arm_link(), ICD_TELEMETRY, id, data, length, &values, line, sizeof line, &count) == ICD_OK);
+    icd_stream_client_received(&arm.client, now, line, count, on_event, NULL);
+}
+
+int main(void)
+{
+    const uint32_t long_after = UINT32_C(0x90000000); /* the clock passed half its range while the client was idle */
+    arm_read_position_t read;
+    arm_move_joint_t move;
+    uint32_t deadline = 0;
+    arm_read_position_init(&read);
+    arm_move_joint_init(&move);
+    read.joint = 1;
+    assert(arm_client_init(&arm, slots, 3, buffer, sizeof buffer) == ICD_OK);
+    arm.client.settings.gap = 5;
+
+    assert(arm_send_read_position(&arm, 0, &read) == ICD_OK && is_sent(ARM_READ_POSITION_ID));
+    responds(10, ARM_POSITION_ID, 1, 2, 3, 0);
+    responds(20, ARM_COMMAND_RESULT_ID, 0, 0, 2, 5);
+    responds(30, ARM_COMMAND_RESULT_ID, 0, 0, 2, 5);
+    assert(strcmp(seen, "reply position; done result; stray result; ") == 0);
+
+    seen[0] = '\0';
+    assert(arm_send_read_position(&arm, 40, &read) == ICD_OK && is_sent(ARM_READ_POSITION_ID));
+    assert(arm_send_move_joint(&arm, 45, &move) == ICD_OK && is_sent(ARM_MOVE_JOINT_ID));
+    responds(60, ARM_COMMAND_RESULT_ID, 0xC3, 0x2B, 2, 5); /* failed, 700 */
+    assert(strcmp(seen, "refused result blocked; ") == 0);
+    assert(icd_stream_client_deadline(&arm.client, &deadline) && !is_sent(ARM_MOVE_JOINT_ID)); /* it may be late */
+    responds(80, ARM_COMMAND_RESULT_ID, 0, 0, 2, 1);
+    assert(strcmp(seen, "refused result blocked; late result; ") == 0 && is_sent(ARM_MOVE_JOINT_ID));
+
+    seen[0] = '\0';
+    while (icd_stream_client_deadline(&arm.client, &deadline)) {
+        icd_stream_client_tick(&arm.client, deadline, on_event, NULL);
+    }
+    assert(strcmp(seen, "timeout; ") == 0);
+    assert(arm_send_move_joint(&arm, long_after, &move) == ICD_OK && is_sent(ARM_MOVE_JOINT_ID));
+    return 0;
+}
+"""
+
+
+def test_responses_before_and_after_their_time_are_told_apart(tmp_path):
+    run(tmp_path, ARM, LINKS / "outcomes.yaml")
 
 
 SENDING = r"""
@@ -168,13 +333,14 @@ int main(void)
     datagram_points_init(&points);
     points.points_count = 2;
     assert(datagram_client_init(&client, slots, 2, buffer, sizeof buffer - 1u) == ICD_ERROR_LENGTH);
-    assert(datagram_send_order(&client, 0, &order, NULL, NULL) == ICD_ERROR_UNSUPPORTED);
+    assert(datagram_send_order(&client, 0, &order) == ICD_ERROR_UNSUPPORTED);
     assert(datagram_client_init(&client, slots, 2, buffer, sizeof buffer) == ICD_OK);
+    client.client.settings.in_flight = 2;
 
     assert(datagram_ask_order(&client, 0, &order, DATAGRAM_SHORT_LEVEL_ID) == ICD_OK);
-    assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEVEL_OF_ANOTHER_ID) == ICD_ERROR_BUSY);
     assert(datagram_ask_points(&client, 0, &points, DATAGRAM_ORDER_ID) == ICD_ERROR_UNKNOWN_ID);
     assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEAST_ID) == ICD_OK);
+    assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEAST_ID) == ICD_ERROR_BUSY);
     assert(icd_stream_client_output(&client.client, line, sizeof line, &count));
     assert(icd_stream_client_output(&client.client, line, sizeof line, &count));
     assert(count == 10u + 5u + 6u); /* two points are five bytes, around them header and trailer */
@@ -214,9 +380,9 @@ icd_status_t call(receiver_client_t *client, const receiver_set_message_rate_t *
 }
 """
 CALLS = {
-    "receiver_send_set_message_rate(client, 0, rate, NULL, NULL)": 0,
-    "datagram_send_order(client, 0, rate, NULL, NULL)": 1,
-    "receiver_send_poll_clock(&client->client, 0, NULL, NULL)": 1,
+    "receiver_send_set_message_rate(client, 0, rate)": 0,
+    "datagram_send_order(client, 0, rate)": 1,
+    "receiver_send_poll_clock(&client->client, 0)": 1,
     "receiver_request_end_of_epoch(client, 0)": 1,  # no telecommand asks for it
 }
 

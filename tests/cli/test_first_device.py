@@ -273,7 +273,7 @@ def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path
     assert checked.status == 0 and "no findings" in checked.out, checked.out
     pump = load([tmp_path / "icd" / "pump.yaml"]).icd.nodes[0]
     assert pump.protocol["stream"].keys() == origin.protocol["stream"].keys() - {
-        "replies"
+        "commands"
     }
     assert pump.protocol["stream"]["header"] == origin.protocol["stream"]["header"]
 

@@ -16,7 +16,7 @@ from typing import Any
 from icdgen import codec
 from icdgen.icd.frames import FrameField, frame_fields
 from icdgen.icd.model import Enum, Icd, Message, Node
-from icdgen.protocol import ops
+from icdgen.runtime_objects import reference
 from icdgen.vectors.make import ascii_text
 from icdgen.vectors.settings import bits_of
 from tests.conformance.icds import icd_of
@@ -47,8 +47,8 @@ class Reference:
             if not isinstance(request, dict):
                 raise Refusal("request")
             name = key(request, "op", str)
-            if name in ops.OPS:
-                return ops.answer(self.icd, request)
+            if name in reference.OPS:
+                return reference.answer(self.icd, request)
             op = self.ops.get(name)
             if op is None:
                 raise Refusal("request", detail="there is no such op")

@@ -10,9 +10,10 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import errors, facts, ops, scripts
+from icdgen.protocol import errors, facts, scripts
 from icdgen.protocol.client import TELEMETRY, Request
 from icdgen.protocol.request_keys import Refusal
+from icdgen.runtime_objects import reference
 
 FRAMING = (0x1F, 0x7F, 0xFF)
 CAN_BYTES = 8  # a bus carries no longer packet, and not every language can hold one
@@ -40,7 +41,7 @@ def requests(
             continue
         if request["op"] == "file" and not _frames_are_whole(icd, request):
             continue
-        answer = ops.answer(icd, request)
+        answer = reference.answer(icd, request)
         answer.pop("detail", None)  # words for people
         yield request, answer
         count -= 1

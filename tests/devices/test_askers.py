@@ -29,12 +29,12 @@ static void on_event(void *context, const icd_stream_event_t *event)
     if (event->kind == ICD_STREAM_TIMEOUT) {
         (void)printf("timeout %%lu\\n", id);
     }
-    if (event->kind == ICD_STREAM_DONE && !event->has_reply) {
-        (void)printf("done %%lu\\n", id);
+    if (event->kind == ICD_STREAM_SENT) {
+        (void)printf("sent %%lu\\n", id);
     }
     if (receiver_receive_navigation_clock(&clock, event) == ICD_OK) {
         (void)printf(
-            "%%s %%lu %%ld\\n", event->kind == ICD_STREAM_DONE ? "done" : "unasked", id, (long)clock.clock_bias);
+            "%%s %%lu %%ld\\n", event->kind == ICD_STREAM_DONE ? "done" : "late", id, (long)clock.clock_bias);
     }
 }
 
@@ -75,6 +75,7 @@ int main(void)
         return 1;
     }
     if (receiver_request_navigation_clock(&receiver, 9000) != ICD_OK ||
+        receiver_request_navigation_clock(&receiver, 9000) != ICD_OK ||
         receiver_request_navigation_clock(&receiver, 9000) != ICD_ERROR_BUSY ||
         icd_stream_client_request(&receiver.client, 9000, RECEIVER_END_OF_EPOCH_ID) != ICD_ERROR_UNSUPPORTED) {
         return 2;
@@ -82,6 +83,7 @@ int main(void)
     send(&receiver.client);
     while (icd_stream_client_deadline(&receiver.client, &deadline)) {
         icd_stream_client_tick(&receiver.client, deadline, on_event, NULL);
+        send(&receiver.client);
     }
     return 0;
 }
@@ -90,16 +92,22 @@ C_BEGIN = """
     const uint32_t now = 10;
     receiver_set_message_rate_t rate;
     size_t count = 0;
-    void *const context = NULL;
     receiver_set_message_rate_init(&rate);
 """
 EXPECTED = [
-    "done 1537", "sent 0122 8", "sent 0601 11", "sent 0122 8", "done 290 5", "unasked 290 6", "sent 0122 8", "timeout 290",
-]  # fmt: skip
+    "sent 0122 8",
+    "sent 0601 11",
+    "sent 1537",
+    "sent 0122 8",
+    "done 290 5",
+    "late 290 6",
+]
+# Two requests for the same telemetry: the second is sent when the first has ended.
+EXPECTED += 2 * [*(4 * ["sent 0122 8"]), "timeout 290"]  # three retries
 
 RUST = """
 use icd::receiver::{self, NavigationClock, SetMessageRate};
-use icd::wire::{stream, Direction, Error, Started};
+use icd::wire::{stream, Direction, Error};
 
 fn answer(bias: i32) -> Vec<u8> {
     let link = &receiver::LINK;
@@ -114,8 +122,9 @@ fn answer(bias: i32) -> Vec<u8> {
 fn told(event: stream::NodeEvent<'_, receiver::Node>) {
     match (*event, event.message::<NavigationClock>()) {
         (stream::Event::Timeout { id, .. }, _) => println!("timeout {id}"),
+        (stream::Event::Sent { id, .. }, _) => println!("sent {id}"),
         (stream::Event::Done { id, .. }, Some(clock)) => println!("done {id} {}", clock.clock_bias),
-        (stream::Event::Message { id, .. }, Some(clock)) => println!("unasked {id} {}", clock.clock_bias),
+        (stream::Event::Late { id, .. }, Some(clock)) => println!("late {id} {}", clock.clock_bias),
         _ => println!("something else"),
     }
 }
@@ -123,27 +132,27 @@ fn told(event: stream::NodeEvent<'_, receiver::Node>) {
 fn main() -> Result<(), Error> {
     let (now, mut line) = (10, [0; receiver::LONGEST]);
     %s
-    if client.send(now, &SetMessageRate { rate: 1, ..SetMessageRate::default() })? == Started::Done {
-        println!("done 1537");
+    macro_rules! output {
+        () => {
+            while let Some(bytes) = client.output(&mut line)? {
+                println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
+            }
+        };
     }
-    while let Some(bytes) = client.output(&mut line)? {
-        println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
-    }
+    output!();
     client.tick(now + receiver::LINK.client.reply_timeout_ms, told);
-    while let Some(bytes) = client.output(&mut line)? {
-        println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
-    }
+    output!();
     client.received(2000, &answer(5), told);
     client.received(2001, &answer(6), told);
     assert_eq!(client.deadline(), None);
     client.request::<NavigationClock>(9000)?;
+    client.request::<NavigationClock>(9000)?;
     assert_eq!(client.request::<NavigationClock>(9000), Err(Error::Busy));
     assert_eq!(client.request::<receiver::EndOfEpoch>(9000), Err(Error::Unsupported));
-    while let Some(bytes) = client.output(&mut line)? {
-        println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
-    }
+    output!();
     while let Some(deadline) = client.deadline() {
         client.tick(deadline, told);
+        output!();
     }
     Ok(())
 }
@@ -175,7 +184,7 @@ def test_c_asks_and_is_answered(tmp_path):
 def test_rust_asks_and_is_answered(tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
     (tmp_path / "ask.rs").write_text(
-        RUST % shown("rust", "stream::Client::<", "client.request::<")
+        RUST % shown("rust", "let mut client", "client.send(")
     )
     program = tools.program(
         tmp_path / "ask.rs", tools.library(crate, "0"), tmp_path / "ask"

@@ -161,6 +161,8 @@ OF_MESSAGE = {
     "page": 4,
     "summary": "Another sentence.",
     "acknowledge": False,
+    "response": "none",
+    "repeat": True,
     "hazard": "It burns.",
     "contains": (Part("Status", 0),),
     "reserved": 2,

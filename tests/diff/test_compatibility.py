@@ -191,7 +191,7 @@ protocol:
       - {at: 8, bits: 16, role: length}
       - {at: 24, bits: 8, role: id}
     trailer: [{at: 0, bits: 8, role: checksum, checksum: sum}]
-    replies: {Set Mode: Status}
+    commands: {ack: Status}
   checksums:
     sum: {kind: sum, width: 8, init: 0, covers: {from: length, to: data}}
 """
@@ -214,7 +214,7 @@ protocol:
             "yes",
             "yes",
         ),
-        (("    replies: {Set Mode: Status}\n", ""), "yes", "yes"),
+        (("    commands: {ack: Status}\n", ""), "yes", "yes"),
     ],
 )
 def test_nobody_finds_messages_in_another_envelope(

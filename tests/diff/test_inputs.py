@@ -14,7 +14,7 @@ import pytest
 from icdgen.diff.compare import compare
 from icdgen.diff.inputs import shown
 from tests.conformance.icds import icd_of
-from tests.conftest import DEMO
+from tests.conftest import DEMO, ROOT
 from tests.diff.conftest import LATER
 
 
@@ -208,6 +208,18 @@ class TestShown:
         side = shown.from_file(tmp_path / "shown.json")
         assert compare(icd_of(), side.icd).changes == []
         assert compare(side.icd, icd_of()).changes == []
+
+    def test_the_responses_to_telecommands_are_the_same_when_shown(
+        self, icdgen, tmp_path
+    ):
+        wheel = ROOT / "examples" / "links" / "wheel.yaml"
+        text = icdgen("show", "--format", "json", "--icd", wheel).out
+        file = tmp_path / "shown.json"
+        file.write_text(text)
+        assert compare(icd_of([wheel]), shown.from_file(file).icd).changes == []
+        file.write_text(text.replace('"repeat": true', '"hazard": "Moves."'))
+        changes = compare(icd_of([wheel]), shown.from_file(file).icd).changes
+        assert {change.code for change in changes} == {"DIF217", "DIF401"}
 
     def test_places_are_those_in_the_output(self, icdgen, releases, tmp_path):
         (tmp_path / "old.json").write_text(

@@ -21,8 +21,9 @@ import yaml
 from icdgen.icd import schema
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.loading import load
-from icdgen.protocol import facts, ops
+from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects import reference
 from icdgen.vectors import protocol as vectors
 from tests.conftest import ROOT
 
@@ -69,7 +70,9 @@ def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:
         else form
     )
     kinds = form.get("type", ())
-    if kinds == "object":
+    # A response is a mapping, or the name of its message.
+    is_mapping = kinds == "object" or "message" in form.get("properties", ())
+    if is_mapping:
         for key, one in form.get("properties", {}).items():
             if key not in BESIDES:
                 yield from _keys(one, (*path, key))
@@ -176,6 +179,9 @@ class Source:
         if isinstance(value, list):
             return self._other_lists(value, form)
         if isinstance(value, dict):
+            if all(isinstance(one, str) for one in value.values()):
+                (first, repeated), *_ = value.items()
+                return [{first: repeated}, {first: "another"}]
             return [{name: number + 1 for name, number in value.items()}]
         return self._other_texts(key, place, value)
 
@@ -291,7 +297,7 @@ def cases(icd: Icd, known: Facts) -> Iterator[str]:
     """The vectors of a node, one by one."""
     for _, request in vectors._requests(known):
         asked = {"op": request["op"], "node": known.node.name, **request}
-        yield json.dumps([asked, ops.answer(icd, asked)])
+        yield json.dumps([asked, reference.answer(icd, asked)])
 
 
 def outcomes(source: Source, key: Key, whole: bool) -> Iterator[tuple[Path_, Any, str]]:

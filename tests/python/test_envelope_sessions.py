@@ -20,13 +20,14 @@ from tests.python import packages
 STATUS = {"name": "Navigation Status", "id": 0x0103, "kind": "telemetry", "length": 1}
 FIELD = {"at": 0, "bits": 8, "name": "Fix", "type": "uint"}
 POLL = {"name": "Poll Status", "id": 0x0103, "kind": "telecommand", "length": 0}
+POLL["response"] = {"reply": "Navigation Status"}
 
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     icd = yaml.safe_load((ROOT / "examples" / "links" / "ubx.yaml").read_text("utf-8"))
     icd["messages"] += [{**STATUS, "fields": [FIELD]}, POLL]
-    icd["protocol"]["stream"]["replies"]["Poll Status"] = "Navigation Status"
+    icd["protocol"]["client"] = {"in_flight": 3}
     folder = tmp_path_factory.mktemp("several")
     (folder / "receiver.yaml").write_text(yaml.safe_dump(icd))
     return packages.write(

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from icdgen.protocol import can, crc, ops, uart
+from icdgen.protocol import can, crc, uart
 from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
+from icdgen.runtime_objects import reference
 from tests.python import packages
 from tests.python.wire import NOISE, known, link
 
@@ -128,7 +129,7 @@ def scripts(draw) -> dict:
 @settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
 def test_whatever_happens_it_does_what_the_reference_does(shipped, request):
     made = shipped.answer(json.dumps(request).encode())
-    assert made == ops.answer(packages.shipped(), request)
+    assert made == reference.answer(packages.shipped(), request)
 
 
 def acknowledge(like, wire, id: int, code: int = 0) -> bytes:

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from icdgen.protocol import ops
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects import reference
 from icdgen.vectors.wire import node as nodes
 from icdgen.vectors.wire.procedures import record
 from tests.python import packages
@@ -61,7 +61,7 @@ def node_of(request: dict, seed: int, loss: float) -> nodes.FileNode:
 def compare(shipped, request: dict) -> dict:
     """The answer of the package, which must be that of the reference."""
     made = shipped.answer(json.dumps(request).encode())
-    assert made == ops.answer(packages.shipped(), request)
+    assert made == reference.answer(packages.shipped(), request)
     return made
 
 

@@ -13,6 +13,11 @@ const SETTINGS: Settings = Settings {
     retries: 9,
     poll_interval_ms: 5,
     poll_timeout_ms: 2000,
+    late_ms: 150,
+    busy_pause_ms: 1,
+    gap_ms: 0,
+    in_flight: 1,
+    progress_for_ms: 1,
 };
 /// How often something is tried that fails, for the acknowledge may have been lost or spoilt.
 pub const TRIES: u32 = 10;

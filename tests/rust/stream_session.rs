@@ -86,13 +86,14 @@ fn main() {
     line.0.borrow_mut().lost = 2;
     assert_eq!(session.get::<NavigationClock>().unwrap().clock_bias, 4);
     assert_eq!(session.ask::<NavigationClock, _>(&PollClock {}).unwrap().clock_bias, 5);
-    session.send(&SetMessageRate { rate: 1, ..SetMessageRate::default() }).unwrap();
+    let rate = SetMessageRate { rate: 1, ..SetMessageRate::default() };
+    assert_eq!(session.send(&rate).unwrap(), stream::Outcome::Sent);
     assert_eq!(line.0.borrow().written.last(), Some(&SetMessageRate::ID.into()));
 
     line.0.borrow_mut().says(-9);
     assert_eq!(session.message::<NavigationClock>(1000).unwrap().map(|clock| clock.clock_bias), Some(-9));
     assert!(session.message::<NavigationClock>(5).unwrap().is_none());
-    assert_eq!(*told.borrow(), [Some(1), Some(4), Some(5), Some(-9)]);
+    assert_eq!(*told.borrow(), [Some(1), Some(4), Some(5), None, Some(-9)]); // None: that the rate was sent
 
     line.0.borrow_mut().lost = 100;
     let failure = session.get::<NavigationClock>().unwrap_err();

@@ -7,6 +7,7 @@ from __future__ import annotations
 import pytest
 
 from tests.conformance.icds import LINKS
+from tests.conftest import ROOT
 from tests.rust import harness
 from tests.rust.tools import Toolchain, run, toolchains
 
@@ -40,6 +41,125 @@ fn main() {
     assert_eq!(seen(&[7]), (Some(7), None, false));
 }
 """
+
+OUTCOMES = """
+use icd::wheel::{self, enums::NakReason, Ack, Busy, Events, Nak, Node, Reset, SetMode, SetSpeed, LINK};
+use icd::wire::{stream, Direction, Settings, TelemetryOf};
+use stream::Event;
+
+type Client = stream::Client<Node, { wheel::LONGEST }, { wheel::SEQUENCES }, 2>;
+
+fn encoded<M: TelemetryOf<Node>>(message: M) -> Vec<u8> {
+    let (data, mut line) = (message.to_bytes().unwrap(), [0; 100]);
+    let values = stream::Values::new(&LINK, Direction::Telemetry);
+    let size = stream::encode(&LINK, Direction::Telemetry, M::TELEMETRY_ID, data.as_ref(), &values, &mut line);
+    line[..size.unwrap()].to_vec()
+}
+
+fn sent(client: &mut Client) -> Option<u8> {
+    let mut line = [0; wheel::LONGEST];
+    client.output(&mut line).unwrap().map(|line| line[3])
+}
+
+/// What is to be known of an event: its kind, and what is read from it.
+fn told(event: &stream::NodeEvent<'_, Node>) -> String {
+    let command = event.message::<Ack>().map(|ack| ack.command);
+    let command = command.or_else(|| event.message::<Nak>().map(|nak| nak.command));
+    let command = command.or_else(|| event.message::<Busy>().map(|busy| busy.command));
+    match **event {
+        Event::Refused { id, attempts: 1, code: Some(4), .. } => {
+            assert_eq!(event.reason(), Some(NakReason::WrongMode));
+            format!("refused {id} {command:?}")
+        }
+        Event::Done { id, attempts, .. } => format!("done {id} {attempts} {command:?}"),
+        Event::Busy { id, attempts, code: None, .. } => format!("busy {id} {attempts} {command:?}"),
+        Event::Timeout { id, attempts, .. } => format!("timeout {id} {attempts} {command:?}"),
+        Event::Sent { id, attempts, .. } => format!("sent {id} {attempts} {command:?}"),
+        Event::Progress { id, .. } => format!("progress {id} {command:?}"),
+        Event::Late { id, .. } => format!("late {id} {command:?}"),
+        Event::Stray { id, .. } => format!("stray {id} {command:?}"),
+        Event::Reply { id, .. } => format!("reply {id} {:?}", event.message::<Events>().map(|events| events.count)),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn come<M: TelemetryOf<Node>>(client: &mut Client, now: u32, message: M) -> String {
+    let mut found = String::new();
+    client.received(now, &encoded(message), |event| found = told(&event));
+    found
+}
+
+fn pass(client: &mut Client, now: u32) -> String {
+    let mut found = String::new();
+    client.tick(now, |event| found = told(&event));
+    found
+}
+
+fn main() {
+    let settings = Settings { gap_ms: 0, ..LINK.client };
+    let mut client = Client::new(&LINK).unwrap().with_settings(settings);
+    let nak = |command| Nak { command, reason: NakReason::WrongMode.into() };
+    let speed = SetSpeed::default();
+
+    // One at a time: the second is sent when the first has ended.
+    client.send(0, &speed).unwrap();
+    client.send(0, &SetMode::default()).unwrap();
+    assert_eq!(client.send(0, &speed), Err(icd::wire::Error::Busy));
+    assert_eq!((sent(&mut client), sent(&mut client)), (Some(2), None));
+    assert_eq!(come(&mut client, 1, Ack { command: 1 }), "stray 6 Some(1)");
+    assert_eq!(come(&mut client, 2, nak(2)), "refused 2 Some(2)");
+    assert_eq!(sent(&mut client), Some(1));
+    assert_eq!(come(&mut client, 3, Busy { command: 1 }), "progress 1 Some(1)");
+    assert_eq!((client.deadline(), pass(&mut client, 103).as_str(), sent(&mut client)), (Some(103), "", Some(1)));
+    assert_eq!(come(&mut client, 104, Ack { command: 1 }), "done 1 2 Some(1)");
+    assert_eq!(client.deadline(), None);
+
+    // A request like one that may still be answered waits.
+    client.send(1000, &speed).unwrap();
+    assert_eq!(sent(&mut client), Some(2));
+    assert_eq!(pass(&mut client, 1200), "timeout 2 1 None");
+    client.send(1200, &speed).unwrap();
+    assert_eq!((sent(&mut client), client.deadline()), (None, Some(1400)));
+    assert_eq!(come(&mut client, 1300, nak(2)), "late 21 Some(2)");
+    assert_eq!(sent(&mut client), Some(2));
+    assert_eq!(come(&mut client, 1301, Ack { command: 2 }), "done 2 1 Some(2)");
+
+    // The reply may come before the acknowledge.
+    client.ask::<Events, _>(2000, &speed).unwrap();
+    assert_eq!(sent(&mut client), Some(2));
+    assert_eq!(come(&mut client, 2001, Events { count: 7 }), "reply 2 Some(7)");
+    assert_eq!(come(&mut client, 2002, Ack { command: 2 }), "done 2 1 Some(2)");
+
+    client.send(3000, &Reset {}).unwrap();
+    assert_eq!(sent(&mut client), Some(0x7f));
+    assert_eq!((client.deadline(), pass(&mut client, 3000).as_str()), (Some(3000), "sent 127 1 None"));
+
+    for attempt in 0..3 {
+        if attempt == 0 {
+            client.send(4000, &speed).unwrap();
+        }
+        assert_eq!(sent(&mut client), Some(2));
+        let told = come(&mut client, 4000 + 100 * attempt, Busy { command: 2 });
+        assert_eq!(told, if attempt < 2 { "progress 2 Some(2)" } else { "busy 2 3 Some(2)" });
+        assert_eq!(pass(&mut client, 4100 + 100 * attempt), "");
+    }
+    assert_eq!((sent(&mut client), client.deadline()), (None, None));
+}
+"""
+
+
+@pytest.mark.parametrize("toolchain", list(toolchains()))
+def test_each_outcome_is_an_event_with_its_response(toolchain, tmp_path):
+    wheel = ROOT / "examples" / "links" / "wheel.yaml"
+    crate = harness.generate(harness.read(wheel), tmp_path)
+    (tmp_path / "user.rs").write_text(OUTCOMES)
+    run(
+        Toolchain(toolchain).program(
+            tmp_path / "user.rs",
+            Toolchain(toolchain).library(crate, "0"),
+            tmp_path / "user",
+        )
+    )
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.conftest import ROOT
 from tests.icd import hostile_words
 from tests.rust import harness, odd
 from tests.rust.harness import main_of_testee
@@ -90,3 +91,12 @@ def test_the_tools_would_complain(toolchain, tmp_path):
     ):
         with pytest.raises(AssertionError):
             check()
+
+
+def test_a_crate_for_a_framed_link_is_tidy_too(toolchain, tmp_path):
+    wheel = ROOT / "examples" / "links" / "wheel.yaml"
+    crate = harness.generate(harness.read(wheel), tmp_path)
+    toolchain.formatted(crate)
+    options = ("--crate-type", "lib", "--crate-name", "icd", *STD)
+    toolchain.linted(crate, tmp_path, *options)
+    toolchain.documented(crate, tmp_path, *STD)

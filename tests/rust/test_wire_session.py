@@ -4,11 +4,13 @@ of other nodes, which do not compile.
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from tests import documents
 from tests.conftest import ROOT
 from tests.rust import harness
 from tests.rust.tools import STD, Toolchain, run, toolchains
@@ -52,6 +54,53 @@ def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(
     run(
         tools.program(
             PROGRAM.with_name("stream_session.rs"),
+            tools.library(crate, "0", *STD),
+            tmp_path / "program",
+        )
+    )
+
+
+DOCUMENTED = """\
+use icd::wheel::enums::{Mode, NakReason};
+use icd::wheel::{self, SetMode};
+use icd::wire::{stream, Failure};
+use std::io::{Read, Write};
+
+#[allow(dead_code)]
+fn set<P: Read + Write>(
+    session: &mut stream::Session<wheel::Node, P, { wheel::LONGEST }, { wheel::SEQUENCES }>,
+) -> Result<(), Failure> {
+%s
+    Ok(())
+}
+
+fn main() {}
+"""
+
+
+def test_the_documented_handling_of_a_reason_compiles(tmp_path):
+    text = documents.text("reference/wire-framing")
+    shown = re.search(r"```rust\n(match session\.send.*?)```", text, re.S)
+    tools = Toolchain("default")
+    crate = harness.generate(
+        harness.read(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
+    )
+    (tmp_path / "user.rs").write_text(DOCUMENTED % shown[1])
+    library = tools.library(crate, "0", *STD)
+    tools.program(tmp_path / "user.rs", library, tmp_path / "program")
+
+
+@pytest.mark.parametrize("name", list(toolchains()))
+def test_sessions_return_the_outcome_of_each_telecommand_with_its_reason(
+    name, tmp_path
+):
+    tools = Toolchain(name)
+    crate = harness.generate(
+        harness.read(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
+    )
+    run(
+        tools.program(
+            PROGRAM.with_name("outcome_session.rs"),
             tools.library(crate, "0", *STD),
             tmp_path / "program",
         )

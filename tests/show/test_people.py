@@ -166,3 +166,20 @@ def test_ids_of_several_bytes_are_shown_as_decode_shows_them():
     with pytest.raises(NotFound) as error:
         find_message(icd, "receiver", "Navigation Clock", "telecommand")
     assert error.value.help == "`Navigation Clock` is telemetry 01 22"
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "Set Mode",
+            "confirmed by Ack, refused by Nak, busy: Busy; may be sent again after a "
+            "time-out",
+        ),
+        ("Get Events", "answered with Events, refused by Nak, busy: Busy"),
+        ("Reset", "no response"),
+    ],
+)
+def test_the_responses_to_a_telecommand_on_a_framed_link(name, text):
+    icd = load([ROOT / "examples" / "links" / "wheel.yaml"]).icd
+    assert text in to_text(icd, ["wheel", name], None)

@@ -417,12 +417,12 @@ def test_what_cannot_be_is_said(options, text, tmp_path):
 )  # fmt: skip
 def test_a_wrong_script_is_refused_before_anything_runs(script, tmp_path):
     from icdgen.errors import UserError
-    from icdgen.sim import control
+    from icdgen.sim import run
 
     path = tmp_path / "script.yaml"
     path.write_text(script)
     with pytest.raises(UserError):
-        control.read(path, ICD, ICD.node("cubeacp"))
+        run.build(ICD, "cubeacp", run.Options(script=path))
 
 
 def test_monitor_and_send_from_the_outside():
@@ -482,3 +482,38 @@ def test_monitor_and_send_from_the_outside():
         "send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place
     )
     assert silent.returncode == 2 and "cannot connect" in silent.stderr
+
+
+@pytest.mark.parametrize(
+    ("fault", "event", "code"),
+    [
+        ("nak=1:Incorrect Length", "Refused", 2),
+        ("nak=1:2", "Refused", 2),
+        ("nack=1", "Refused", 3),
+        ("silence=1", "Timeout", None),
+        ("foreign=1", "Timeout", None),
+    ],
+)
+def test_the_response_to_a_telecommand_can_be_made_wrong(fault, event, code):
+    from icdgen_runtime.wire.client import Client, Request
+
+    from icdgen.sim import run
+
+    line, _ = run.build(ICD, "cubeacp", run.Options(faults=[fault]))
+    client = Client(line.computer.program.link, "uart")
+    client.start(0, Request("telecommand", 12, bytes(1)))
+    line.received(0, client.output())
+    data = b"".join(line.pieces(0))
+    events = client.received(0, data) if data else []
+    events += client.tick(10_000)
+    assert type(events[-1]).__name__ == event
+    assert getattr(events[-1], "code", None) == code
+
+
+@pytest.mark.parametrize("fault", ["nak=1:Overheated", "nak=1:0", "busy=1"])
+def test_a_response_that_the_link_does_not_have_is_no_fault(fault):
+    from icdgen.errors import UserError
+    from icdgen.sim import run
+
+    with pytest.raises(UserError):
+        run.build(ICD, "cubeacp", run.Options(faults=[fault]))

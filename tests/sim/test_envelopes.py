@@ -14,7 +14,7 @@ import pytest
 from icdgen_runtime._errors import RangeError
 from icdgen_runtime.wire.client import Request
 from icdgen_runtime.wire.errors import UnsupportedError
-from icdgen_runtime.wire.events import Arrived, Done, Gap, LineError, Timeout
+from icdgen_runtime.wire.events import Arrived, Done, Gap, LineError, Sent, Timeout
 from icdgen_runtime.wire.session import Session
 
 from icdgen.errors import UserError
@@ -26,7 +26,7 @@ from tests.conftest import ROOT
 from tests.sim.device import simulator
 
 FOLDER = ROOT / "examples" / "links"
-ICD = icd_of([FOLDER, LINKS])
+ICD = icd_of([FOLDER, LINKS / "packets.yaml"])
 EXAMPLES = ["receiver", "positioner", "autopilot", "payload", "logger", "probe"]
 POLL, CLOCK, EPOCH, RATE = 0x0122, 0x0122, 0x0161, 0x0601  # of the receiver
 
@@ -102,9 +102,7 @@ def test_a_telecommand_is_answered_with_what_the_icd_says():
     assert (
         session.get(session.client.link.TELEMETRY[CLOCK]).clock_bias == 77
     )  # which the telecommand asks for
-    assert session.start(Request("telecommand", RATE, bytes(3))) == Done(
-        RATE, 1
-    )  # sent, and nothing answers
+    assert session.start(Request("telecommand", RATE, bytes(3))) == Sent(RATE, 1)
     with pytest.raises(UnsupportedError, match="sent unasked"):
         session.start(Request("telemetry", EPOCH))
 
@@ -222,7 +220,7 @@ def test_monitor_and_send_from_the_outside(way):
         )
         assert (sent.returncode, sent.stdout) == (
             0,
-            "Set Message Rate: sent; the ICD names no reply to it\n",
+            "Set Message Rate: sent; the ICD describes no response to it\n",
         )
         shown = icdgen(
             "monitor",
@@ -364,4 +362,6 @@ def test_a_receiver_of_the_examples_is_simulated_watched_and_configured():
     assert (
         shown.returncode == 0 and "iTOW" in shown.stdout and "7" in shown.stdout
     ), shown.stderr
-    assert sent.returncode == 0 and "answered with ACK-ACK" in sent.stdout, sent.stderr
+    assert (
+        sent.returncode == 0 and "acknowledged with ACK-ACK" in sent.stdout
+    ), sent.stderr

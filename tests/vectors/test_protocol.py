@@ -13,7 +13,7 @@ import pytest
 
 import icdgen
 from icdgen.loading import load
-from icdgen.protocol import ops
+from icdgen.runtime_objects import reference
 from icdgen.vectors import protocol
 from tests.conformance import odd, wire
 from tests.conformance.icds import LINKS, icd_of
@@ -59,7 +59,7 @@ def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failur
     seen = Counter(
         (c["request"]["op"], c["answer"]["ok"]) for n in nodes for c in n["cases"]
     )
-    assert {op for op, ok in seen if ok} == set(ops.OPS)
+    assert {op for op, ok in seen if ok} == set(reference.OPS)
     assert {op for op, ok in seen if not ok} >= {
         "uart_encode", "can_split", "i2c_reply", "log_encode", "log_message_decode", "dos_time", "hole_map",
         "index_encode", "identify", "stream_encode",
@@ -153,7 +153,7 @@ def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_
     protocol.text(bare)
     for node in files["nodes"]:
         for case in node["cases"]:
-            answer = ops.answer(bare, {**case["request"], "node": "demo"})
+            answer = reference.answer(bare, {**case["request"], "node": "demo"})
             if case["request"]["op"] not in (
                 "i2c_request",
                 "i2c_reply",

@@ -15,12 +15,14 @@ from icdgen.link.options import open_session, session_options
 from icdgen.protocol import facts
 
 if TYPE_CHECKING:
-    from icdgen_runtime.wire.events import Refused, Timeout
+    from icdgen_runtime.wire.events import Outcome
 
     from icdgen.icd.model import Icd, Node
-    from icdgen.link.line_statistics import LineStatistics
     from icdgen.protocol.facts import Facts
     from icdgen.values.frame import Frame
+
+# Exit status of each outcome. 2 is wrong usage, as of all commands.
+_STATUSES = {"Done": 0, "Sent": 0, "Refused": 1, "Timeout": 3, "Busy": 4}
 
 
 @click.command(
@@ -46,18 +48,18 @@ def send(
     form: str,
     **options: Any,
 ) -> None:
-    """Send one telecommand and wait for its acknowledge or response.
+    """Send one telecommand and wait for its outcome.
 
     NODE can be omitted if there is only one. For a telecommand with a `hazard`, icdgen
     asks for confirmation; without a terminal, --yes is required. Exit status: 0
-    acknowledged (or sent, if it has no acknowledge), 1 rejected, no response or not
-    sent, 2 wrong usage.
+    acknowledged, or sent if nothing responds to it; 1 refused by the device, or not
+    sent; 2 wrong usage; 3 no response; 4 the device is busy.
     """
     from icdgen_runtime.wire.client import Request
-    from icdgen_runtime.wire.events import Done
 
     from icdgen import tables
     from icdgen.link.line_statistics import LineStatistics
+    from icdgen.link.outcomes import has_further_fields
     from icdgen.values.encode import encode
     from icdgen.values.find import find_frame
     from icdgen.values.text import to_text
@@ -77,39 +79,21 @@ def send(
         outcome = session.start(
             Request("telecommand", frame.message.telecommand_id, frame.data)
         )
-    ok = isinstance(outcome, Done)
-    reply = (
-        _reply(icd, node, protocol_facts, frame, statistics, outcome.data)
-        if isinstance(outcome, Done)
-        else None
-    )
+    response = _response(icd, node, outcome)
+    status = _STATUSES[type(outcome).__name__]
     if form == "json":
-        response = {
-            key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")
-        }
-        response["reply"] = reply.to_json() if reply else None
-        # JSON omits attributes that this kind of outcome does not have.
-        known_values = {
-            key: value for key, value in response.items() if value is not None
-        }
-        click.echo(
-            json.dumps(
-                {
-                    "message": frame.message.name,
-                    "event": type(outcome).__name__.lower(),
-                    **known_values,
-                }
-            )
-        )
-    elif isinstance(outcome, Done):
-        say(f"{_sent(frame)}: {_done(frame, protocol_facts, reply)}")
-        if reply:
-            say(to_text(reply, tables.width_of(sys.stdout)).rstrip())
+        click.echo(json.dumps(_report(frame, outcome, response)))
     else:
-        say(f"{_sent(frame)}: {_failed(icd, node, outcome)}", err=True)
+        text = _outcome_text(icd, node, protocol_facts, frame, outcome, response)
+        say(f"{_sent(frame)}: {text}", err=status != 0)
+        if response and has_further_fields(icd, node, frame.message, response.message):
+            say(
+                to_text(response, tables.width_of(sys.stdout)).rstrip(),
+                err=status != 0,
+            )
     if what := statistics.text():
         say(f"icdgen: {what}", err=True)
-    sys.exit(0 if ok else 1)
+    sys.exit(status)
 
 
 def _is_confirmed(frame: Frame) -> bool:
@@ -148,33 +132,63 @@ def _sent(frame: Frame) -> str:
     )
 
 
-def _reply(
+def _response(icd: Icd, node: Node, outcome: Outcome) -> Frame | None:
+    """Return the telemetry that completed or refused a telecommand on a framed link;
+    None without one.
+    """
+    from icdgen_runtime.wire.events import Done, Refused
+
+    from icdgen.values.frame import frame
+
+    if not isinstance(outcome, Done | Refused) or outcome.type is None:
+        return None
+    name = outcome.type.NAME
+    message = next(each for each in icd.messages_of(node) if each.name == name)
+    return frame(icd, node, message, outcome.data)
+
+
+def _report(frame: Frame, outcome: Outcome, response: Frame | None) -> dict[str, Any]:
+    """Return the outcome as JSON, without the keys that this kind of outcome does not
+    have.
+    """
+    report = {
+        "message": frame.message.name,
+        "event": type(outcome).__name__.lower(),
+        "reason": getattr(outcome, "reason", None),
+        "code": getattr(outcome, "code", None),
+        "attempts": outcome.attempts,
+        "response": response.to_json() if response else None,
+    }
+    return {key: value for key, value in report.items() if value is not None}
+
+
+def _outcome_text(
     icd: Icd,
     node: Node,
     protocol_facts: Facts,
-    sent: Frame,
-    statistics: LineStatistics,
-    data: bytes,
-) -> Frame | None:
-    """Return the telemetry that responds to the telecommand; None without a response."""
-    from icdgen.values.frame import frame
+    frame: Frame,
+    outcome: Outcome,
+    response: Frame | None,
+) -> str:
+    from icdgen_runtime.wire.events import Busy, Done, Refused, Timeout
 
-    rows = protocol_facts.stream.telecommands if protocol_facts.stream else ()
-    id = next(
-        (row.reply for row in rows if row.id == sent.message.telecommand_id), None
-    )
-    message = statistics.message_of(id, data) if id is not None else None
-    return frame(icd, node, message, data) if message else None
+    from icdgen.link.outcomes import attempts_text, failure_text
 
-
-def _done(frame: Frame, protocol_facts: Facts, reply: Frame | None) -> str:
+    if isinstance(outcome, Refused):
+        return failure_text(icd, node, outcome)
+    if isinstance(outcome, Busy):
+        attempts = attempts_text(outcome)
+        return f"{failure_text(icd, node, outcome)}{attempts}; it was not executed"
+    if isinstance(outcome, Timeout):
+        attempts = attempts_text(outcome)
+        return f"no answer{attempts}; whether it was executed is not known"
     message = frame.message
     if protocol_facts.stream:
-        return (
-            f"answered with {reply.message.name}"
-            if reply
-            else "sent; the ICD names no reply to it"
-        )
+        if not isinstance(outcome, Done):
+            return "sent; the ICD describes no response to it"
+        name = response.message.name if response else "an unknown message"
+        is_confirmed = outcome.reply in protocol_facts.stream.confirming
+        return f"{'acknowledged' if is_confirmed else 'answered'} with {name}"
     if message.acknowledge:
         return "acknowledged"
     if not message.expects_reset:
@@ -182,19 +196,3 @@ def _done(frame: Frame, protocol_facts: Facts, reply: Frame | None) -> str:
     if wrong := frame.wrong_constants:
         return f"sent; the device need not restart, for {wrong[0].field.name} {wrong[0].remarks[0]}"
     return "sent; the device restarts instead of acknowledging"
-
-
-def _failed(icd: Icd, node: Node, outcome: Refused | Timeout) -> str:
-    from icdgen_runtime.wire.events import Timeout
-
-    if isinstance(outcome, Timeout):
-        tries = outcome.attempts
-        return f"no answer{f' to {tries} attempts' if tries > 1 else ''}; whether it was executed is not known"
-    if outcome.code is None:
-        return "refused"
-    name = icd.protocol_of(node).get("errors", {}).get("enum")
-    enums = {e.name: e for n in (*icd.included(node), node) for e in n.enums}
-    member = enums[name].member_of(outcome.code) if name in enums else None
-    return (
-        f"refused: {member.name if member else 'unknown error'} (code {outcome.code})"
-    )

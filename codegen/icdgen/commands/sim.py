@@ -97,8 +97,8 @@ class _Sim(click.Command):
     "--fault",
     "faults",
     multiple=True,
-    metavar="KIND=SHARE[@WHAT]",
-    help="A fault, e.g. drop=10%@acknowledge.",
+    metavar="KIND=SHARE...",
+    help="A fault, KIND=SHARE[:DETAIL][@WHAT]: drop=10%@acknowledge, nak=1:REASON, busy=50%, late=1:300. Repeatable.",
 )
 @click.option(
     "--loss",
@@ -110,7 +110,7 @@ class _Sim(click.Command):
     type=click.IntRange(1),
     default=1500,
     show_default=True,
-    help="Largest delay of the fault late, in ms.",
+    help="Largest delay of the fault late without DETAIL, in ms.",
 )
 @click.option(
     "--seed",

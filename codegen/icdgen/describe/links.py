@@ -10,9 +10,11 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from icdgen.describe.description import FieldDescription
+from icdgen.describe.enums import EnumDescription
 from icdgen.describe.nodes import Description
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CONFIGURATION, Message
+from icdgen.icd.responses import declared_responses, reason_of
 from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact
@@ -150,6 +152,7 @@ class LinkDescription:
 
     def __init__(self, description: Description, facts: Facts) -> None:
         self.facts, self._describe = facts, description.message
+        self._description = description
 
     @property
     def telecommands(self) -> list[SentMessage]:
@@ -189,11 +192,34 @@ class LinkDescription:
 
     @property
     def requested_ids(self) -> frozenset[int]:
-        """Ids of telemetry in packets that an empty telecommand requests."""
+        """Ids of telemetry in packets that a telecommand without values requests."""
         rows = self.facts.stream.telecommands if self.facts.stream else ()
-        return frozenset(
-            row.reply for row in rows if row.least == 0 and row.reply is not None
-        )
+        return frozenset(row.requests for row in rows if row.requests is not None)
+
+    @cached_property
+    def reason_enum(self) -> EnumDescription | None:
+        """Enumeration of the reasons of refusals in packets.
+
+        None without reasons, or if they are not all of one enumeration.
+        """
+        icd, node = self._description.icd, self.facts.node
+        commands = icd.protocol_of(node).get("stream", {}).get("commands", {})
+        messages = self._description.node(node).all_messages
+        reasons = {
+            (row["message"], reason_of(row))
+            for message in messages
+            if message.model.telecommand_id is not None
+            for row in declared_responses(commands, message.model).values()
+            if reason_of(row) is not None
+        }
+        enums = [
+            field.enum
+            for message in messages
+            for field in message.fields
+            if (message.model.name, field.model.name) in reasons
+        ]
+        first = enums[0] if enums else None
+        return first if all(enum is first for enum in enums) else None
 
     @property
     def buses(self) -> list[str]:

@@ -26,6 +26,8 @@ AROUND = re.compile(
     r"protocol\.stream\.(delimited_by|header|trailer)\b.*|protocol\.checksums\b.*"
 )
 
+RESPONSES = re.compile(r"protocol\.stream\.commands\b.*")  # to telecommands
+
 
 class Fact(NamedTuple):
     """Fact that differs; ``old`` or ``new`` has the value None if it is not declared."""

@@ -236,6 +236,8 @@ class Builder:
             page=_printed(item).get("page"),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
+            response=item.get("response"),
+            repeat=item.get("repeat", False),
             hazard=item.get("hazard", ""),
             assumptions=tuple(
                 (key, str(why)) for key, why in (item.get("assumptions") or {}).items()

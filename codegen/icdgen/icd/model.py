@@ -87,6 +87,11 @@ class Message:
     summary: str = ""
     acknowledge: bool = True
     expects_reset: bool = False  # not acknowledged because the node restarts instead
+    # Responses on a framed link that differ from those of other telecommands: a mapping,
+    # "none", or None if there is no difference
+    response: object = None
+    # Whether a client may send it again although it may have been executed
+    repeat: bool = False
     hazard: str = ""  # irreversible effect of sending the message
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of each assumption
     contains: tuple[Part, ...] = ()

@@ -1,10 +1,12 @@
-"""Statistics of received telemetry: errors, missing and repeated messages."""
+"""Statistics of received telemetry: errors, missing and repeated messages, and responses
+without a request.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 
-from icdgen_runtime.wire.events import Event, Gap, LineError
+from icdgen_runtime.wire.events import Event, Gap, Late, LineError, Stray
 
 from icdgen import codec
 from icdgen.icd.model import Icd, Message, Node
@@ -18,12 +20,15 @@ FAULTS = {
 
 
 class LineStatistics:
-    """Counters of line errors, and missing and repeated messages."""
+    """Counters of line errors, of missing and repeated messages, and of responses
+    without a request.
+    """
 
     def __init__(self, icd: Icd, node: Node) -> None:
         self.icd, self.ids = icd, ids_of(icd, node).telemetry
         self.faults: Counter[str] = Counter()
         self.missing = self.repeated = 0
+        self.late = self.stray = 0  # responses without a request
 
     def event(self, event: Event) -> None:
         """Count an event."""
@@ -32,6 +37,10 @@ class LineStatistics:
         elif isinstance(event, Gap):
             self.missing += event.missing
             self.repeated += event.missing == 0
+        elif isinstance(event, Late):
+            self.late += 1
+        elif isinstance(event, Stray):
+            self.stray += 1
 
     def message_of(self, id: int, data: bytes) -> Message | None:
         """Return the message of this id that matches the data, or None."""
@@ -46,4 +55,6 @@ class LineStatistics:
         counts += (
             [f"messages that came again ({self.repeated})"] if self.repeated else []
         )
+        counts += [f"late responses ({self.late})"] if self.late else []
+        counts += [f"responses without a request ({self.stray})"] if self.stray else []
         return f"on the line: {', '.join(counts)}" if counts else ""

@@ -7,12 +7,22 @@ import time
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from icdgen_runtime.wire.events import Arrived, Done, LineError, Log, Malformed, Outcome
+from icdgen_runtime.wire.events import (
+    Arrived,
+    Busy,
+    Done,
+    LineError,
+    Log,
+    Malformed,
+    Outcome,
+    Refused,
+)
 
 from icdgen import tables
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
 from icdgen.link.line_statistics import FAULTS, LineStatistics
+from icdgen.link.outcomes import failure_text
 from icdgen.protocol import facts
 from icdgen.tables import Column
 from icdgen.values.find import find_message, find_node
@@ -51,6 +61,7 @@ class Monitor:
         self.awaited: set[str] = set()  # messages not yet received in this round
         self.silent: set[str] = set()  # messages not received in the last round
         self.faults: dict[int, str] = {}  # last error of a message, by id
+        self.failures: dict[str, str] = {}  # refusal of the last request, by message
 
     @property
     def listens(self) -> bool:
@@ -70,7 +81,7 @@ class Monitor:
     def requested(self) -> Iterator[Message]:
         """Return the messages that must be requested."""
         rows = self.facts.stream.telecommands if self.facts.stream else ()
-        asking = {row.reply for row in rows if row.least == 0}
+        asking = {row.requests for row in rows}
         yield from (
             message
             for message in self.messages
@@ -89,10 +100,14 @@ class Monitor:
 
     def record(self, message: Message, outcome: Outcome) -> None:
         """Record the outcome of a request."""
+        self.failures.pop(message.name, None)
         if isinstance(outcome, Done):
             self._received(message, outcome.id, outcome.data)
-        else:
-            self.silent.add(message.name)
+            return
+        self.silent.add(message.name)
+        if isinstance(outcome, Refused | Busy):
+            text = failure_text(self.icd, self.node, outcome)
+            self.failures[message.name] = text
 
     def _received(self, message: Message, id: int, data: bytes) -> None:
         self.awaited.discard(message.name)
@@ -108,6 +123,7 @@ class Monitor:
         """Record that there is no connection: all messages are silent."""
         self.silent = self.awaited = {message.name for message in self.messages}
         self.faults.clear()
+        self.failures.clear()
 
     def event(self, event: Event) -> None:
         """Record unsolicited telemetry and errors."""
@@ -156,7 +172,8 @@ class Monitor:
         for name in self._names():
             remarks = []
             if name in self.silent:
-                remarks.append(self.faults.get(ids.get(name) or 0, absence))
+                fault = self.faults.get(ids.get(name) or 0, absence)
+                remarks.append(self.failures.get(name, fault))
             if name not in self.last:
                 if remarks:
                     yield name, "", "", "", remarks[0]

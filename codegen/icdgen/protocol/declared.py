@@ -156,7 +156,7 @@ def octets(
     )
 
 
-def time(key: str, about: str, default: Default = REQUIRED) -> Any:
+def time(key: str, about: str, default: Default = REQUIRED, least: int = 1) -> Any:
     """Declare a time.
 
     The suffix of the key, ``_ms`` or ``_s``, is its unit in the ICD; the fact is in
@@ -166,7 +166,7 @@ def time(key: str, about: str, default: Default = REQUIRED) -> Any:
         return _declare(
             Kind.TIME, key, about, default, least=0, most=MOST_MS // 1000, factor=1000
         )
-    return _declare(Kind.TIME, key, about, default, least=1, most=MOST_MS)
+    return _declare(Kind.TIME, key, about, default, least=least, most=MOST_MS)
 
 
 def octet(key: str, about: str, default: Default = REQUIRED) -> Any:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from icdgen.frozen import dataclass
 from icdgen.icd import checksum
+from icdgen.icd.responses import REPLY
+from icdgen.protocol.exchange import Exchange
 from icdgen.protocol.sections import Crc
 
 LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = (
@@ -81,8 +83,13 @@ class StreamRow:
     # Whether trailing zeros of the data are not sent (at least one byte is)
     cuts_zeros: bool
     seed: int
-    reply: int | None  # id of the telemetry that responds to a telecommand
     name: str
+    # Of a telecommand: its responses; None if nothing responds to it
+    exchange: Exchange | None = None
+    repeats: bool = False  # whether it may be sent again after a time-out
+    # Id of the telemetry that it requests if it is sent without values, which is as
+    # `least` zero bytes
+    requests: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
@@ -98,6 +105,25 @@ class Stream:
     check: Check | None
     telecommands: tuple[StreamRow, ...]  # in ascending order of ids
     telemetry: tuple[StreamRow, ...]
+
+    @property
+    def exchanges(self) -> tuple[Exchange, ...]:
+        """Return the different exchanges of the telecommands, in order."""
+        exchanges = (row.exchange for row in self.telecommands if row.exchange)
+        return tuple(dict.fromkeys(exchanges))
+
+    @property
+    def confirming(self) -> tuple[int, ...]:
+        """Return the ids of the telemetry that only responds: what is neither a reply
+        nor sent unasked.
+        """
+        responses = {
+            (response.telemetry, response.verdict == REPLY)
+            for exchange in self.exchanges
+            for response in exchange.responses
+        }
+        replies = {id for id, is_reply in responses if is_reply}
+        return tuple(sorted({id for id, _ in responses} - replies))
 
     def rows(self, direction: str) -> tuple[StreamRow, ...]:
         """Return the messages of a direction."""

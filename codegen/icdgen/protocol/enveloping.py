@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from icdgen.icd.model import Node
+from icdgen.icd.places import raw_fields_in
 from icdgen.icd.variants import Ids, Variant
 from icdgen.protocol.envelope import (
     DATA,
@@ -18,6 +19,8 @@ from icdgen.protocol.envelope import (
     Stream,
     StreamRow,
 )
+from icdgen.protocol.exchange import Exchange
+from icdgen.protocol.responding import exchange_of
 from icdgen.protocol.sections import Crc
 
 Section = Mapping[str, Any]
@@ -70,33 +73,33 @@ def _number(value: Any, little: bool) -> int:
 def rows_of(
     ids: Mapping[int, tuple[Variant, ...]],
     seeds: Mapping[str, int],
-    replies: Mapping[str, int],
+    exchanges: Mapping[str, Exchange],
 ) -> tuple[StreamRow, ...]:
     """Return the messages of a direction.
 
-    Messages that share an id form one row; rule ICD174 ensures that they agree in the
-    packet format.
+    ``exchanges``: exchanges of telecommands, by name. Messages that share an id form
+    one row; rules ICD174 and ICD178 ensure that they agree in the packet format and in
+    their responses.
     """
     rows = []
     for id, variants in sorted(ids.items()):
         messages = [variant.message for variant in variants]
-        least, most = min(message.layout.shortest for message in messages), max(
-            message.length for message in messages
-        )
         first, name = messages[0], " or ".join(message.name for message in messages)
-        reply = next(
-            (replies[message.name] for message in messages if message.name in replies),
-            None,
+        exchange = next(
+            (exchanges[each.name] for each in messages if each.name in exchanges), None
         )
+        is_blank = not first.layout.shortest or not raw_fields_in(first.layout)
         rows.append(
             StreamRow(
                 id,
-                least,
-                most,
+                min(message.layout.shortest for message in messages),
+                max(message.length for message in messages),
                 bool(first.may_end_early),
                 seeds.get(first.name, 0),
-                reply,
                 name,
+                exchange,
+                all(message.repeat for message in messages),
+                exchange.reply if exchange and is_blank else None,
             )
         )
     return tuple(rows)
@@ -156,15 +159,17 @@ def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Str
     )
     check = place_of((*header, *trailer), "checksum", False) or {}
     seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
-    named = {
-        variant.message.name: id
+    telemetry = {
+        variant.message.name: (id, variant.message)
         for id, variants in ids.telemetry.items()
         for variant in variants
     }
-    replies = {
-        sent: named[reply]
-        for sent, reply in section.get("replies", {}).items()
-        if reply in named
+    commands = section.get("commands", {})
+    exchanges = {
+        variant.message.name: exchange
+        for variants in ids.telecommand.values()
+        for variant in variants
+        if (exchange := exchange_of(node, commands, variant.message, telemetry.get))
     }
     # `counts: message` includes header and trailer in the length field.
     counts_all = length.get("counts", DATA) == "message"
@@ -178,6 +183,6 @@ def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Str
         per_id=sequence.get("per", "link") == "id",
         fields=tuple(fields),
         check=check_of(section, checksums),
-        telecommands=rows_of(ids.telecommand, seeds, replies),
+        telecommands=rows_of(ids.telecommand, seeds, exchanges),
         telemetry=rows_of(ids.telemetry, seeds, {}),
     )

@@ -1,13 +1,14 @@
 """JSON requests and responses of the protocol, as used by golden vectors and
 conformance tests.
 
-``tests/conformance/README.md`` describes them. `answer` is the reference
-implementation.
+``tests/conformance/README.md`` describes them. `answer` is the reference implementation
+of all but the client of framed links, whose reference is the runtime
+(`icdgen.runtime_objects.reference`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from icdgen import codec
@@ -21,7 +22,6 @@ from icdgen.protocol import (
     logs,
     scripts,
     stream,
-    stream_client,
     times,
     uart,
 )
@@ -43,13 +43,19 @@ from icdgen.protocol.sections import CAN_KINDS
 CAN_BYTES = 8  # of a classic CAN frame
 
 
-def answer(icd: Icd, request: Request) -> dict[str, Any]:
+Operation = Callable[[Facts, Request], dict[str, Any]]
+
+
+def answer(
+    icd: Icd, request: Request, operations: Mapping[str, Operation] | None = None
+) -> dict[str, Any]:
     """Return the response to a request.
 
-    ``op`` must be one of `OPS`.
+    ``op`` must be one of `OPS`, or of ``operations``.
     """
+    operation = (operations or OPS)[request["op"]]
     try:
-        return {"ok": True, **OPS[request["op"]](_facts(icd, request), request)}
+        return {"ok": True, **operation(_facts(icd, request), request)}
     except errors.Refused as refusal:
         return refusal.answer
     except errors.RangeError as error:
@@ -340,16 +346,23 @@ def stream_events(facts: Facts, request: Request) -> dict[str, Any]:
     )
     chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
     decoder = stream.Decoder(form, direction, limit)
-    events = [
-        stream_client.event_row(event)
-        for chunk in chunks
-        for event in decoder.feed(chunk)
-    ]
+    events = [_stream_event(event) for chunk in chunks for event in decoder.feed(chunk)]
     return {
         "events": events,
         "discarded": decoder.discarded,
         "pending": decoder.pending,
     }
+
+
+def _stream_event(event: stream.Event) -> dict[str, Any]:
+    row: dict[str, Any] = {"event": event.event}
+    if event.id is not None:
+        row["id"] = event.id
+    if event.event == stream.MESSAGE:
+        row |= {"bytes": event.data.hex(), **dict(event.values)}
+    if event.event == stream.GAP:
+        row["missing"] = event.missing
+    return row
 
 
 def _envelope(facts: Facts, request: Request) -> tuple[Stream, str]:
@@ -359,12 +372,12 @@ def _envelope(facts: Facts, request: Request) -> tuple[Stream, str]:
     return need(facts.stream, "stream"), direction
 
 
-OPS: dict[str, Callable[[Facts, Request], dict[str, Any]]] = {
+OPS: dict[str, Operation] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
         link_data, scripts.client, scripts.file,
-        stream_encode, stream_events, scripts.stream_client,
+        stream_encode, stream_events,
     )
 }  # fmt: skip

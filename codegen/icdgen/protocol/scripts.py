@@ -1,5 +1,5 @@
-"""Scripts of the operations ``client``, ``stream_client`` and ``file``: timed inputs,
-and the reaction to each.
+"""Scripts of the operations ``client`` and ``file``: timed inputs, and the reaction to
+each.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 
 from icdgen.icd.model import TELECOMMAND, TELEMETRY
 from icdgen.protocol import can, programs, transfer
-from icdgen.protocol import stream_client as enveloped
 from icdgen.protocol.client import Client, Event, Request
+from icdgen.protocol.declared import U32, facts_of
 from icdgen.protocol.errors import BusyError, LengthError, Refused, UnknownIdError
-from icdgen.protocol.facts import Facts, Unsupported
+from icdgen.protocol.facts import Facts
 from icdgen.protocol.request_keys import (
     Refusal,
     flag,
@@ -24,15 +24,14 @@ from icdgen.protocol.request_keys import (
 )
 from icdgen.protocol.sections import BUSES, CAN, I2C, UART, Settings
 
-MOST_REQUESTS = 3  # requests that run at the same time
 LONGEST = 1 << 20  # maximum repetitions of the bytes of an upload
 
-AnyClient = TypeVar("AnyClient", Client, enveloped.Client)
+AnyClient = TypeVar("AnyClient")
 
 
 def client(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
     """Run the operation ``client``."""
-    bus, settings = _bus(request), _settings(facts, request)
+    bus, settings = _bus(request), settings_of(facts, request)
     tested_client = Client(
         facts,
         bus,
@@ -44,24 +43,14 @@ def client(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
     rows = mappings(request, "script")
     return {
         "steps": [
-            _step(tested_client, row, _client_events, _client_output, refused)
-            for row in rows
-        ]
-    }
-
-
-def stream_client(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
-    """Run the operation ``stream_client``."""
-    tested_client = enveloped.Client(
-        facts,
-        number(request, "requests", 1, MOST_REQUESTS, 1),
-        _settings(facts, request),
-    )
-    refused = (BusyError, UnknownIdError, LengthError, Unsupported)
-    rows = mappings(request, "script")
-    return {
-        "steps": [
-            _step(tested_client, row, _stream_events, _stream_output, refused)
+            step(
+                tested_client,
+                row,
+                _client_events,
+                _client_output,
+                refused,
+                lambda client: client.deadline,
+            )
             for row in rows
         ]
     }
@@ -74,24 +63,31 @@ def _bus(request: dict[str, Any]) -> str:
     return bus
 
 
-def _settings(facts: Facts, request: dict[str, Any]) -> Settings:
+def settings_of(facts: Facts, request: dict[str, Any]) -> Settings:
+    """Return the settings of a client: those of the request, then those of the ICD."""
     given, default = request.get("settings", {}), facts.client
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")
-    return Settings(
-        number(given, "reply_timeout", 1, default=default.reply_timeout),
-        number(given, "retries", 0, 255, default.retries),
-        number(given, "poll_interval", 1, default=default.poll_interval),
-        number(given, "poll_timeout", 1, default=default.poll_timeout),
-    )
+    values = {
+        fact.name: number(
+            given,
+            fact.name,
+            fact.least,
+            fact.most or U32,
+            getattr(default, fact.name),
+        )
+        for fact in facts_of(Settings)
+    }
+    return Settings(**values)
 
 
-def _step(
+def step(
     tested_client: AnyClient,
     row: dict[str, Any],
     events_of: Callable[[AnyClient, int, dict[str, Any]], list[Event]],
     output: Callable[[AnyClient, dict[str, Any]], list[object]],
     refused: tuple[type[Refused], ...],
+    deadline: Callable[[AnyClient], int | None],
 ) -> dict[str, Any]:
     """Return the reaction of a client to one row of a script."""
     refusal: dict[str, Any] = {}
@@ -104,7 +100,7 @@ def _step(
         **refusal,
         "out": output(tested_client, row),
         "events": events,
-        "deadline": tested_client.deadline,
+        "deadline": deadline(tested_client),
     }
 
 
@@ -154,36 +150,6 @@ def _sent(bus: str, item: Any) -> object:
     if bus == CAN:
         return {"id": item.id, "bytes": item.data.hex()}
     return {"write": item[0].hex(), "read": item[1]}
-
-
-def _stream_events(
-    tested_client: enveloped.Client, now: int, row: dict[str, Any]
-) -> list[Event]:
-    kind = next((kind for kind in (TELECOMMAND, TELEMETRY) if kind in row), None)
-    id = number(row, kind) if kind else None
-    if flag(row, "cancel"):
-        tested_client.cancel(kind, id)
-        return []
-    if kind and id is not None:
-        data = octets(row) if kind == TELECOMMAND else b""
-        reply = number(row, "reply") if "reply" in row else None
-        return tested_client.start(
-            now, Request(kind, id, data, flag(row, "repeat"), reply)
-        )
-    return (
-        tested_client.received(now, hex_bytes(row["receive"]))
-        if "receive" in row
-        else tested_client.tick(now)
-    )
-
-
-def _stream_output(
-    tested_client: enveloped.Client, row: dict[str, Any]
-) -> list[object]:
-    # `untaken` simulates a caller that does not read the output yet.
-    return (
-        [] if flag(row, "untaken") else [line.hex() for line in tested_client.output()]
-    )
 
 
 def file(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:

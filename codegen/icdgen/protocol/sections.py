@@ -544,3 +544,18 @@ class Settings:
     poll_timeout: int = time(
         "poll_timeout_ms", "longest processing time of a telecommand", 5000
     )
+    late: int = time(
+        "late_ms", "time after a time-out in which a response can still come", 1000
+    )
+    busy_pause: int = time(
+        "busy_pause_ms", "pause before a request is sent to a busy device again", 100
+    )
+    gap: int = time("gap_ms", "shortest time between two transmissions", 0, least=0)
+    in_flight: int = number(
+        "in_flight", "number of requests that the device handles at a time", 1, 8, 1
+    )
+    progress_for: int = time(
+        "progress_for_ms",
+        "longest time by which reports of progress extend a time-out",
+        60000,
+    )

@@ -112,6 +112,8 @@ def _message(message: Message) -> _Object:
         acknowledge=(
             None if message.acknowledge else "reset" if message.expects_reset else False
         ),
+        response=message.response,
+        repeat=message.repeat or None,
         aliases=list(message.aliases),
         contains=[
             {"message": part.message, "offset": part.at} for part in message.contains

@@ -25,6 +25,7 @@ from icdgen.icd.model import (
     Node,
     Struct,
 )
+from icdgen.icd.responses import ACK, BUSY, NAK, PROGRESS, REPLY, declared_responses
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.protocol import facts as protocol_facts
@@ -34,6 +35,13 @@ from icdgen.values.errors import NotFound
 from icdgen.values.find import by_name, describe, find_message, find_named, find_node
 from icdgen.wording import count
 
+_RESPONSES = {
+    ACK: "confirmed by",
+    REPLY: "answered with",
+    NAK: "refused by",
+    BUSY: "busy:",
+    PROGRESS: "in progress:",
+}
 _FIGURES = (
     "type",
     "version",
@@ -228,15 +236,7 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",
         message.group,
-        (
-            ""
-            if message.acknowledge
-            else (
-                "restarts instead of acknowledging"
-                if message.expects_reset
-                else "not acknowledged"
-            )
-        ),
+        *_outcomes(icd, selected, message),
     ]
     lines = [
         f"{node.name}: {message.name}",
@@ -258,6 +258,23 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
     ]
     errata = [_erratum(erratum, width) for erratum in errata_of_message(message)]
     return "\n".join([_lines(lines, width), *filter(None, [table]), *enums, *errata])
+
+
+def _outcomes(icd: Icd, selected: Node, message: Message) -> list[str]:
+    """Return what responds to a telecommand, in words; empty for the default of links
+    without header and trailer, an acknowledge.
+    """
+    protocol = icd.protocol_of(selected)
+    if "stream" not in protocol or message.telecommand_id is None:
+        if message.acknowledge:
+            return []
+        restarts = message.expects_reset
+        return ["restarts instead of acknowledging" if restarts else "not acknowledged"]
+    commands = protocol["stream"].get("commands", {})
+    responses = declared_responses(commands, message)
+    texts = [f"{_RESPONSES[kind]} {row['message']}" for kind, row in responses.items()]
+    repeat = ["may be sent again after a time-out"] if message.repeat else []
+    return [", ".join(texts) or "no response", *repeat]
 
 
 def _enum(enum: Enum, width: int | None) -> str:

@@ -140,14 +140,17 @@ class Control:
             for argument in arguments[1:]:
                 self.assign(arguments[0], argument)
         elif command == "fault":
-            self.line.faults.faults = [faults.parse(argument) for argument in arguments]
+            self.line.faults.faults = [
+                self.line.fault(argument) for argument in arguments
+            ]
         elif command == "log" and not arguments:
             self.line.log(now)
         elif command == "restart" and not arguments:
             self.line.computer.restart(now)
         else:
             help = (
-                "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart"
+                "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[:DETAIL][@WHAT] ..., "
+                "log, restart"
             )
             raise UserError(f"`{text}` is no order", help)
         return "ok"
@@ -240,7 +243,7 @@ def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
     return low + (high - low) * part
 
 
-def read(path: Path, icd: Icd, node: Node) -> list[Step]:
+def read(path: Path, icd: Icd, node: Node, line: DeviceLine) -> list[Step]:
     """Return the steps of a script. Raise `icdgen.errors.UserError`."""
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -252,10 +255,14 @@ def read(path: Path, icd: Icd, node: Node) -> list[Step]:
         raise UserError(f"{path}{where}: this is no YAML", HELP) from None
     if not isinstance(data, list):
         raise UserError(f"{path}: this is no list", HELP)
-    return [_step(path, number, row, icd, node) for number, row in enumerate(data, 1)]
+    return [
+        _step(path, number, row, icd, node, line) for number, row in enumerate(data, 1)
+    ]
 
 
-def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
+def _step(
+    path: Path, number: int, row: object, icd: Icd, node: Node, line: DeviceLine
+) -> Step:
     """Return a checked step of a script. Raise `icdgen.errors.UserError`."""
     where = f"{path}: step {number}"
     if not isinstance(row, dict) or set(row) - {
@@ -294,7 +301,7 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
             str(name): {str(key): value for key, value in fields.items()}
             for name, fields in values.items()
         },
-        None if fault_texts is None else [faults.parse(field) for field in fault_texts],
+        None if fault_texts is None else [line.fault(text) for text in fault_texts],
         bool(row.get("log", False)),
         bool(row.get("restart", False)),
     )

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import heapq
 
+from icdgen.errors import UserError
 from icdgen.sim.computer import Computer
-from icdgen.sim.faults import Faults
+from icdgen.sim.faults import Fault, Faults, parse
 
 
 class DeviceLine:
     """A line with a queue of pieces to send. Times are in milliseconds."""
 
     keeps_packets = False  # whether each piece is a packet
+    can_refuse = True  # whether a response can refuse a telecommand
+    can_be_busy = False  # whether a response can say that the device is busy
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
         self.computer, self.faults = computer, faults
@@ -19,6 +22,39 @@ class DeviceLine:
             []
         )  # heap of time, order of creation and bytes
         self._sent = 0
+
+    def fault(self, text: str) -> Fault:
+        """Return the fault of a text; see `icdgen.sim.faults.parse`.
+
+        Raise `icdgen.errors.UserError`, also for a fault that the link cannot have.
+        """
+        fault = parse(text)
+        if fault.kind == "busy" and not self.can_be_busy:
+            raise UserError(
+                f"`{text}`: the ICD describes no response of a busy device",
+                "drop=SHARE@telecommand loses the telecommand instead",
+            )
+        if fault.kind == "nak" and not self.can_refuse:
+            raise UserError(
+                f"`{text}`: the ICD describes no response that refuses a telecommand",
+                "silence=SHARE sends no response instead",
+            )
+        if fault.reason is not None and not self.is_reason(fault.reason):
+            names = ", ".join(self.reasons)
+            raise UserError(
+                f"`{text}`: `{fault.reason}` is no reason of a refusal",
+                f"reasons: {names}" if names else "a refusal has no reason here",
+            )
+        return fault
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Names of the reasons of a refusal."""
+        raise NotImplementedError
+
+    def is_reason(self, text: str) -> bool:
+        """Return whether a refusal can have this reason: a name or a number."""
+        raise NotImplementedError
 
     def received(self, now: int, data: bytes) -> None:
         """Process bytes from the client, or a packet."""

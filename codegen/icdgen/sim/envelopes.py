@@ -1,9 +1,14 @@
-"""The device on a line with header and trailer: periodic telemetry and responses."""
+"""The device on a line with header and trailer: periodic telemetry, and responses to
+telecommands.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal
 
+from icdgen_runtime.wire.device import response_of, response_to
+from icdgen_runtime.wire.envelope import Response, Stream, Verdict
 from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder
 
@@ -15,6 +20,17 @@ from icdgen.protocol.facts import need
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
+from icdgen.values import numbers
+
+Cause = Literal["unknown_id", "length", "value", "checksum", "busy"]
+"""Why a telecommand is refused: a key of `reasons` in `stream: commands`."""
+
+_CAUSES: dict[str, Cause] = {  # event of the decoder -> cause
+    "unknown_id": "unknown_id",
+    "length": "length",
+    "checksum": "checksum",
+}
+_SUCCESS: tuple[Verdict, ...] = ("ack", "reply")
 
 
 class EnvelopeLine(DeviceLine):
@@ -28,34 +44,60 @@ class EnvelopeLine(DeviceLine):
     ) -> None:
         super().__init__(computer, faults)
         program = computer.program
-        self.form = need(program.facts.stream, "stream")
+        self.form: Stream = need(program.link.stream, "stream")
         self.keeps_packets = self.form.delimited_by == PACKET
         self.sender = Sender(program.link, "telemetry", chosen)
         self.decoder = StreamDecoder(program.link, "telecommand")
         self.ids = ids_of(program.icd, program.node)
         section = program.icd.protocol_of(program.node)["stream"]
-        self.replies: dict[str, str] = section.get("replies", {})
-        answers = set(self.replies.values())
-        messages = [
-            variant.message
-            for variants in self.ids.telemetry.values()
-            for variant in variants
+        commands: Mapping[str, Any] = section.get("commands", {})
+        self._names_of_causes: Mapping[str, str] = commands.get("reasons", {})
+        responses = [
+            row for exchange in self.form.exchanges for row in exchange.responses
         ]
+        verdicts = {verdict for row in responses for verdict in _verdicts(row)}
+        self._refusals = [row for row in responses if "nak" in _verdicts(row)]
+        self.can_refuse = "nak" in verdicts
+        self.can_be_busy = "busy" in verdicts or (
+            self.can_refuse and "busy" in self._names_of_causes
+        )
+        responding = {response.telemetry for response in responses}
         self.unsolicited = [
-            message for message in messages if message.name not in answers
+            variant.message
+            for id, variants in self.ids.telemetry.items()
+            for variant in variants
+            if id not in responding
         ]
         self._every = computer.settings.every_ms
         self._next = 0
 
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        names = (
+            name
+            for response in self._refusals
+            for value, name in response.reasons
+            if _refuses_with(response, value)
+        )
+        return tuple(dict.fromkeys(names))
+
+    def is_reason(self, text: str) -> bool:
+        return any(_reason(response, text) is not None for response in self._refusals)
+
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
         for event in self.decoder.feed(data):
-            if event.event == "message" and event.id is not None:
-                for _, received_data in self.faults.apply("telecommand", event.data):
-                    if received_data == event.data or self.form.check is None:
-                        self._telecommand(now, event.id, received_data)
-            else:
+            if event.event != "message" or event.id is None:
                 self.computer.program.count(event.event)
+                cause = _CAUSES.get(event.event)
+                if cause is not None and event.id is not None:
+                    self._refuse(now, event.id, b"", cause)
+                continue
+            for _, received_data in self.faults.apply("telecommand", event.data):
+                if received_data == event.data or self.form.check is None:
+                    self._telecommand(now, event.id, received_data)
+                else:
+                    self._refuse(now, event.id, received_data, "checksum")
 
     def tick(self, now: int) -> None:
         super().tick(now)
@@ -65,45 +107,148 @@ class EnvelopeLine(DeviceLine):
             self.log(now)
 
     def log(self, now: int) -> None:
+        program = self.computer.program
         for message in self.unsolicited:
-            self._send(now, "telemetry", message)
+            assert message.telemetry_id is not None
+            self._send(
+                now, "telemetry", message.telemetry_id, program.current(now, message)
+            )
 
     @property
     def next_tick(self) -> int | None:
         return self._next if self._every else None
 
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
-        program = self.computer.program
-        message = codec.message_of_frame_if_any(
-            program.icd,
-            [variant.message for variant in self.ids.telecommand.get(id, ())],
-            data,
-        )
-        if message is None or not self._is_valid(message, data):
-            program.count("refused")
+        program, settings = self.computer.program, self.computer.settings
+        fault = self.faults.fault("nak", "telecommand")
+        if fault is not None:
+            self._refuse(now, id, data, "value", fault.reason)
+            return
+        is_busy = now < program.free_at or self.faults.hits("busy", "telecommand")
+        if is_busy and self._defer(now, id, data):
+            return
+        message = self._message(id, data)
+        if not isinstance(message, Message):
+            self._refuse(now, id, data, message)
             return
         program.count("telecommands")
         if message.kind == CONFIGURATION:
             program.values.put(message, data)
-        reply = program.values.messages.get(self.replies.get(message.name, ""))
-        if reply is not None:
-            self._send(now + self.computer.settings.processing_ms, "reply", reply)
+        program.free_at = now + settings.processing_ms
+        if self.faults.hits("silence", "telecommand"):
+            return
+        if self.faults.hits("foreign", "telecommand"):
+            id, data = self._other_telecommand(id)
+        for verdict in _SUCCESS:
+            self._respond(now + settings.processing_ms, id, data, verdict)
 
-    def _is_valid(self, message: Message, data: bytes) -> bool:
-        """Return whether the telecommand has a valid length and valid values."""
+    def _message(self, id: int, data: bytes) -> Message | Cause:
+        """Return the telecommand, or the cause why it is refused."""
         program = self.computer.program
+        messages = [variant.message for variant in self.ids.telecommand[id]]
+        message = codec.message_of_frame_if_any(program.icd, messages, data)
+        if message is None:
+            lengths = [
+                range(each.layout.shortest, each.length + 1) for each in messages
+            ]
+            is_too_long_or_short = not any(len(data) in each for each in lengths)
+            # Constants distinguish messages that share an id, such as the number of a
+            # command: another constant is another telecommand.
+            return (
+                "length"
+                if is_too_long_or_short
+                else "unknown_id" if len(messages) > 1 else "value"
+            )
         try:
             raw = codec.decode(program.icd.node(message.node), message, data)
         except codec.LengthError:
-            return False  # a counter does not match the length
-        return program.first_invalid(message, raw) is None
+            return "length"  # a counter does not match the length
+        return message if program.first_invalid(message, raw) is None else "value"
 
-    def _send(self, now: int, on: str, message: Message) -> None:
-        assert message.telemetry_id is not None
-        self.queue(
-            now,
-            on,
-            self.sender.encode(
-                message.telemetry_id, self.computer.program.current(now, message)
-            ),
-        )
+    def _other_telecommand(self, id: int) -> tuple[int, bytes]:
+        """Return id and data of another telecommand, if possible one that is confirmed
+        by the same telemetry.
+        """
+        rows = {row.id: row for row in self.form.telecommands}
+        others = [
+            row for row in rows.values() if row.exchange is not None and row.id != id
+        ]
+        if not others:
+            return id ^ 1, b""  # nothing responds to an id that the node does not have
+        own = rows[id].exchange
+        other = min(others, key=lambda row: row.exchange != own)
+        return other.id, bytes(other.least)
+
+    def _refuse(
+        self, now: int, id: int, data: bytes, cause: Cause, reason: str | None = None
+    ) -> None:
+        """Refuse a telecommand with the reason of the ICD for a cause, or with
+        ``reason``.
+        """
+        name = self._names_of_causes.get(cause) if reason is None else reason
+        if cause == "checksum" and name is None:
+            return
+        self.computer.program.count("refused")
+        if self.faults.hits("silence", "telecommand"):
+            return
+        response = response_of(self.form, id, "nak")
+        if response is not None:
+            number = None if name is None else _reason(response, name)
+            self._respond(now, id, data, "nak", number)
+
+    def _defer(self, now: int, id: int, data: bytes) -> bool:
+        """Respond that the device is busy. Return whether there is such a response."""
+        if response_of(self.form, id, "busy") is not None:
+            self._respond(now, id, data, "busy")
+            return True
+        if "busy" not in self._names_of_causes or not response_of(self.form, id, "nak"):
+            return False
+        self._refuse(now, id, data, "busy")
+        return True
+
+    def _respond(
+        self,
+        now: int,
+        id: int,
+        data: bytes,
+        verdict: Verdict,
+        reason: int | None = None,
+    ) -> None:
+        """Send a response, if there is one."""
+        program = self.computer.program
+        response = response_of(self.form, id, verdict)
+        if response is None:
+            return
+        message = self.ids.telemetry[response.telemetry][0].message
+        frames = {response.telemetry: program.current(now, message)}
+        telemetry = response_to(program.link, id, data, verdict, reason, frames)
+        assert telemetry is not None
+        self._send(now, "reply" if verdict == "reply" else "acknowledge", *telemetry)
+
+    def _send(self, now: int, on: str, id: int, data: bytes) -> None:
+        self.queue(now, on, self.sender.encode(id, data))
+
+
+def _verdicts(response: Response) -> Iterator[Verdict]:
+    """Yield everything that a response can say."""
+    yield response.verdict
+    yield from (verdict for _, verdict in response.meanings)
+
+
+def _refuses_with(response: Response, number: int) -> bool:
+    """Return whether a reason fits into its field and does not mean anything else."""
+    place = response.reason
+    if place is None or not 0 <= number < 1 << place.bits:
+        return False
+    is_status = place == response.status
+    return not is_status or dict(response.meanings).get(number, "nak") == "nak"
+
+
+def _reason(response: Response, text: str) -> int | None:
+    """Return the number of a reason, given as a name or a number; None if the response
+    cannot have it.
+    """
+    named = {name: value for value, name in response.reasons}
+    number = named.get(text, numbers.integer(text))
+    is_possible = number is not None and _refuses_with(response, number)
+    return number if is_possible else None

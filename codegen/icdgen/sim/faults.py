@@ -10,17 +10,31 @@ from icdgen.errors import UserError
 
 OUT = ("acknowledge", "reply", "packet", "log", "telemetry")  # what the device sends
 IN = ("telecommand", "request", "upload")  # what it receives
+OUTCOMES = {
+    "nak": "the telecommand is refused, with the reason after the share, if there is one",
+    "busy": "the device is busy and does not execute the telecommand",
+    "silence": "the telecommand is executed, and nothing responds to it",
+    "foreign": "the response belongs to another telecommand",
+}
+"""Faults of the response to a telecommand."""
 KINDS = {
     "drop": "the message is lost",
     "corrupt": "one of its bytes becomes another one",
     "cut": "one of its bytes is lost",
     "duplicate": "it comes twice",
     "repeat": "one of its bytes comes twice",
-    "late": "it comes later",
+    "late": "it comes later, by the milliseconds after the share, or a random time",
     "noise": "bytes that mean nothing come before it",
-    "nack": "the telecommand is refused",
+    **OUTCOMES,
 }
-_SPEC = re.compile(r"(?P<kind>[a-z]+)=(?P<share>[0-9.]+%?)(?:@(?P<on>[a-z,]+))?")
+_OTHER_SPELLING = {"nack": "nak"}
+_SPEC = re.compile(
+    r"(?P<kind>[a-z]+)=(?P<share>[0-9.]+%?)(?::(?P<detail>[^@]+))?(?:@(?P<on>[a-z,]+))?"
+)
+HELP = (
+    "KIND=SHARE[:DETAIL][@WHAT], for instance drop=10%@acknowledge or late=1:300; "
+    f"kinds: {', '.join(KINDS)}"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +44,8 @@ class Fault:
     kind: str
     share: float
     on: tuple[str, ...]
+    reason: str | None = None  # of a refusal: a member of its enumeration, or a number
+    delay_ms: int | None = None  # of a late message; None: random
 
 
 @dataclass
@@ -42,9 +58,19 @@ class Faults:
 
     def hits(self, kind: str, on: str) -> bool:
         """Return whether this message has the fault."""
-        return any(
-            f.kind == kind and on in f.on and self.random.random() < f.share
-            for f in self.faults
+        return self.fault(kind, on) is not None
+
+    def fault(self, kind: str, on: str) -> Fault | None:
+        """Return the fault of this kind that this message has; None without one."""
+        return next(
+            (
+                fault
+                for fault in self.faults
+                if fault.kind == kind
+                and on in fault.on
+                and self.random.random() < fault.share
+            ),
+            None,
         )
 
     def apply(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
@@ -70,37 +96,54 @@ class Faults:
 
     def _delay(self, on: str) -> int:
         """Return the delay of a piece in milliseconds: 0 if it is not late."""
-        if not self.hits("late", on):
+        fault = self.fault("late", on)
+        if fault is None:
             return 0
+        if fault.delay_ms is not None:
+            return fault.delay_ms
         return self.random.randrange(1, self.late_ms + 1)
 
 
 def parse(text: str) -> Fault:
-    """Return the fault of a text such as ``drop=10%@acknowledge`` or ``corrupt=0.01``.
+    """Return the fault of a text such as ``drop=10%@acknowledge``, ``nak=1:Bad length``
+    or ``late=50%:300``.
 
     Raise `icdgen.errors.UserError`.
     """
     match = _SPEC.fullmatch(text.strip())
-    help = f"KIND=SHARE or KIND=SHARE@WHAT, for instance drop=10%@acknowledge; kinds: {', '.join(KINDS)}"
-    if match is None or match["kind"] not in KINDS:
-        raise UserError(f"`{text}` is no fault", help)
+    kind = _OTHER_SPELLING.get(match["kind"], match["kind"]) if match else ""
+    if match is None or kind not in KINDS:
+        raise UserError(f"`{text}` is no fault", HELP)
     share = match["share"]
     try:
         value = float(share.rstrip("%")) / (100 if share.endswith("%") else 1)
     except ValueError:
         value = -1.0
     if not 0 <= value <= 1:
-        raise UserError(f"`{text}`: the share is not between 0 and 1 (100%)", help)
-    allowed = {"nack": ("telecommand",), "late": OUT}.get(match["kind"], (*OUT, *IN))
-    on = (
-        tuple(match["on"].split(","))
-        if match["on"]
-        else (allowed if match["kind"] == "nack" else OUT)
+        raise UserError(f"`{text}`: the share is not between 0 and 1 (100%)", HELP)
+    telecommand = ("telecommand",)
+    allowed = (
+        telecommand if kind in OUTCOMES else OUT if kind == "late" else (*OUT, *IN)
     )
-    for kind in on:
-        if kind not in allowed:
+    default = telecommand if kind in OUTCOMES else OUT
+    on = tuple(match["on"].split(",")) if match["on"] else default
+    for what in on:
+        if what not in allowed:
             raise UserError(
-                f"`{text}`: it cannot be on `{kind}`",
+                f"`{text}`: it cannot be on `{what}`",
                 f"what it can be on: {', '.join(allowed)}",
             )
-    return Fault(match["kind"], value, on)
+    detail = match["detail"]
+    if detail is None:
+        return Fault(kind, value, on)
+    detail = detail.strip()
+    if kind == "nak":
+        return Fault(kind, value, on, reason=detail)
+    if kind != "late":
+        help = "only nak (the reason) and late (milliseconds) have a detail"
+        raise UserError(f"`{text}`: `{kind}` has no detail `{detail}`", help)
+    if not (detail.isdecimal() and 0 < int(detail) < 1 << 31):
+        raise UserError(
+            f"`{text}`: `{detail}` is no number of milliseconds", "late=1:300"
+        )
+    return Fault(kind, value, on, delay_ms=int(detail))

@@ -5,11 +5,13 @@ from __future__ import annotations
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
+from icdgen.icd.error_codes import error_enum
 from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
+from icdgen.values import numbers
 
 FLAGS: dict[str, str] = {  # event of the decoder -> role in the statistics
     "unexpected_start": "uart_incomplete",
@@ -28,6 +30,31 @@ class Line(DeviceLine):
         self.decoder = UartDecoder(
             self.link, computer.program.facts.longest_telecommand
         )
+        program = computer.program
+        self._no_error = program.facts.errors.get("none", 0)
+        enum = error_enum(program.icd, program.node)
+        self._codes = {
+            member.name: member.value
+            for member in (enum.members if enum else ())
+            if member.value != self._no_error
+        }
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        return tuple(self._codes)
+
+    def is_reason(self, text: str) -> bool:
+        return self._code(text) is not None
+
+    def _code(self, text: str | None) -> int | None:
+        """Return an error code, given as a name or a number; None if it is no code of
+        an error.
+        """
+        if text is None:
+            return None
+        code = self._codes.get(text, numbers.integer(text))
+        is_error = code is not None and 0 <= code <= 255 and code != self._no_error
+        return code if is_error else None
 
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
@@ -82,19 +109,20 @@ class Line(DeviceLine):
             return
         program = self.computer.program
         outcome: Outcome | None
-        if self.faults.hits("nack", "telecommand"):
-            outcome = program.refuse(message)
+        fault = self.faults.fault("nak", "telecommand")
+        if fault is not None:
+            outcome = program.refuse(message, self._code(fault.reason))
         else:
             outcome = self.computer.take(now, message, UART)
         if outcome is None:
             return
         form = program.facts.acknowledge
-        if outcome.acknowledge and form:
+        is_silent = self.faults.hits("silence", "telecommand")
+        if outcome.acknowledge and form and not is_silent:
             acknowledge = bytearray(form.length)
-            acknowledge[form.id_at], acknowledge[form.error_at] = (
-                message[0],
-                outcome.code,
-            )
+            is_foreign = self.faults.hits("foreign", "telecommand")
+            acknowledge[form.id_at] = message[0] ^ 1 if is_foreign else message[0]
+            acknowledge[form.error_at] = outcome.code
             self._send(
                 now + self.computer.settings.processing_ms,
                 "acknowledge",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from icdgen_runtime.wire.i2c import i2c_write
@@ -92,13 +92,17 @@ class Program:
         self.last = (message[0], True, outcome.code, outcome.parameter)
         return outcome
 
-    def refuse(self, message: bytes) -> Outcome:
-        """Reject a telecommand without processing it."""
+    def refuse(self, message: bytes, code: int | None = None) -> Outcome:
+        """Reject a telecommand without processing it.
+
+        ``code`` is the error code; None for that of a wrong parameter.
+        """
         self.count("telecommands")
         telecommand = self.facts.telecommands.get(message[0])
-        outcome = self._refusal(
-            "parameter", acknowledge=telecommand is None or telecommand.acknowledge
-        )
+        is_acknowledged = telecommand is None or telecommand.acknowledge
+        outcome = self._refusal("parameter", acknowledge=is_acknowledged)
+        if code is not None:
+            outcome = replace(outcome, code=code)
         self.last = (message[0], True, outcome.code, outcome.parameter)
         return outcome
 

@@ -19,10 +19,11 @@ from icdgen.errors import UserError, unreadable
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
-from icdgen.sim import control, faults, serve
+from icdgen.sim import control, serve
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.envelopes import EnvelopeLine
+from icdgen.sim.faults import Faults
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
@@ -109,11 +110,7 @@ def build(
         options.strict,
         round(options.every * 1000),
     )
-    line_faults = faults.Faults(
-        Random(options.seed),
-        [faults.parse(fault) for fault in options.faults],
-        options.late,
-    )
+    line_faults = Faults(Random(options.seed), late_ms=options.late)
     chosen = values_of(facts.of(icd, node), options.chosen)
     computer = Computer(icd, node, settings, storage)
     line: DeviceLine = (
@@ -121,7 +118,8 @@ def build(
         if computer.program.facts.stream
         else Line(computer, line_faults)
     )
-    steps = control.read(options.script, icd, node) if options.script else []
+    line_faults.faults = [line.fault(text) for text in options.faults]
+    steps = control.read(options.script, icd, node, line) if options.script else []
     controller = control.Control(icd, node, line, steps)
     for message, text in options.values:
         controller.assign(message, text)

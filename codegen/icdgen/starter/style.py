@@ -31,7 +31,7 @@ _SECTIONS = (
     "checksums",
 )
 # Keys of these sections that name messages of the node, which are not copied.
-_KEYS_ABOUT_MESSAGES = {"stream": ("replies",)}
+_KEYS_ABOUT_MESSAGES = {"stream": ("commands",)}
 # Keys about the manual of the node, and about messages that are not copied.
 _KEYS_ABOUT_THE_MANUAL = (
     "source",

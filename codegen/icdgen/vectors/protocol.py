@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 
 from icdgen import __version__
 from icdgen.icd.model import Icd, Node
-from icdgen.protocol import facts, ops
+from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects import reference
 from icdgen.vectors.wire import (
     asking,
     clients,
@@ -56,7 +57,9 @@ def cases(icd: Icd, node: Node) -> list[Case]:
     cases = []
     for why, request in _requests(node_facts):
         complete_request = {"op": request["op"], "node": node.name, **request}
-        cases.append(Case(why, complete_request, ops.answer(icd, complete_request)))
+        cases.append(
+            Case(why, complete_request, reference.answer(icd, complete_request))
+        )
     return cases
 
 

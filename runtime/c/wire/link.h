@@ -17,6 +17,16 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest processing time of a telecommand, in milliseconds. */
     uint32_t poll_timeout;
+    /** Time after a time-out in which a response can still come, in milliseconds. */
+    uint32_t late;
+    /** Pause before a request is sent to a busy device again, in milliseconds. */
+    uint32_t busy_pause;
+    /** Shortest time between two transmissions, in milliseconds. */
+    uint32_t gap;
+    /** Number of requests that the device handles at a time. */
+    uint8_t in_flight;
+    /** Longest time by which reports of progress extend a time-out, in milliseconds. */
+    uint32_t progress_for;
 } icd_client_settings_t;
 
 /** Description of the protocol of a node. Parts that the ICD does not describe are NULL. */

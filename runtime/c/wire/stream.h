@@ -72,24 +72,38 @@ typedef enum {
     ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no message with this id. */
     ICD_STREAM_OVERRUN = 5,    /**< Dropped: the message is longer than the buffer. */
     ICD_STREAM_FRAMING = 6,    /**< Dropped: wrong constant or delimiter. */
-    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; `data` is its reply, if it has one. */
-    ICD_STREAM_TIMEOUT = 8     /**< Client: no reply. */
+    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded. */
+    ICD_STREAM_TIMEOUT = 8,    /**< Client: no response; it is not known whether the request was executed. */
+    ICD_STREAM_SENT = 9,       /**< Client: a telecommand to which nothing responds was sent. */
+    ICD_STREAM_REFUSED = 10,   /**< Client: the device refused the request. */
+    ICD_STREAM_BUSY = 11,      /**< Client: the device was busy each time, so the request was not executed. */
+    ICD_STREAM_PROGRESS = 12,  /**< Client: the request is still in progress. */
+    ICD_STREAM_REPLY = 13,     /**< Client: the requested telemetry; the acknowledge is still to come. */
+    ICD_STREAM_LATE = 14,      /**< Client: a response to a request that has ended. */
+    ICD_STREAM_STRAY = 15      /**< Client: a response without a request. */
 } icd_stream_kind_t;
 
-/** An event of a decoder or a client. The event and its data are valid only during the call of the callback. */
+/**
+ * An event of a decoder or a client. The event and its data are valid only during the call of the callback.
+ *
+ * Every request ends with one of DONE, SENT, REFUSED, BUSY and TIMEOUT. These events, PROGRESS and REPLY have the
+ * direction and the id of the request.
+ */
 typedef struct {
     icd_stream_kind_t kind;
     bool has_id; /**< Whether the id could be read. */
     uint32_t id;
-    const uint8_t *data;
+    const uint8_t *data; /**< Data of the message or the response. */
     size_t length;
     icd_envelope_values_t values;
     uint32_t missing;
-    const icd_link_t *link;    /**< Client: link of the node; otherwise NULL. */
-    icd_direction_t direction; /**< DONE, TIMEOUT: direction of the request; `id` is its id. */
-    uint32_t attempts;         /**< DONE, TIMEOUT: number of times the request was sent. */
-    bool has_reply;            /**< DONE: whether the reply is telemetry. */
-    uint32_t reply;            /**< DONE: id of this telemetry. */
+    const icd_link_t *link; /**< Client: link of the node; otherwise NULL. */
+    icd_direction_t direction;
+    uint32_t attempts; /**< Outcomes: number of times the request was sent. */
+    bool has_reply;    /**< Events of a request: whether a response led to the event. */
+    uint32_t reply;    /**< Id of this response. */
+    bool has_code;     /**< REFUSED, BUSY: whether the response has a reason. */
+    uint32_t code;     /**< The reason. */
 } icd_stream_event_t;
 
 typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);

@@ -63,15 +63,74 @@ typedef struct {
     bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */
 } icd_check_form_t;
 
-/** A message: id, shortest and longest data length in bytes, and seed. */
+/** What a response means for its telecommand. */
+typedef enum {
+    ICD_VERDICT_ACK = 0,     /**< The telecommand was accepted. */
+    ICD_VERDICT_REPLY = 1,   /**< This is the telemetry that the telecommand requested. */
+    ICD_VERDICT_NAK = 2,     /**< The telecommand was refused. */
+    ICD_VERDICT_BUSY = 3,    /**< The device is busy. */
+    ICD_VERDICT_PROGRESS = 4 /**< The telecommand is still being executed. */
+} icd_verdict_t;
+
+/**
+ * Place of a number in a message: its id, as 4 bytes with the most significant first, followed by its data. The number
+ * in the `size` bytes from byte `at` on is shifted right by `shift` and masked to `bits` bits. Bytes that the message
+ * does not have are 0. `bits` is 0 if there is no number.
+ */
+typedef struct {
+    uint32_t at;
+    uint8_t size;
+    uint8_t shift;
+    uint8_t bits;
+    bool little;
+} icd_number_place_t;
+
+/** A number of a response that repeats number `source` of the telecommand. */
+typedef struct {
+    icd_number_place_t place;
+    uint8_t source;
+} icd_echo_t;
+
+/** What a value of a status means. */
+typedef struct {
+    uint32_t value;
+    icd_verdict_t verdict;
+} icd_meaning_t;
+
+/** Telemetry that can end, refuse, defer or prolong a telecommand. */
+typedef struct {
+    uint32_t telemetry;
+    icd_verdict_t verdict; /**< With a status: the meaning of all values that are not in `meanings`. */
+    uint8_t echo_count;
+    uint16_t meaning_count;
+    const icd_echo_t *echoes;
+    const icd_meaning_t *meanings;
+    icd_number_place_t status;
+    icd_number_place_t reason; /**< Reason of a refusal. */
+} icd_response_t;
+
+#define ICD_MOST_SOURCES 4u /**< Largest number of numbers of a telecommand that its responses repeat. */
+
+/** The possible responses to a telecommand. */
+typedef struct {
+    const icd_number_place_t *sources; /**< Numbers of the telecommand that responses repeat. */
+    const icd_response_t *responses;
+    uint8_t source_count;
+    uint8_t response_count;
+    uint32_t timeout; /**< In milliseconds; 0: the time-out of the client. */
+} icd_exchange_t;
+
+/** A message: id, shortest and longest data length in bytes, and seed. The last members concern telecommands only. */
 typedef struct {
     uint32_t id;
     uint16_t least;
     uint16_t most;
     bool cuts_zeros; /**< Whether trailing zeros of the data are not sent, except for the first byte. */
     uint8_t seed;
-    bool is_answered; /**< Telecommand: whether telemetry `reply` is its reply. */
-    uint32_t reply;
+    bool repeats;                   /**< Whether it may be sent again after a time-out. */
+    bool is_request;                /**< Whether it requests telemetry `requested` if it is sent as `least` zeros. */
+    uint32_t requested;             /**< Id of this telemetry. */
+    const icd_exchange_t *exchange; /**< NULL if nothing responds to it. */
 } icd_stream_row_t;
 
 /** Framing of messages in a stream of bytes or in packets. */
@@ -86,6 +145,8 @@ typedef struct {
     const icd_check_form_t *check;
     const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, in ascending order of the ids. */
     uint16_t row_counts[2];
+    const uint32_t *confirming; /**< Ids of telemetry that only responds to telecommands, and is not requested. */
+    uint16_t confirming_count;
 } icd_stream_form_t;
 
 #endif /* ICDGEN_WIRE_STREAM_FORM_H */

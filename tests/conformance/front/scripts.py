@@ -23,6 +23,7 @@ MOST_TIMES = 1 << 20
 ABSENT = {
     "refused": {"code": None, "reason": None, "parameter": None}
 }  # what an event says where nothing is known
+WITHOUT_CODE = {"refused": {"code": None}, "busy": {"code": None}}  # on framed links
 
 
 def client(to: Asking, request: Request) -> Answer:
@@ -31,7 +32,7 @@ def client(to: Asking, request: Request) -> Answer:
         flag(request, "crc"),
         number(request, "address", 0, 255, 0),
     )
-    settings = _settings(request)
+    settings = _settings(request, BUS_SETTINGS)
     start = ("client", bus, int(checked), address, *settings)
     try:
         words = [
@@ -52,17 +53,28 @@ def client(to: Asking, request: Request) -> Answer:
     }
 
 
-def _settings(request: Request) -> list[object]:
+BUS_SETTINGS = {
+    "reply_timeout": (1, MOST),
+    "retries": (0, 255),
+    "poll_interval": (1, MOST),
+    "poll_timeout": (1, MOST),
+}
+STREAM_SETTINGS = {
+    "reply_timeout": (1, MOST),
+    "retries": (0, 255),
+    "late": (1, MOST),
+    "busy_pause": (1, MOST),
+    "gap": (0, MOST),
+    "in_flight": (1, 8),
+    "progress_for": (1, MOST),
+}
+
+
+def _settings(request: Request, limits: dict[str, tuple[int, int]]) -> list[object]:
     """Those that are given; the others are the link's."""
     given = request.get("settings", {})
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")
-    limits = {
-        "reply_timeout": (1, MOST),
-        "retries": (0, 255),
-        "poll_interval": (1, MOST),
-        "poll_timeout": (1, MOST),
-    }
     return [
         number(given, key, *limit) if key in given else ""
         for key, limit in limits.items()
@@ -126,11 +138,10 @@ def _messages(stream: bytes, escape: int, end: int) -> Iterator[str]:
 
 
 def stream_client(to: Asking, request: Request) -> Answer:
-    requests, (timeout, retries, *_) = number(request, "requests", 1, 3, 1), _settings(
-        request
-    )
+    requests = number(request, "requests", 1, 3, 1)
+    settings = _settings(request, STREAM_SETTINGS)
     words = [word for row in mappings(request, "script") for word in _stream_row(row)]
-    reply = to.ask("stream_client", requests, timeout, retries, *words)
+    reply = to.ask("stream_client", requests, *settings, *words)
     steps = []
     for _step, rows in _steps(reply):
         found: Answer = {"deadline": None, "out": [], "events": []}
@@ -140,7 +151,7 @@ def stream_client(to: Asking, request: Request) -> Answer:
             elif kind in ("until", "error"):
                 found |= typed(row)
             else:
-                found["events"].append(event(kind, row))
+                found["events"].append(WITHOUT_CODE.get(kind, {}) | event(kind, row))
         steps.append(found)
     return {"steps": steps}
 

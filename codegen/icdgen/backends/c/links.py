@@ -19,6 +19,7 @@ from icdgen.describe.links import (
 )
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.envelope import CRC, PACKET, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.exchange import ID_BYTES, Exchange, NumberPlace, Response
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -142,6 +143,7 @@ class _Tables:
             Assumptions(link.facts),
         )
         self.tables: list[Table] = []
+        self._shared: dict[tuple[str, tuple[str, ...]], str] = {}
 
     def all(self) -> list[Table]:
         """Return the tables of the parts, then that of the link."""
@@ -185,7 +187,7 @@ class _Tables:
             Row(f"{facts.longest_data}u", "longest without id and checksum"),
             Row(or_none(facts.node.node_type), "node type"),
             Row(or_none(facts.node.interface_version), "interface version"),
-            Row(settings, "ms for a reply, retries, ms between polls, ms of polling"),
+            Row(settings, ", ".join(fact.name for fact in facts_of(facts.client))),
             Row(
                 self.array("errors", "icd_error_code_t", map(_error_code, codes)),
                 "error codes",
@@ -480,10 +482,18 @@ class _Tables:
                 "check", "icd_check_form_t", [row, Row(covered, "covered")]
             )
         directions = (("sent", form.telecommands), ("received", form.telemetry))
+        exchanges = self.exchanges(form)
         rows = [
-            self.array(name, "icd_stream_row_t", map(_packet_row, rows))
+            self.array(
+                name,
+                "icd_stream_row_t",
+                [_packet_row(row, exchanges.get(row.exchange)) for row in rows],
+            )
             for name, rows in directions
         ]
+        confirming = self.numbers(
+            "confirming", "uint32_t", (f"{id:#x}u" for id in form.confirming), 8
+        )
         delimiter = "packet" if form.delimited_by == PACKET else form.delimited_by
         sizes = f"ICD_DELIMITED_BY_{delimiter.upper()}, {form.header_bytes}u, {form.trailer_bytes}u"
         parts = [
@@ -498,10 +508,70 @@ class _Tables:
                 f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}",
                 "messages",
             ),
+            Row(
+                f"{confirming}, {len(form.confirming)}u",
+                "telemetry that only responds",
+            ),
         ]
         return self.add(
             "stream", "icd_stream_form_t", parts, self.assumed.of_section("stream")
         )
+
+    def exchanges(self, form: Stream) -> dict[Exchange | None, str]:
+        """Declare the exchanges, and return the expression that refers to each."""
+        rows = []
+        for exchange in form.exchanges:
+            sources = self.shared(
+                "sources", "icd_number_place_t", map(_number_place, exchange.sources)
+            )
+            responses = self.shared(
+                "responses", "icd_response_t", map(self.response, exchange.responses)
+            )
+            counts = f"{len(exchange.sources)}u, {len(exchange.responses)}u"
+            rows.append(f"{{{sources}, {responses}, {counts}, {exchange.timeout}u}}")
+        self.array("exchanges", "icd_exchange_t", rows)
+        return {
+            exchange: f"&exchanges[{number}]"
+            for number, exchange in enumerate(form.exchanges)
+        }
+
+    def response(self, response: Response) -> str:
+        """Return the initialiser of a response; its echoes and meanings are separate
+        tables.
+        """
+        echoes = self.shared(
+            "echoes",
+            "icd_echo_t",
+            (
+                f"{{{_number_place(echo.place, ID_BYTES)}, {echo.source}u}}"
+                for echo in response.echoes
+            ),
+        )
+        meanings = self.shared(
+            "meanings",
+            "icd_meaning_t",
+            (
+                f"{{{value:#x}u, {_verdict(verdict)}}}"
+                for value, verdict in response.meanings
+            ),
+        )
+        numbers = (
+            f"{response.telemetry:#x}u, {_verdict(response.verdict)}",
+            f"{len(response.echoes)}u, {len(response.meanings)}u, {echoes}, {meanings}",
+            _number_place(response.status, ID_BYTES),
+            _number_place(response.reason, ID_BYTES),
+        )
+        return f"{{{', '.join(numbers)}}}"
+
+    def shared(self, name: str, type: str, rows: Iterable[str]) -> str:
+        """Declare an array with a number in its name, unless an array of these rows is
+        declared; return NULL if it is empty.
+        """
+        items = tuple(rows)
+        number = len([other for other, _ in self._shared if other == name])
+        if items and (name, items) not in self._shared:
+            self._shared[name, items] = self.array(f"{name}_{number}", type, items)
+        return self._shared.get((name, items), "NULL")
 
     def log_mask(self) -> str:
         mask = self.facts_of_link.mask
@@ -572,11 +642,31 @@ def _field(field: EnvelopeField) -> Row:
     )
 
 
-def _packet_row(row: StreamRow) -> Row:
+def _number_place(place: NumberPlace | None, offset: int = 0) -> str:
+    """Return the initialiser of the place of a number; ``offset``: bytes in front of
+    it. All zeros if there is no number.
+    """
+    if place is None:
+        return "{0u, 0u, 0u, 0u, false}"
+    numbers = (place.at + offset, place.size, place.shift, place.bits)
+    return (
+        f"{{{', '.join(f'{number}u' for number in numbers)}, {boolean(place.little)}}}"
+    )
+
+
+def _verdict(verdict: str) -> str:
+    return f"ICD_VERDICT_{verdict.upper()}"
+
+
+def _packet_row(row: StreamRow, exchange: str | None) -> Row:
     """Return the row of a message in packets."""
-    numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u, "
-    numbers += f"{boolean(row.reply is not None)}, {row.reply or 0:#x}u"
-    return Row(f"{{{numbers}}}", plain(row.name))
+    values = (
+        f"{row.id:#x}u, {row.least}u, {row.most}u",
+        f"{boolean(row.cuts_zeros)}, {row.seed}u, {boolean(row.repeats)}",
+        f"{boolean(row.requests is not None)}, {row.requests or 0:#x}u",
+        exchange or "NULL",
+    )
+    return Row(f"{{{', '.join(values)}}}", plain(row.name))
 
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:

@@ -93,7 +93,7 @@ class CNames(NamingPolicy):
         kinds = (
             [f"client_{bus}" for bus in _BUSES]
             if node.has_client
-            else ["client_init", "sender_t", "sender_init"]
+            else ["client_init", "sender_t", "sender_init", "refusal"]
         )
         for end in ("link", "client_t", *kinds):
             yield Identifier(FILE, f"{node.name}_{end}", owner, source, end)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from icdgen import codec
-from icdgen.backends.html import drawing, fields, plan, sections, texts, wire
+from icdgen.backends.html import drawing, fields, plan, responses, sections, texts, wire
 from icdgen.backends.html.examples import examples, frames
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.usage import names, snippets
@@ -75,21 +75,8 @@ def _facts(
 ) -> list[tuple[str, str, str]]:
     """Return label, text and link of each fact."""
     protocol = relations.icd.protocol_of(node) or {}
-    reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
-    answer = next(
-        (
-            candidate
-            for candidate in relations.icd.messages_of(node)
-            if candidate.name == reply
-        ),
-        None,
-    )
     # Packet formats have responses instead of acknowledges.
-    is_acknowledged = (
-        message.telecommand_id is not None
-        and answer is None
-        and "stream" not in protocol
-    )
+    is_acknowledged = message.telecommand_id is not None and "stream" not in protocol
     source = [
         f"{word} {number}"
         for word, number in (("table", message.table), ("page", message.page))
@@ -113,11 +100,7 @@ def _facts(
         ),
         ("Id", sharing(describe(relations.icd).node(node).messages_by_id, message), ""),
         ("Group", message.group, ""),
-        (
-            ("Answered with", answer.name, relations.links.message(answer))
-            if answer
-            else ("", "", "")
-        ),
+        *responses.of_message(relations, node, message),
         (
             "Acknowledged",
             ("yes" if message.acknowledge else "no") if is_acknowledged else "",

@@ -7,9 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from icdgen.backends.html import all_facts, envelopes, sequences, texts
+from icdgen.backends.html import all_facts, envelopes, responses, sequences, texts
 from icdgen.backends.html.all_facts import Row, as_text, value_text
 from icdgen.backends.html.relations import Place, Relations
+from icdgen.icd.error_codes import error_enum
 from icdgen.icd.model import Node
 from icdgen.protocol import facts
 from icdgen.protocol.declared import facts_of
@@ -47,7 +48,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     ]
     return {
         "node": node,
-        "envelope": _envelope(relations, node_facts, section),
+        "envelope": _envelope(node_facts, section),
         "lines": lines(section),
         "framing": _framing(node_facts),
         "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
@@ -81,6 +82,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
             .get("values", ())
         ],
         "errors": errors(relations, node, node_facts, section),
+        "responses": responses.of_node(relations, node),
         "acknowledges": sequences.acknowledges(relations, node, node_facts),
         "procedures": sequences.procedures(relations, node, node_facts),
         "times": [
@@ -147,25 +149,14 @@ def _framing(node_facts: Facts) -> list[Box]:
     return _row([(text, about, share, "") for text, about, share in pieces])
 
 
-def _envelope(
-    relations: Relations, node_facts: Facts, section: dict[str, Any]
-) -> dict[str, object]:
+def _envelope(node_facts: Facts, section: dict[str, Any]) -> dict[str, object]:
     """Return the description of the packet format; empty without one."""
     if node_facts.stream is None:
         return {}
-    urls = {
-        message.name: relations.links.message(message)
-        for message in relations.icd.messages_of(node_facts.node)
-    }
-    replies = section["stream"].get("replies", {})
     return {
         "boxes": _row(envelopes.boxes(section)),
         "ends": envelopes.ENDS[node_facts.stream.delimited_by],
         "places": envelopes.places(section),
-        "replies": [
-            Row(request, reply, "", urls.get(reply, ""))
-            for request, reply in replies.items()
-        ],
     }
 
 
@@ -222,11 +213,7 @@ def errors(
     relations: Relations, node: Node, node_facts: Facts, section: dict[str, Any]
 ) -> list[tuple[int, str, str, str]]:
     """Return code, name, role in the protocol, and link of each error."""
-    name = section.get("errors", {}).get("enum")
-    enums = (
-        enum for owner in (node, *relations.icd.included(node)) for enum in owner.enums
-    )
-    enum = next((candidate for candidate in enums if candidate.name == name), None)
+    enum = error_enum(relations.icd, node)
     roles = {code: key.replace("_", " ") for key, code in node_facts.errors.items()}
     if enum is None:
         return [(code, role, "", "") for code, role in sorted(roles.items())]
@@ -285,10 +272,16 @@ def entries(
             "CAN identifier",
             "identifier",
         ),
+        (
+            responses.of_node(relations, node),
+            "responses commands acknowledge ack refuse nak busy progress echo reason",
+            "Responses to telecommands",
+            "responses",
+        ),
         (node_facts.errors, "error codes reasons nack", "Error codes", "errors"),
         (
-            True,
-            "acknowledge ack nack handshake sequence",
+            sequences.acknowledges(relations, node, node_facts),
+            "acknowledge ack nak nack handshake sequence",
             "Acknowledges",
             "acknowledges",
         ),

@@ -8,9 +8,11 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from icdgen.backends.html import responses
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.texts import BUSES, capitalized, clip
 from icdgen.icd.model import Node
+from icdgen.icd.responses import ACK, BUSY, NAK, PROGRESS
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Download, Step
@@ -68,7 +70,7 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
     bus of the ICD.
     """
     waits = f"waits {node_facts.client.reply_timeout} ms, tries again {node_facts.client.retries} times"
-    sequences = []
+    sequences = list(_on_framed_link(relations, node, node_facts))
     if node_facts.framing:
         answer = "acknowledge: id and error code" if node_facts.acknowledge else ""
         arrows = [Arrow(True, "telecommand: id, parameters", waits)]
@@ -107,6 +109,32 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
             Sequence("CAN, telemetry", node.title, telemetry_arrows),
         ]
     return sequences
+
+
+def _on_framed_link(
+    relations: Relations, node: Node, node_facts: Facts
+) -> Iterator[Sequence]:
+    """Yield the outcomes of a telecommand on a framed link."""
+    client = node_facts.client
+    rows = responses.general(relations, node)
+    if not node_facts.stream or not rows:
+        return
+    notes = {
+        ACK: "it is done",
+        NAK: "it is refused",
+        BUSY: f"sent again after {client.busy_pause} ms, {client.retries} times at most",
+        PROGRESS: "the time-out begins anew",
+    }
+    waits = f"waits {client.reply_timeout} ms; if it may be repeated, {client.retries} more times"
+    arrows = [Arrow(True, "telecommand", waits)]
+    for row in rows:
+        if row.kind in notes:
+            text = f"{row.name}: {row.echo}" if row.echo else row.name
+            # A status can say more than one thing.
+            note = row.about if row.has_status else notes[row.kind]
+            arrows.append(Arrow(False, text, note, row.url))
+    remarks = ["The device sends one of these responses."] if len(arrows) > 2 else []
+    yield Sequence("Framed link, telecommand", node.title, arrows, remarks)
 
 
 def _on_can(

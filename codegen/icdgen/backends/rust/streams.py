@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from icdgen.backends.literals import Brackets, Item
 from icdgen.backends.rust.facts import member_name, value_of
 from icdgen.backends.rust.literals import (
+    Expression,
     flat,
+    flat_rows,
     members,
     part,
     rows,
@@ -17,12 +21,15 @@ from icdgen.backends.rust.names import variant
 from icdgen.backends.rust.text import mask
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import CRC, WORD, Check, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 
 _DELIMITERS = {"none": "Packet"}
 
 
 def stream_of(form: Stream) -> Brackets:
     """Return the expression of a packet format."""
+    exchanges = form.exchanges
+    indices = {exchange: index for index, exchange in enumerate(exchanges)}
     return struct(
         "Stream",
         part(
@@ -35,8 +42,10 @@ def stream_of(form: Stream) -> Brackets:
         part("per_id", spelled(form.per_id)),
         part("fields", rows(map(_field, form.fields))),
         part("check", some(_check(form.check) if form.check else None)),
-        part("telecommands", rows(map(_row, form.telecommands))),
-        part("telemetry", rows(map(_row, form.telemetry))),
+        part("telecommands", rows(_row(row, indices) for row in form.telecommands)),
+        part("telemetry", rows(_row(row, indices) for row in form.telemetry)),
+        part("exchanges", rows(map(_exchange, exchanges))),
+        part("confirming", flat_rows(map(spelled, form.confirming))),
     )
 
 
@@ -83,6 +92,54 @@ def _field(field: EnvelopeField) -> Brackets:
     )
 
 
-def _row(row: StreamRow) -> Brackets:
+def _row(row: StreamRow, indices: Mapping[Exchange, int]) -> Brackets:
     items = {key: value for key, value in members(row).items() if key != "name"}
-    return flat("StreamRow", **{**items, "reply": some(row.reply)})
+    return flat(
+        "StreamRow",
+        **{
+            **items,
+            "exchange": some(indices[row.exchange] if row.exchange else None),
+            "requests": some(row.requests),
+        },
+    )
+
+
+def _exchange(exchange: Exchange) -> Brackets:
+    return struct(
+        "Exchange",
+        part("sources", flat_rows(map(_place, exchange.sources))),
+        part("responses", rows(map(_response, exchange.responses))),
+        part("timeout_ms", spelled(exchange.timeout)),
+    )
+
+
+def _response(response: Response) -> Brackets:
+    echoes = (
+        flat("Echo", place=_place(echo.place), source=echo.source)
+        for echo in response.echoes
+    )
+    meanings = (
+        f"({spelled(value)}, {_verdict(meaning)})"
+        for value, meaning in response.meanings
+    )
+    return struct(
+        "Response",
+        part("telemetry", spelled(response.telemetry)),
+        part("verdict", _verdict(response.verdict)),
+        part("echoes", flat_rows(echoes)),
+        part("status", _optional_place(response.status)),
+        part("meanings", flat_rows(meanings)),
+        part("reason", _optional_place(response.reason)),
+    )
+
+
+def _optional_place(place: NumberPlace | None) -> Expression:
+    return some(_place(place) if place else None)
+
+
+def _place(place: NumberPlace) -> Brackets:
+    return flat("NumberPlace", **members(place))
+
+
+def _verdict(verdict: str) -> str:
+    return f"link::Verdict::{variant(verdict)}"

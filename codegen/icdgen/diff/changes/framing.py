@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.facts import AROUND, PART, facts, shown
+from icdgen.diff.facts import AROUND, PART, RESPONSES, facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.icd.annex import Loggable
@@ -29,6 +29,8 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[CheckResult]:
         pair
     ), ctx.have_packet_formats(pair)
     for fact in facts(pair.old, pair.new):
+        if RESPONSES.fullmatch(fact.path) and not fact.is_word:
+            continue  # DIF216
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
         is_around = have_packet_formats and AROUND.fullmatch(fact.path)

@@ -272,6 +272,8 @@ class _Reader:
             layout=self.layout(item, node),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
+            response=item.get("response"),
+            repeat=item.get("repeat", False),
             contains=tuple(
                 model.Part(part["message"], part["offset"])
                 for part in item.get("contains", ())

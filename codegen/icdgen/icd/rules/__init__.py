@@ -37,6 +37,7 @@ from icdgen.icd.rules import (  # noqa: F401
     protocol_names,
     protocol_sizes,
     references,
+    responses,
     structs,
     values,
     variable_length,

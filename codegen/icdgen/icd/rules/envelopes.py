@@ -161,7 +161,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             message = "the length that delimits messages is after their data"
             yield Fault.at(lengths[0], "role", message, "move it to `header`")
     for direction in DIRECTIONS:
-        if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of(
+        if len({id for id, _ in ids_of(ctx, link.node, direction)}) > 1 and not link.of(
             "id"
         ):
             message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
@@ -174,7 +174,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             return
 
 
-def _ids(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
+def ids_of(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
     """Return the messages of a node in a direction, with their ids."""
     messages = [
         (getattr(message, f"{direction}_id"), message)
@@ -241,7 +241,7 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     messages.
     """
     messages = [
-        pair for direction in DIRECTIONS for pair in _ids(ctx, link.node, direction)
+        pair for direction in DIRECTIONS for pair in ids_of(ctx, link.node, direction)
     ]
     for row in link.of("id"):
         id, message = max(messages, key=lambda pair: pair[0], default=(0, None))
@@ -486,7 +486,7 @@ def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
         all_seeds = [at_path(checksum, ["seeds"]) for checksum in checksums.values()]
         for direction in DIRECTIONS:
             first_of_id: dict[int, Message] = {}
-            for id, message in _ids(ctx, link.node, direction):
+            for id, message in ids_of(ctx, link.node, direction):
                 first = first_of_id.setdefault(id, message)
                 if bool(message.may_end_early) != bool(first.may_end_early):
                     early = message if message.may_end_early else first
@@ -512,26 +512,3 @@ def messages_of_one_id_have_one_seed(ctx: Context) -> Iterator[Fault]:
                             text,
                             "give both the same seed, or other ids",
                         )
-
-
-@rule("ICD176")
-def replies_exist(ctx: Context) -> Iterator[Fault]:
-    for link in links(ctx):
-        replies = link.section.get("replies")
-        if not isinstance(replies, Map):
-            continue
-        broken = ctx.broken_messages(link.node)
-        for request, response in replies.items():
-            for direction, name, fault in (
-                (TELECOMMAND, request, Fault.at_key),
-                (TELEMETRY, response, Fault.at),
-            ):
-                names = {message.name for _, message in _ids(ctx, link.node, direction)}
-                if isinstance(name, str) and name not in names and name not in broken:
-                    help = suggestion(name, names, "correct the name")
-                    yield fault(
-                        replies,
-                        request,
-                        f"there is no {direction} {quote(name)}",
-                        *help,
-                    )

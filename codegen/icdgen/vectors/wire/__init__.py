@@ -9,8 +9,11 @@ from typing import Any
 Requests = Iterator[tuple[str, dict[str, Any]]]
 """Requests of the testee protocol, each with its purpose."""
 
-Script = list[dict[str, Any]]
-"""Script of a client or a procedure, one row per moment."""
+Row = dict[str, Any]
+"""Moment of a script of a client or a procedure."""
+
+Script = list[Row]
+"""Script of a client or a procedure."""
 
 
 def pieces(

@@ -8,12 +8,17 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
+from icdgen.icd.responses import NEEDED, PROGRESS
 from icdgen.protocol import stream
 from icdgen.protocol.envelope import Stream, StreamRow
+from icdgen.protocol.exchange import ID_BYTES, Exchange, Response
 from icdgen.protocol.facts import Facts, need
-from icdgen.vectors.wire import Requests, Script
+from icdgen.protocol.sections import Settings
+from icdgen.vectors.wire import Requests, Row, Script
 
-SETTINGS = {"reply_timeout": 100, "retries": 2}
+SETTINGS = {"reply_timeout": 100, "retries": 2, "late": 100}
+MOST_MOMENTS = 100  # of a script
+OUTCOME_SETTINGS = {"busy_pause": 30, "progress_for": 250}
 
 
 class Sample:
@@ -32,17 +37,44 @@ class Sample:
             **more,
         }
 
-    def come(self, at: int, row: StreamRow, lost: int = 0) -> dict[str, Any]:
+    def come(
+        self, at: int, row: StreamRow, lost: int = 0, data: bytes | None = None
+    ) -> dict[str, Any]:
         """Return a row that receives telemetry, after ``lost`` skipped sequence
-        numbers.
+        numbers, with random data unless they are given.
         """
+        if data is None:
+            data = self.source.randbytes(row.most)
         field = self.form.of("sequence")
         self._numbers += lost + 1
         values = {"sequence": self._numbers & field.mask} if field else {}
-        line = stream.encode(
-            self.form, "telemetry", row.id, self.source.randbytes(row.most), values
-        )
+        line = stream.encode(self.form, "telemetry", row.id, data, values)
         return {"at": at, "receive": line.hex()}
+
+    def respond(
+        self,
+        at: int,
+        asked: dict[str, Any],
+        exchange: Exchange,
+        response: Response,
+        status: int | None = None,
+        foreign: bool = False,
+    ) -> dict[str, Any]:
+        """Return a row that receives a response to the telecommand of a row.
+
+        ``foreign``: each echo differs from the telecommand in its lowest bit.
+        """
+        row = next(row for row in self.form.telemetry if row.id == response.telemetry)
+        data = bytearray(self.source.randbytes(row.most))
+        telecommand = asked["telecommand"].to_bytes(ID_BYTES, "big") + bytes.fromhex(
+            asked["bytes"]
+        )
+        for echo in response.echoes:
+            number = exchange.sources[echo.source].of(telecommand)
+            echo.place.put(data, number ^ int(foreign))
+        if response.status and status is not None:
+            response.status.put(data, status)
+        return self.come(at, row, data=bytes(data))
 
 
 def scripts(facts: Facts) -> Requests:
@@ -62,10 +94,24 @@ def scripts(facts: Facts) -> Requests:
             request = {
                 "op": "stream_client",
                 "requests": requests,
-                "settings": SETTINGS,
+                "settings": {**SETTINGS, "in_flight": requests},
                 "script": rows,
             }
             yield f"client of {requests}: {why}", request
+    for exchange in form.exchanges:
+        row = next(row for row in form.telecommands if row.exchange is exchange)
+        for why, more, rows in _outcomes(row, exchange, sample):
+            request = {
+                "op": "stream_client",
+                "requests": 3,
+                "settings": {**SETTINGS, **OUTCOME_SETTINGS, **more},
+                "script": rows,
+            }
+            yield f"client: {row.name}, {why}", request
+        # These have the times of the ICD.
+        for why, rows in _declared_times(row, exchange, sample, facts.client):
+            request = {"op": "stream_client", "requests": 3, "script": rows}
+            yield f"client: {row.name}, {why}", request
 
 
 def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
@@ -80,7 +126,7 @@ def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
     yield "a reply of an unknown id", [s.ask(0, row, reply=unknown)]
     for size in {row.least - 1, row.most + 1} - {-1}:
         yield f"{size} bytes", [{"at": 0, "telecommand": row.id, "bytes": "00" * size}]
-    silent = next((row_ for row_ in form.telecommands if row_.reply is None), None)
+    silent = next((row_ for row_ in form.telecommands if row_.exchange is None), None)
     if silent:
         yield "without a reply it is done when it is sent", [
             s.ask(0, silent),
@@ -107,7 +153,14 @@ def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:
             {"at": at, **asks} if not at else {"at": at} for at in range(0, 400, 100)
         ]
     for row in form.telecommands:
-        frame = next((row_ for row_ in form.telemetry if row_.id == row.reply), row)
+        frame = next(
+            (
+                row_
+                for row_ in form.telemetry
+                if row.exchange and row_.id == row.exchange.reply
+            ),
+            row,
+        )
         if frame is not row:
             yield f"{row.name} is answered as the ICD says", [
                 s.ask(0, row),
@@ -187,7 +240,7 @@ def _simultaneous_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Scrip
     """Yield scripts of requests that start while others are running."""
     row, (*_, last) = form.telecommands[0], form.telecommands
     untaken = {"untaken": True}
-    silent = [row_ for row_ in form.telecommands if row_.reply is None][:2]
+    silent = [row_ for row_ in form.telecommands if row_.exchange is None][:2]
     if silent:
         yield "telecommands without a reply, taken together", [
             s.ask(0, silent[0], **untaken), s.ask(0, silent[-1], **untaken), s.ask(1, silent[0], **untaken), {"at": 2},
@@ -231,3 +284,104 @@ def _simultaneous_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Scrip
             s.ask(0, row, **reply_a), s.ask(1, silent[0]), s.ask(2, silent[0], **untaken), s.ask(3, silent[0], **untaken),
             {"at": 4}, s.come(5, first),
         ]  # fmt: skip
+
+
+def _outcomes(
+    row: StreamRow, exchange: Exchange, s: Sample
+) -> Iterator[tuple[str, dict[str, int], Script]]:
+    """Yield scripts of a telecommand and its responses: purpose, settings and rows."""
+    asked = s.ask(0, row)
+    for response in exchange.responses:
+        if response.status is None:
+            yield from _responses(row, s, exchange, response, None, response.verdict)
+            continue
+        meanings = dict(response.meanings)
+        other = next(value for value in range(256) if value not in meanings)
+        for status, verdict in {**meanings, other: response.verdict}.items():
+            what = f"{verdict} by the status {status}"
+            yield from _responses(row, s, exchange, response, status, what)
+    two = s.ask(10, row)
+    yield "the next of its kind waits until nothing late can come", {}, [
+        asked, {"at": 100}, two | {"at": 110}, {"at": 199}, {"at": 200}, {"at": 300}, {"at": 400},
+    ]  # fmt: skip
+    yield "two at a time", {"in_flight": 2}, [
+        asked, two, *(s.respond(30, asked, exchange, each) for each in exchange.responses),
+        *(s.respond(40, two, exchange, each) for each in exchange.responses), {"at": 100}, {"at": 110}, {"at": 300},
+    ]  # fmt: skip
+    yield "a gap between two", {"gap": 20}, [
+        asked, two, *(s.respond(15, asked, exchange, each) for each in exchange.responses), {"at": 19}, {"at": 20},
+        *(s.respond(25, two, exchange, each) for each in exchange.responses), {"at": 130},
+    ]  # fmt: skip
+    needed = [each for each in exchange.responses if each.verdict in NEEDED]
+    for why, order in (("in order", needed), ("in reverse", needed[::-1])):
+        if len(needed) > 1:
+            yield f"all responses {why}", {}, [
+                asked, *(s.respond(30, asked, exchange, each) for each in order), {"at": 100},
+            ]  # fmt: skip
+
+
+def _declared_times(
+    row: StreamRow, exchange: Exchange, s: Sample, settings: Settings
+) -> Iterator[tuple[str, Script]]:
+    """Yield scripts whose moments are just before and after the times of the ICD."""
+    asked = s.ask(0, row)
+    end = exchange.timeout or settings.reply_timeout
+    late = end + settings.late
+    for response in exchange.responses:
+        at = [end - 1, end, late - 1, late]
+        yield f"{response.verdict} in time, late and too late", [
+            asked, *(s.respond(moment, asked, exchange, response) for moment in at[2:]),
+        ]  # fmt: skip
+        yield f"{response.verdict} at the time-out", [
+            asked, *(s.respond(moment, asked, exchange, response) for moment in at[:2]),
+        ]  # fmt: skip
+        pause = settings.busy_pause
+        yield f"{response.verdict}, then the pause of a busy device", [
+            asked, s.respond(0, asked, exchange, response), {"at": pause - 1}, {"at": pause},
+        ]  # fmt: skip
+        statuses = [value for value, what in response.meanings if what == PROGRESS]
+        moments = range(end - 1, settings.progress_for + end, end - 1)
+        if (response.verdict == PROGRESS or statuses) and len(moments) <= MOST_MOMENTS:
+            status = statuses[0] if statuses else None
+            yield "progress until it no longer extends the time", [
+                asked, *(s.respond(moment, asked, exchange, response, status) for moment in moments),
+            ]  # fmt: skip
+
+
+def _responses(
+    row: StreamRow,
+    s: Sample,
+    exchange: Exchange,
+    response: Response,
+    status: int | None,
+    what: str,
+) -> Iterator[tuple[str, dict[str, int], Script]]:
+    """Yield scripts in which one response arrives, at different times."""
+    asked = s.ask(0, row)
+
+    def come(at: int, foreign: bool = False) -> Row:
+        return s.respond(at, asked, exchange, response, status, foreign)
+
+    yield f"{what}", {}, [asked, come(30), come(31), {"at": 100}, {"at": 130}]
+    yield f"{what} comes late", {}, [
+        asked, {"at": 100}, come(110), come(111), come(112), {"at": 200},
+    ]  # fmt: skip
+    yield f"{what} comes after the late time", {}, [
+        asked, {"at": 100}, {"at": 200}, come(201),
+    ]  # fmt: skip
+    yield f"{what} of another telecommand", {}, [
+        asked, come(30, foreign=True), come(40), {"at": 100},
+    ]  # fmt: skip
+    yield f"{what} after the first attempt, which was late", {}, [
+        asked | {"repeat": True}, {"at": 100}, come(110), come(120), {"at": 200}, {"at": 310},
+    ]  # fmt: skip
+    yield f"{what} each time", {}, [
+        asked, *(come(at) for at in range(30, 400, 60)), {"at": 500},
+    ]  # fmt: skip
+    yield f"{what} while it is to be sent again", {"gap": 50}, [
+        asked | {"repeat": True}, s.ask(10, row), {"at": 50}, {"at": 100}, come(101), {"at": 150}, come(160),
+        {"at": 200}, {"at": 300}, {"at": 400},
+    ]  # fmt: skip
+    yield f"{what} after it was cancelled", {}, [
+        asked, {"at": 20, "cancel": True}, s.ask(21, row), come(30), come(31), {"at": 131}, {"at": 200},
+    ]  # fmt: skip

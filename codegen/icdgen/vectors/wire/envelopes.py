@@ -223,7 +223,7 @@ def _undefined_messages(
     if row.most:
         variants.append(("that is too short by one", row.id, row.most - 1, row.seed))
     for why, id, size, seed in variants:
-        row_ = StreamRow(id, 0, size, False, seed, None, "")
+        row_ = StreamRow(id, 0, size, False, seed, "")
         strange = replace(form, telecommands=(row_,), telemetry=(row_,))
         try:
             line = stream.encode(strange, direction, id, b"\x2a" * size)

@@ -30,6 +30,11 @@ LINK: link.Link[_Node] = link.Link(
         poll_interval=20,
         # Assumed: No time is given.
         poll_timeout=5000,
+        late=1000,
+        busy_pause=100,
+        gap=0,
+        in_flight=1,
+        progress_for=60000,
     ),
     errors={
         "none": 0,

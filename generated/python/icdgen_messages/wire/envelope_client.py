@@ -5,15 +5,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Generic, Literal, Optional
+from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
 from .._errors import LengthError, UnknownIdError
 from .._hints import Buffer, N
 from .client import Request
-from .envelope import Direction, StreamRow
+from .envelope import Direction, Exchange, Response, StreamRow, Verdict
 from .errors import BusyError, UnsupportedError, need
-from .events import Arrived, Done, Event, Gap, LineError, Timeout
+from .events import (
+    Arrived,
+    Busy,
+    Done,
+    Event,
+    Gap,
+    Late,
+    LineError,
+    Progress,
+    Refused,
+    Reply,
+    Sent,
+    Stray,
+    Timeout,
+)
 from .link import Link, Settings
 from .message_ids import (
     NodeMessage,
@@ -26,38 +40,106 @@ from .message_ids import (
 from .sender import Sender
 from .stream import StreamDecoder, StreamEvent
 
-_NO_REQUEST = Request("telecommand", 0)
+MOST_AWAITED = 8
+"""Largest number of requests whose responses are awaited or may still arrive late."""
+
+_NO_EXCHANGE = Exchange((), ())
+
+
+class _Awaited(NamedTuple):
+    """Responses to a request: what can arrive, and the numbers that it must repeat."""
+
+    responses: tuple[Response, ...]
+    sources: tuple[int, ...]
+
+    @property
+    def needed(self) -> frozenset[Verdict]:
+        """Return the responses without which a request is not done."""
+        verdicts = {response.verdict for response in self.responses}
+        for response in self.responses:
+            verdicts.update(verdict for _, verdict in response.meanings)
+        return frozenset(verdicts & {"ack", "reply"})
+
+    def matching(self, id: int, data: bytes) -> Optional[Response]:
+        """Return the response that telemetry is; None if it is none of them."""
+        for response in self.responses:
+            if response.telemetry == id and all(
+                echo.place.of(data) == self.sources[echo.source]
+                for echo in response.echoes
+            ):
+                return response
+        return None
+
+    def is_like(self, other: _Awaited) -> bool:
+        """Return whether a response to one request could be taken for a response to the
+        other.
+        """
+        return any(
+            mine.telemetry == theirs.telemetry
+            and not any(
+                echo.place == repeated.place
+                and self.sources[echo.source] != other.sources[repeated.source]
+                for echo in mine.echoes
+                for repeated in theirs.echoes
+            )
+            for mine in self.responses
+            for theirs in other.responses
+        )
 
 
 @dataclass(eq=False)
 class _Slot:
-    """A request, and the previous request if its reply may still arrive."""
+    """A request in progress."""
 
-    request: Request = _NO_REQUEST
-    state: Literal["idle", "hold", "wait"] = "idle"
-    sent: int = 0  # id of the telecommand
-    reply: Optional[int] = None  # id of the expected reply
-    kind: Optional[type[Message]] = None  # class of the expected reply, if given
+    handle: int
+    request: Request
+    sent_id: int  # of the telecommand
+    awaited: _Awaited
+    timeout: float
+    repeats: bool  # whether it may be sent again after a time-out
+    kind: Optional[type[Message]]  # class of the reply, if the caller gave it
+    # "sent": nothing responds to it; "wait": for a response; "pause": the device is busy
+    state: Literal["queued", "sent", "wait", "pause"] = "queued"
     attempts: int = 0
-    until: float = 0
-    was_taken: bool = False  # by `output`
-    late: Optional[tuple[int, float]] = None  # reply that may still arrive, until when
+    until: float = 0  # end of the state
+    limit: float = 0  # until when progress extends it
+    sent_at: float = 0
+    missing: frozenset[Verdict] = frozenset()
+    owed: int = 0  # responses that may still arrive
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether a response may arrive, also to an earlier attempt."""
+        return self.state == "wait" or self.owed > 0
+
+
+@dataclass(eq=False)
+class _Late:
+    """Responses that may still arrive although their request has ended."""
+
+    awaited: _Awaited
+    owed: int
+    until: float
 
 
 class EnvelopeClient(Generic[N]):
     """A client for messages with header and trailer, in a stream or in packets.
 
-    Pass received data to `received`, and call `tick` at `deadline` at the latest. Take
-    the data to send from `output`, one message at a time. Times are in milliseconds of
-    any monotonic clock.
+    Pass received data to `received`, and call `tick` at `deadline` at the latest. After
+    each call, take the data to send from `output`, one message at a time. Times are in
+    milliseconds of any monotonic clock.
 
-    Unsolicited telemetry is reported as `Arrived`. A telecommand without a reply in the
-    ICD is `Done` when it is sent, any other when its reply has arrived. Replies are
-    assigned to requests by their ids. Up to ``requests`` requests with different
-    replies may be in progress at once.
+    Requests are sent in the order in which they began. A request waits while as many
+    are in progress as the device handles, or while a response to another request could
+    be taken for a response to it.
+
+    Every request ends with one outcome: `Sent` if nothing responds to it, otherwise
+    `Done`, `Refused`, `Busy` or `Timeout`. Unsolicited telemetry is reported as
+    `Arrived`, a response to a request that has ended as `Late`, any other response as
+    `Stray`.
 
     ``values``: values of the frame fields that the sender chooses, such as ``source``;
-    see `Sender`.
+    see `Sender`. ``requests``: largest number of requests in progress and waiting.
     """
 
     def __init__(
@@ -73,21 +155,27 @@ class EnvelopeClient(Generic[N]):
         self._sender = Sender(link, "telecommand", values)
         self._decoder = StreamDecoder(link)
         self._max_requests = requests
-        self.begun: Optional[int] = None
-        """Id of the reply to the last request; None if it has none."""
-        self._slots: list[_Slot] = []
-        self._unsent: list[_Slot] = []
+        self.begun = 0
+        """Handle of the last request."""
+        self._slots: list[_Slot] = []  # in the order in which they began
+        self._late: list[_Late] = []
+        self._now = 0.0  # time of the last call
+        self._next_output = 0.0  # the gap after the last transmission ends then
 
     @property
     def busy(self) -> bool:
         """Whether a request is in progress."""
-        return any(slot.state != "idle" for slot in self._slots)
+        return bool(self._slots)
 
     @property
     def deadline(self) -> Optional[float]:
         """Time in ms at which `tick` must be called at the latest; None if idle."""
-        ends = (slot.until for slot in self._slots if slot.state != "idle")
-        return min(ends, default=None)
+        times = [slot.until for slot in self._slots if slot.state != "queued"]
+        if self._queued():
+            # It may be possible to send the request then.
+            ends = [self._next_output, *(late.until for late in self._late)]
+            times += [end for end in ends if end > self._now]
+        return min(times, default=None)
 
     @property
     def discarded(self) -> int:
@@ -123,54 +211,72 @@ class EnvelopeClient(Generic[N]):
     ) -> list[Event]:
         """Start a request. ``reply`` is the id of the reply to a telecommand.
 
-        Raise `UnknownIdError` and `LengthError`. Raise `BusyError` if another request
-        waits for that reply, or if there are too many requests. Raise
-        `UnsupportedError` for telemetry that is not the reply to a telecommand without
-        parameters.
+        Raise `UnknownIdError` and `LengthError`. Raise `BusyError` if there are too
+        many requests. Raise `UnsupportedError` for telemetry that no telecommand
+        without values requests.
         """
         return self._begin(now, request, reply)
 
     def output(self) -> bytes:
-        """Return the next encoded message to send, or no bytes."""
-        if not self._unsent:
+        """Return the next encoded message to send, or no bytes.
+
+        Its times count from the previous call of another method.
+        """
+        slot, now = self._queued(), self._now
+        if slot is None or not self._may_be_sent(slot):
             return b""
-        slot = self._unsent.pop(0)
-        slot.was_taken = True
-        return self._sender.encode(slot.sent, slot.request.data)
+        line = self._sender.encode(slot.sent_id, slot.request.data)
+        slot.attempts += 1
+        slot.sent_at, slot.missing = now, slot.awaited.needed
+        slot.owed += len(slot.missing)
+        slot.state = "wait" if slot.missing else "sent"
+        slot.until = now + slot.timeout if slot.missing else now
+        slot.limit = now + self.settings.progress_for
+        self._next_output = now + self.settings.gap
+        return line
+
+    def sent(self, handle: int) -> Optional[Sent]:
+        """End a request that was sent and that nothing responds to, without waiting for
+        `tick`. Return None for any other request.
+        """
+        for slot in self._slots:
+            if slot.handle == handle and slot.state == "sent":
+                self._end(slot)
+                return Sent(slot.request.id, slot.attempts, handle)
+        return None
 
     def cancel(
         self,
         kind: Optional[Direction] = None,
         id: Optional[int] = None,
-        reply: Optional[int] = None,
+        handle: Optional[int] = None,
     ) -> None:
-        """Cancel a request, or all, without an event; drop the remaining output.
+        """Cancel a request, or all, without an event.
 
-        ``reply``: only the request that waits for telemetry of that id.
+        ``handle``: only the request of this handle.
         """
-        for slot in self._slots:
+        for slot in [*self._slots]:
             is_meant = kind in (None, slot.request.kind) and id in (
                 None,
                 slot.request.id,
             )
-            if is_meant and reply in (None, slot.reply):
-                self._drop(slot)
-                if slot.state != "idle":
-                    self._remember(slot, slot.until)
-                slot.state = "idle"
+            if is_meant and handle in (None, slot.handle):
+                self._end(slot)
 
     def tick(self, now: float) -> list[Event]:
         """Process timeouts. Call at `deadline` (in ms) at the latest."""
+        self._set_time(now)
         events: list[Event] = []
-        for slot in self._slots:
-            if slot.state == "idle" or now < slot.until:
+        for slot in [*self._slots]:
+            if slot.state == "queued" or now < slot.until:
                 continue
-            is_left = slot.request.repeat and slot.attempts <= self.settings.retries
-            if slot.state == "hold" or is_left:
-                events += self._transmit(now, slot)
-            else:
-                self._end(now, slot, True)
-                events.append(Timeout(slot.request.id, slot.attempts, slot.reply))
+            is_left = slot.repeats and slot.attempts <= self.settings.retries
+            if slot.state == "pause" or (slot.state == "wait" and is_left):
+                slot.state = "queued"
+                continue
+            self._end(slot)
+            event = Sent if slot.state == "sent" else Timeout
+            events.append(event(slot.request.id, slot.attempts, slot.handle))
         return events
 
     def received(self, now: float, data: Buffer) -> list[Event]:
@@ -185,14 +291,51 @@ class EnvelopeClient(Generic[N]):
             return Gap(event.id, event.missing)
         if event.event != "message" or event.id is None:
             return LineError(event.event, event.id)
+        id, data, kind = event.id, event.data, event.kind
         for slot in self._slots:
-            is_asked = slot.state == "wait" and slot.was_taken
-            is_awaited = is_asked and slot.reply == event.id
-            if is_awaited and slot.kind in (None, event.kind):
-                self._end(now, slot, slot.attempts > 1)
-                id, attempts = slot.request.id, slot.attempts
-                return Done(id, attempts, event.data, event.kind, event.id)
-        return Arrived(event.id, event.data, event.values, event.kind)
+            response = slot.awaited.matching(id, data)
+            if response and slot.is_awaited:
+                is_reply = response.verdict == "reply"
+                if not is_reply or slot.kind in (None, kind):
+                    return self._responded(now, slot, response, event)
+        for late in self._late:
+            response = late.awaited.matching(id, data)
+            if response:
+                late.owed -= _answered(response.verdict_of(data), late.awaited)
+                self._late = [entry for entry in self._late if entry.owed > 0]
+                return Late(id, data, kind)
+        if id in self._form.confirming:
+            return Stray(data, id, kind)
+        return Arrived(id, data, event.values, kind)
+
+    def _responded(
+        self, now: float, slot: _Slot, response: Response, event: StreamEvent
+    ) -> Event:
+        """Process a response to a request."""
+        verdict, data = response.verdict_of(event.data), event.data
+        id, response_id, handle = slot.request.id, response.telemetry, slot.handle
+        slot.owed = max(0, slot.owed - _answered(verdict, slot.awaited))
+        if verdict == "progress":
+            slot.until = max(slot.until, min(now + slot.timeout, slot.limit))
+            return Progress(id, data, event.kind, handle)
+        if verdict in ("ack", "reply"):
+            slot.missing -= {verdict}
+            if slot.missing and verdict == "reply":
+                return Reply(id, data, event.kind, response_id, handle)
+            if slot.missing:
+                return Progress(id, data, event.kind, handle)
+            self._end(slot)
+            return Done(id, slot.attempts, data, event.kind, response_id, handle)
+        code = response.reason.of(data) if response.reason else None
+        reason = next((name for value, name in response.reasons if value == code), None)
+        if verdict == "busy":
+            if slot.attempts <= self.settings.retries:
+                slot.state, slot.until = "pause", now + self.settings.busy_pause
+                return Progress(id, data, event.kind, handle)
+            self._end(slot)
+            return Busy(id, slot.attempts, code, reason, handle)
+        self._end(slot)
+        return Refused(id, slot.attempts, code, reason, None, data, event.kind, handle)
 
     def _begin(
         self,
@@ -203,81 +346,95 @@ class EnvelopeClient(Generic[N]):
     ) -> list[Event]:
         row = self._row(request)
         if request.kind == "telemetry":
-            reply, request = request.id, Request("telemetry", request.id, b"", True)
-        elif reply is None:
-            reply = row.reply
-        elif all(entry.id != reply for entry in self._form.telemetry):
+            request = Request("telemetry", request.id, bytes(row.least), True)
+        elif reply is not None and all(
+            entry.id != reply for entry in self._form.telemetry
+        ):
             raise UnknownIdError(self.link.node, "telemetry", reply)
-        slot = self._free_slot(reply)
+        if self._max_requests is not None and len(self._slots) >= self._max_requests:
+            raise BusyError("as many requests are going on as there may be")
         if not row.least <= len(request.data) <= row.most:
             nearest = row.most if len(request.data) > row.most else row.least
             raise LengthError(f"telecommand {row.id}", nearest, len(request.data))
-        slot.request, slot.sent, slot.reply, slot.kind = request, row.id, reply, kind
-        slot.attempts, slot.was_taken = 0, False
-        self.begun = reply
-        late = [
-            entry.late[1]
-            for entry in self._slots
-            if entry.late and entry.late[0] == reply
-        ]
-        if now < max(late, default=now):
-            slot.state, slot.until = "hold", max(late)
-            return []
-        return self._transmit(now, slot)
+        exchange = (
+            _NO_EXCHANGE if row.exchange is None else self._form.exchanges[row.exchange]
+        )
+        responses = exchange.responses
+        if reply is not None:
+            others = (each for each in responses if each.verdict != "reply")
+            responses = (*others, Response(reply, "reply"))
+        telecommand = row.id.to_bytes(4, "big") + request.data
+        sources = tuple(place.of(telecommand) for place in exchange.sources)
+        self.begun += 1
+        self._set_time(now)
+        self._slots.append(
+            _Slot(
+                self.begun,
+                request,
+                row.id,
+                _Awaited(responses, sources),
+                exchange.timeout or self.settings.reply_timeout,
+                request.repeat or row.repeats,
+                kind,
+            )
+        )
+        return []
 
     def _row(self, request: Request) -> StreamRow:
         """Return the telecommand that is sent."""
         rows, id = self._form.telecommands, request.id
         if request.kind == "telecommand":
             row = next((row for row in rows if row.id == id), None)
-        elif any(row.id == id for row in self._form.telemetry):
-            asking = (row for row in rows if row.reply == id and row.least == 0)
-            row = next(asking, None)
-            if row is None:
-                what = "is sent unasked: no telecommand without parameters asks for it"
-                raise UnsupportedError(f"telemetry {id} {what}")
         else:
-            row = None
+            row = next((row for row in rows if row.requests == id), None)
+            if row is None and any(row.id == id for row in self._form.telemetry):
+                what = "is sent unasked: no telecommand without values asks for it"
+                raise UnsupportedError(f"telemetry {id} {what}")
         if row is None:
             raise UnknownIdError(self.link.node, request.kind, id)
         return row
 
-    def _free_slot(self, reply: Optional[int]) -> _Slot:
-        """Return a slot for a request whose reply no other request waits for."""
-        waiting = (slot.reply for slot in self._slots if slot.state != "idle")
-        if reply is not None and reply in waiting:
-            raise BusyError(f"a request waits for telemetry {reply} already")
-        for slot in self._slots:
-            if slot.state == "idle" and slot not in self._unsent:
-                return slot
-        if self._max_requests is not None and len(self._slots) >= self._max_requests:
-            raise BusyError("as many requests are going on as there may be")
-        self._slots.append(_Slot())
-        return self._slots[-1]
+    def _set_time(self, now: float) -> None:
+        """Store the time, and drop responses that can no longer arrive."""
+        self._now = now
+        self._late = [late for late in self._late if now < late.until]
 
-    def _transmit(self, now: float, slot: _Slot) -> list[Event]:
-        """Send the request, for the first time or again."""
-        slot.attempts += 1
-        if slot not in self._unsent:
-            self._unsent.append(slot)
-        if slot.reply is None:
-            slot.state = "idle"
-            return [Done(slot.request.id, slot.attempts)]
-        slot.state, slot.until = "wait", now + self.settings.reply_timeout
-        return []
+    def _queued(self) -> Optional[_Slot]:
+        """Return the oldest request that is to be sent."""
+        return next((slot for slot in self._slots if slot.state == "queued"), None)
 
-    def _end(self, now: float, slot: _Slot, may_be_answered_again: bool) -> None:
-        slot.state = "idle"
-        self._drop(slot)
-        if may_be_answered_again:
-            self._remember(slot, now)
+    def _may_be_sent(self, slot: _Slot) -> bool:
+        """Return whether the device handles the request now, and no response to another
+        request could be taken for a response to it.
+        """
+        if self._now < self._next_output:
+            return False
+        if not slot.awaited.responses:
+            return True
+        others = [other for other in self._slots if other is not slot]
+        in_flight = sum(other.state in ("wait", "pause") for other in others)
+        # Also requests that are to be sent again: otherwise one of these and this
+        # request could each wait until the other has ended.
+        awaited = [other.awaited for other in others if other.missing]
+        awaited += [late.awaited for late in self._late]
+        return (
+            in_flight < self.settings.in_flight
+            and len(awaited) < MOST_AWAITED
+            and not any(map(slot.awaited.is_like, awaited))
+        )
 
-    def _drop(self, slot: _Slot) -> None:
-        """Drop the remaining output."""
-        if slot in self._unsent:
-            self._unsent.remove(slot)
+    def _end(self, slot: _Slot) -> None:
+        """End a request, and remember the responses that may still arrive."""
+        self._slots.remove(slot)
+        if slot.owed:
+            # A response counts from the transmission, not from the end of the request.
+            until = slot.sent_at + slot.timeout + self.settings.late
+            if self._now < until:
+                self._late.append(_Late(slot.awaited, slot.owed, until))
 
-    def _remember(self, slot: _Slot, since: float) -> None:
-        """Remember that the reply may still arrive, or arrive again."""
-        if slot.was_taken and slot.reply is not None:
-            slot.late = slot.reply, since + self.settings.reply_timeout
+
+def _answered(verdict: Verdict, awaited: _Awaited) -> int:
+    """Return the number of awaited responses that this one replaces."""
+    if verdict == "progress":
+        return 0
+    return 1 if verdict in ("ack", "reply") else len(awaited.needed)

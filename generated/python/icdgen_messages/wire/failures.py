@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Optional, Union
 
 from .._errors import IcdError
-from .events import Refused, Timeout
+from .events import Busy, Refused, Timeout
 
 
 class RefusedError(IcdError):
@@ -16,12 +16,24 @@ class RefusedError(IcdError):
     """
 
     def __init__(self, event: Refused, name: str = "") -> None:
-        why = event.reason or ("no reason" if event.code is None else str(event.code))
-        super().__init__(f"{_request(event, name)} was refused: {why}")
+        super().__init__(f"{_request(event, name)} was refused: {_reason(event)}")
         self.event, self.name = event, name
 
     def __reduce__(self) -> tuple[type[RefusedError], tuple[Refused, str]]:
         return RefusedError, (self.event, self.name)
+
+
+class DeviceBusyError(IcdError):
+    """The device was busy each time a request was sent. ``name`` is the message."""
+
+    def __init__(self, event: Busy, name: str = "") -> None:
+        often = "1 attempt" if event.attempts == 1 else f"{event.attempts} attempts"
+        text = f"the device was still busy after {often}"
+        super().__init__(f"{_request(event, name)} was not executed: {text}")
+        self.event, self.name = event, name
+
+    def __reduce__(self) -> tuple[type[DeviceBusyError], tuple[Busy, str]]:
+        return DeviceBusyError, (self.event, self.name)
 
 
 class ReplyTimeoutError(IcdError):
@@ -51,5 +63,9 @@ class FailedError(IcdError):
         return FailedError, (self.result, self.event)
 
 
-def _request(event: Union[Refused, Timeout], name: str) -> str:
+def _request(event: Union[Refused, Busy, Timeout], name: str) -> str:
     return f"{name} (id {event.id})" if name else f"the request of id {event.id}"
+
+
+def _reason(event: Refused) -> str:
+    return event.reason or ("no reason" if event.code is None else str(event.code))

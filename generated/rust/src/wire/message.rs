@@ -23,6 +23,16 @@ pub trait TelemetryOf<T>: Telemetry {
 /// Telecommand of node `T` or of a node that it includes. Implemented by the generated code.
 pub trait TelecommandOf<T>: Telecommand {}
 
+/// Node whose refusals on a link with header and trailer have reasons of one enumeration.
+/// Implemented by the generated code for the type `Node` of the module of the node.
+pub trait Refusals {
+    /// The enumeration.
+    type Reason;
+
+    /// Return the reason of a code, which may be one without a name.
+    fn reason(code: u32) -> Self::Reason;
+}
+
 /// The link of node `T`: the `LINK` of its module. It dereferences to [`Link`]; its type restricts
 /// a client to the messages of the node.
 #[derive(Clone, Copy, Debug)]

@@ -13,6 +13,7 @@ from importlib import import_module
 __all__ = [
     "Arrived",
     "AsyncSession",
+    "Busy",
     "BusyError",
     "CanEvent",
     "CanJoiner",
@@ -21,6 +22,7 @@ __all__ = [
     "ChecksumError",
     "Client",
     "Crc",
+    "DeviceBusyError",
     "Done",
     "DosTime",
     "Download",
@@ -36,6 +38,7 @@ __all__ = [
     "I2cTransfer",
     "Identity",
     "IndexEntry",
+    "Late",
     "LineError",
     "Link",
     "Log",
@@ -50,16 +53,20 @@ __all__ = [
     "Procedure",
     "ProgramCopy",
     "ProgramInformation",
+    "Progress",
     "Refused",
     "RefusedError",
+    "Reply",
     "ReplyTimeoutError",
     "Request",
     "Sender",
+    "Sent",
     "Session",
     "Settings",
     "Stray",
     "StreamDecoder",
     "StreamEvent",
+    "TelemetryData",
     "Timeout",
     "TooLongError",
     "UartDecoder",
@@ -76,6 +83,7 @@ __all__ = [
     "i2c_write",
     "identify",
     "read_index",
+    "response_to",
     "serial_port",
     "socket_port",
     "stream_encode",
@@ -98,23 +106,31 @@ if TYPE_CHECKING:
     from .crc import Crc as Crc
     from .crc import crc8 as crc8
     from .crc import crc16 as crc16
+    from .device import TelemetryData as TelemetryData
+    from .device import response_to as response_to
     from .envelope_client import EnvelopeClient as EnvelopeClient
     from .errors import BusyError as BusyError
     from .errors import ChecksumError as ChecksumError
     from .errors import TooLongError as TooLongError
     from .errors import UnsupportedError as UnsupportedError
     from .events import Arrived as Arrived
+    from .events import Busy as Busy
     from .events import Done as Done
     from .events import Event as Event
     from .events import Gap as Gap
+    from .events import Late as Late
     from .events import LineError as LineError
     from .events import Log as Log
     from .events import Malformed as Malformed
     from .events import OutcomeOf as OutcomeOf
     from .events import Packet as Packet
+    from .events import Progress as Progress
     from .events import Refused as Refused
+    from .events import Reply as Reply
+    from .events import Sent as Sent
     from .events import Stray as Stray
     from .events import Timeout as Timeout
+    from .failures import DeviceBusyError as DeviceBusyError
     from .failures import FailedError as FailedError
     from .failures import RefusedError as RefusedError
     from .failures import ReplyTimeoutError as ReplyTimeoutError
@@ -164,6 +180,7 @@ _HOMES = {
     "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
     "client": ("Client", "Request"),
     "crc": ("Crc", "crc16", "crc8"),
+    "device": ("TelemetryData", "response_to"),
     "envelope_client": ("EnvelopeClient",),
     "errors": (
         "BusyError",
@@ -173,19 +190,24 @@ _HOMES = {
     ),
     "events": (
         "Arrived",
+        "Busy",
         "Done",
         "Event",
         "Gap",
+        "Late",
         "LineError",
         "Log",
         "Malformed",
         "OutcomeOf",
         "Packet",
+        "Progress",
         "Refused",
+        "Reply",
+        "Sent",
         "Stray",
         "Timeout",
     ),
-    "failures": ("FailedError", "RefusedError", "ReplyTimeoutError"),
+    "failures": ("DeviceBusyError", "FailedError", "RefusedError", "ReplyTimeoutError"),
     "files": ("HoleMap", "IndexEntry", "read_index", "write_index"),
     "i2c": ("I2cTransfer", "i2c_read_length", "i2c_reply", "i2c_write"),
     "identity": ("Identity", "identify"),

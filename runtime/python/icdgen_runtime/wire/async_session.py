@@ -20,6 +20,7 @@ from .exchanges import (
     Progress,
     T,
     client_of,
+    data_of,
     executed,
     outcome_of,
 )
@@ -74,9 +75,7 @@ class AsyncSession(Exchanges[N]):
         `Client.request`.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
-        return class_of(message).from_bytes(
-            executed(outcome, class_of(message).NAME).data
-        )
+        return class_of(message).from_bytes(data_of(outcome, class_of(message).NAME))
 
     async def ask(self, message: NodeMessageClass[N, M]) -> OutcomeOf[M]:
         """Request telemetry or read a configuration; return the outcome.
@@ -106,7 +105,7 @@ class AsyncSession(Exchanges[N]):
         """
         outcome = await self._run(self._with_reply(message, reply, repeat))
         name = message_of(message).NAME
-        return class_of(reply).from_bytes(executed(outcome, name).data)
+        return class_of(reply).from_bytes(data_of(outcome, name))
 
     @overload
     def messages(

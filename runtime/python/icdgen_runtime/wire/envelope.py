@@ -7,6 +7,10 @@ from typing import Literal, NamedTuple, Optional
 Delimiter = Literal["length", "slip", "cobs", "hdlc", "none"]
 CheckKind = Literal["crc", "fletcher", "fletcher_255", "sum", "xor"]
 Direction = Literal["telecommand", "telemetry"]
+Verdict = Literal["ack", "reply", "nak", "busy", "progress"]
+"""A response confirms the telecommand, is the telemetry that it requested, refuses it,
+defers it because the device is busy, or reports that it is still being executed.
+"""
 
 
 class CrcForm(NamedTuple):
@@ -57,6 +61,75 @@ class CheckForm(NamedTuple):
     """Whether the seed of the message is covered, as a byte after all others."""
 
 
+class NumberPlace(NamedTuple):
+    """The place of a number: the ``size`` bytes at byte ``at``, shifted right, of
+    ``bits`` bits. Bytes that a message does not have are 0.
+    """
+
+    at: int
+    size: int
+    shift: int
+    bits: int
+    little: bool
+
+    def of(self, data: bytes) -> int:
+        """Return the number in a message."""
+        taken = data[self.at : self.at + self.size].ljust(self.size, b"\0")
+        number = int.from_bytes(taken, "little" if self.little else "big")
+        return number >> self.shift & ((1 << self.bits) - 1)
+
+    def put(self, number: int, data: bytearray) -> None:
+        """Write the number into a message, which zeros lengthen if it is too short."""
+        data.extend(bytes(max(0, self.at + self.size - len(data))))
+        taken = slice(self.at, self.at + self.size)
+        order: Literal["little", "big"] = "little" if self.little else "big"
+        mask = ((1 << self.bits) - 1) << self.shift
+        others = int.from_bytes(data[taken], order) & ~mask
+        data[taken] = (others | number << self.shift & mask).to_bytes(self.size, order)
+
+
+class Echo(NamedTuple):
+    """A number of a response that repeats a number of the telecommand."""
+
+    place: NumberPlace
+    source: int
+    """Index in the sources of the exchange."""
+
+
+class Response(NamedTuple):
+    """Telemetry that can end, refuse, defer or prolong a telecommand."""
+
+    telemetry: int
+    verdict: Verdict
+    """What it means; with a status, what a value means that is not in ``meanings``."""
+    echoes: tuple[Echo, ...] = ()
+    status: Optional[NumberPlace] = None
+    meanings: tuple[tuple[int, Verdict], ...] = ()
+    """Values of the status, and what each means."""
+    reason: Optional[NumberPlace] = None
+    """The place of the reason of a refusal."""
+    reasons: tuple[tuple[int, str], ...] = ()
+    """Names of the reasons."""
+
+    def verdict_of(self, data: bytes) -> Verdict:
+        """Return what these data say."""
+        if self.status is None:
+            return self.verdict
+        return dict(self.meanings).get(self.status.of(data), self.verdict)
+
+
+class Exchange(NamedTuple):
+    """The possible responses to a telecommand."""
+
+    sources: tuple[NumberPlace, ...]
+    """Numbers of the telecommand that responses repeat: places in its id, as 4 bytes
+    with the most significant first, followed by its data.
+    """
+    responses: tuple[Response, ...]
+    timeout: int = 0
+    """The time-out in milliseconds; 0: that of the client."""
+
+
 class StreamRow(NamedTuple):
     """A message: its id, the valid lengths of its data, and its seed."""
 
@@ -66,8 +139,12 @@ class StreamRow(NamedTuple):
     cuts_zeros: bool
     """Whether zeros at the end of the data are not sent, except for the first byte."""
     seed: int
-    reply: Optional[int] = None
-    """For a telecommand: the id of the telemetry that responds to it."""
+    exchange: Optional[int] = None
+    """Index in `Stream.exchanges`; None if nothing responds to a telecommand."""
+    repeats: bool = False
+    """Whether a telecommand may be sent again after a time-out."""
+    requests: Optional[int] = None
+    """The id of the telemetry that a telecommand of zeros requests."""
 
 
 class Stream(NamedTuple):
@@ -84,6 +161,9 @@ class Stream(NamedTuple):
     telecommands: tuple[StreamRow, ...]
     telemetry: tuple[StreamRow, ...]
     check: Optional[CheckForm] = None
+    exchanges: tuple[Exchange, ...] = ()
+    confirming: tuple[int, ...] = ()
+    """Ids of telemetry that only responds to telecommands, and is not requested."""
 
     def rows(self, direction: Direction) -> tuple[StreamRow, ...]:
         """Return the messages of a direction."""

@@ -1,12 +1,12 @@
 """Events of a client.
 
-Every request ends with one of `Done`, `Refused` and `Timeout`.
+Every request ends with one of `Done`, `Sent`, `Refused`, `Busy` and `Timeout`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Generic, Optional, TypeVar, Union, cast
 
 from .._base import Message
@@ -23,7 +23,8 @@ class Done(Generic[R_co]):
     """A request was executed. ``data`` is the frame of requested telemetry.
 
     ``Done[EstimatedAttitudeAngles]`` has a message of this class, ``Done[None]`` has
-    none. ``reply``: with header and trailer, the id of the reply.
+    none. ``reply``: with header and trailer, the id of the response. ``handle``
+    identifies the request of an `EnvelopeClient`.
     """
 
     id: int
@@ -31,6 +32,7 @@ class Done(Generic[R_co]):
     data: bytes = b""
     type: Optional[MessageClass] = None
     reply: Optional[int] = None
+    handle: int = field(default=0, compare=False, repr=False)
 
     @property
     def message(self) -> R_co:
@@ -49,7 +51,9 @@ class Refused:
     """The node rejected a request.
 
     ``reason`` is the role of the code in the ICD: ``unknown_id``, ``length``,
-    ``parameter`` or ``checksum``. CAN has no code. Only I2C reports the parameter.
+    ``parameter`` or ``checksum``; with header and trailer, the member of the
+    enumeration of the code. CAN has no code. Only I2C reports the parameter.
+    ``data`` is the response with header and trailer, of the class ``type``.
     """
 
     id: int
@@ -57,18 +61,79 @@ class Refused:
     code: Optional[int] = None
     reason: Optional[str] = None
     parameter: Optional[int] = None
+    data: bytes = field(default=b"", repr=False)
+    type: Optional[MessageClass] = field(default=None, repr=False)
+    handle: int = field(default=0, compare=False, repr=False)
+
+    @property
+    def message(self) -> Optional[Message]:
+        """The response with header and trailer; None on other links."""
+        return self.type.from_bytes(self.data) if self.type else None
 
 
 @dataclass(frozen=True)
 class Timeout:
-    """A request had no reply.
+    """A request had no response, so it is not known whether it was executed."""
 
-    ``reply``: with header and trailer, the id of the missing reply.
+    id: int
+    attempts: int
+    handle: int = field(default=0, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A telecommand without a response was sent."""
+
+    id: int
+    attempts: int = 1
+    handle: int = field(default=0, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Busy:
+    """The device was busy each time, so the request was not executed.
+
+    ``code`` and ``reason``: see `Refused`.
     """
 
     id: int
     attempts: int
-    reply: Optional[int] = None
+    code: Optional[int] = None
+    reason: Optional[str] = None
+    handle: int = field(default=0, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The device reports that it is still executing a request."""
+
+    id: int
+    data: bytes
+    type: Optional[MessageClass] = None
+    handle: int = field(default=0, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Reply:
+    """The requested telemetry arrived before the acknowledge of its request.
+
+    ``reply`` is the id of the telemetry.
+    """
+
+    id: int
+    data: bytes
+    type: Optional[MessageClass]
+    reply: int
+    handle: int = field(default=0, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Late:
+    """A response to a request that has ended."""
+
+    id: int
+    data: bytes
+    type: Optional[MessageClass] = None
 
 
 @dataclass(frozen=True)
@@ -99,9 +164,13 @@ class Log:
 
 @dataclass(frozen=True)
 class Stray:
-    """A message without a matching request, with its id; on I2C, the bytes read."""
+    """A response without a matching request: with header and trailer, its data and its
+    id; on I2C, the bytes read; on other links, the message with its id.
+    """
 
     data: bytes
+    id: Optional[int] = None
+    type: Optional[MessageClass] = None
 
 
 @dataclass(frozen=True)
@@ -146,6 +215,19 @@ class Gap:
 
 
 AnyDone = Done[Optional[Message]]
-Outcome = Union[AnyDone, Refused, Timeout]
-OutcomeOf = Union[Done[R_co], Refused, Timeout]
-Event = Union[Outcome, Malformed, Packet, Log, Stray, LineError, Arrived, Gap]
+Outcome = Union[AnyDone, Sent, Refused, Busy, Timeout]
+OutcomeOf = Union[Done[R_co], Sent, Refused, Busy, Timeout]
+OUTCOMES = (Done, Sent, Refused, Busy, Timeout)
+Event = Union[
+    Outcome,
+    Progress,
+    Reply,
+    Late,
+    Malformed,
+    Packet,
+    Log,
+    Stray,
+    LineError,
+    Arrived,
+    Gap,
+]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 
 from .._base import Message
@@ -13,8 +14,10 @@ from .client import Client, Request
 from .envelope_client import EnvelopeClient
 from .errors import BusyError, UnsupportedError
 from .events import (
+    OUTCOMES,
     AnyDone,
     Arrived,
+    Busy,
     Done,
     Event,
     Malformed,
@@ -22,9 +25,11 @@ from .events import (
     OutcomeOf,
     R_co,
     Refused,
+    Reply,
+    Sent,
     Timeout,
 )
-from .failures import FailedError, RefusedError, ReplyTimeoutError
+from .failures import DeviceBusyError, FailedError, RefusedError, ReplyTimeoutError
 from .link import Link, Settings
 from .message_ids import NodeMessage, NodeMessageClass
 from .procedures import Procedure
@@ -89,7 +94,7 @@ class Exchanges(Generic[N]):
 
     def _report_unsolicited(self, events: list[Event]) -> list[Event]:
         for event in events:
-            if not isinstance(event, (Done, Refused, Timeout)):
+            if not isinstance(event, (*OUTCOMES, Reply)):
                 self._report(event)
         return events
 
@@ -133,24 +138,26 @@ class Exchanges(Generic[N]):
             except BusyError:
                 yield None
         client = self.client
-        reply = client.begun if isinstance(client, EnvelopeClient) else None
-        is_going_on = True
+        handle = client.begun if isinstance(client, EnvelopeClient) else 0
+        reply: Optional[Reply] = None
         try:
+            yield "send"
+            if isinstance(client, EnvelopeClient) and (sent := client.sent(handle)):
+                return sent
             while True:
                 for event in events:
-                    if isinstance(event, Refused) or (
-                        isinstance(event, (Done, Timeout)) and event.reply == reply
-                    ):
-                        is_going_on = False
+                    if isinstance(event, Reply) and event.handle == handle:
+                        reply = event
+                    elif isinstance(event, OUTCOMES) and event.handle == handle:
                         yield "send"
-                        return event
+                        return _with_data(event, reply)
                 events = yield None
         finally:
+            # Otherwise it stays busy after an exception of the port.
             if isinstance(client, Client):
-                # Otherwise it stays busy after an exception of the port.
                 client.cancel()
-            elif is_going_on:
-                client.cancel(reply=reply)
+            else:
+                client.cancel(handle=handle)
 
     def _concurrently(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
         """Run several exchanges at once. If one fails, the others are closed."""
@@ -227,16 +234,32 @@ class Exchanges(Generic[N]):
                 events = yield procedure.deadline
 
 
-def executed(outcome: Outcome, name: str) -> AnyDone:
-    """Return the outcome if it is `Done`.
+def executed(outcome: Outcome, name: str) -> Union[AnyDone, Sent]:
+    """Return the outcome if it is `Done` or `Sent`.
 
-    Otherwise raise `RefusedError` or `ReplyTimeoutError`.
+    Otherwise raise `RefusedError`, `DeviceBusyError` or `ReplyTimeoutError`.
     """
     if isinstance(outcome, Refused):
         raise RefusedError(outcome, name)
+    if isinstance(outcome, Busy):
+        raise DeviceBusyError(outcome, name)
     if isinstance(outcome, Timeout):
         raise ReplyTimeoutError(outcome, name)
     return outcome
+
+
+def data_of(outcome: Outcome, name: str) -> bytes:
+    """Return the data of requested telemetry. Raise as `executed`."""
+    done = executed(outcome, name)
+    assert isinstance(done, Done), "a request of telemetry ends with its data"
+    return done.data
+
+
+def _with_data(outcome: Outcome, reply: Optional[Reply]) -> Outcome:
+    """Return an outcome with the telemetry that arrived before the acknowledge."""
+    if reply is None or not isinstance(outcome, Done):
+        return outcome
+    return replace(outcome, data=reply.data, type=reply.type, reply=reply.reply)
 
 
 def outcome_of(outcome: Outcome, message: type[R_co]) -> OutcomeOf[R_co]:

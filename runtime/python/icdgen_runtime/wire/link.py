@@ -11,7 +11,11 @@ from .._hints import N
 from .._lazy import Messages
 from .envelope import CheckForm as CheckForm  # noqa: PLC0414
 from .envelope import CrcForm as CrcForm  # noqa: PLC0414
+from .envelope import Echo as Echo  # noqa: PLC0414
 from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
+from .envelope import Exchange as Exchange  # noqa: PLC0414
+from .envelope import NumberPlace as NumberPlace  # noqa: PLC0414
+from .envelope import Response as Response  # noqa: PLC0414
 from .envelope import Stream as Stream  # noqa: PLC0414
 from .envelope import StreamRow as StreamRow  # noqa: PLC0414
 
@@ -42,6 +46,16 @@ class Settings(NamedTuple):
     """Time between two polls for an acknowledge, in milliseconds."""
     poll_timeout: Number
     """Longest processing time of a telecommand, in milliseconds."""
+    late: Number
+    """Time after a time-out in which a response can still come, in milliseconds."""
+    busy_pause: Number
+    """Pause before a request is sent to a busy device again, in milliseconds."""
+    gap: Number
+    """Shortest time between two transmissions, in milliseconds."""
+    in_flight: int
+    """Number of requests that the device handles at a time."""
+    progress_for: Number
+    """Longest time by which reports of progress extend a time-out, in milliseconds."""
 
 
 class Sent(NamedTuple):

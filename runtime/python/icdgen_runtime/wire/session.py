@@ -19,6 +19,7 @@ from .exchanges import (
     Progress,
     T,
     client_of,
+    data_of,
     executed,
     outcome_of,
 )
@@ -37,9 +38,7 @@ class BusSession(Exchanges[N]):
         `Client.request`.
         """
         outcome = self._run(self._exchange(self.client.request, message))
-        return class_of(message).from_bytes(
-            executed(outcome, class_of(message).NAME).data
-        )
+        return class_of(message).from_bytes(data_of(outcome, class_of(message).NAME))
 
     def ask(self, message: NodeMessageClass[N, M]) -> OutcomeOf[M]:
         """Request telemetry or read a configuration; return the outcome.
@@ -76,7 +75,7 @@ class BusSession(Exchanges[N]):
         ]
         outcomes = self._run(self._concurrently(exchanges))
         return tuple(
-            class_of(message).from_bytes(executed(outcome, class_of(message).NAME).data)
+            class_of(message).from_bytes(data_of(outcome, class_of(message).NAME))
             for message, outcome in zip(messages, outcomes)
         )
 
@@ -100,7 +99,7 @@ class BusSession(Exchanges[N]):
         """
         outcome = self._run(self._with_reply(message, reply, repeat))
         name = message_of(message).NAME
-        return class_of(reply).from_bytes(executed(outcome, name).data)
+        return class_of(reply).from_bytes(data_of(outcome, name))
 
     @overload
     def messages(self, *, seconds: Optional[float] = None) -> Iterator[Message]: ...

@@ -3,7 +3,7 @@
 use super::files::{End, Procedure};
 use super::link::{Reason, Settings};
 use super::{
-    Client, Error, Event, Linked, NodeEvent, Request, Started, TelecommandOf, TelemetryOf,
+    Client, Error, Event, Linked, NodeEvent, Refusals, Request, Started, TelecommandOf, TelemetryOf,
 };
 use std::boxed::Box;
 use std::fmt;
@@ -25,8 +25,17 @@ pub enum Failure {
         id: u32,
         /// The error code.
         code: Option<u32>,
-        /// Meaning of the code in the ICD.
+        /// Meaning of the code in the ICD. With header and trailer see [`Failure::reason`].
         reason: Option<Reason>,
+    },
+    /// The device was busy each time, so the request was not executed.
+    Busy {
+        /// The id.
+        id: u32,
+        /// Number of times the request was sent.
+        attempts: u16,
+        /// The error code.
+        code: Option<u32>,
     },
     /// The node did not reply in time.
     Timeout {
@@ -37,6 +46,18 @@ pub enum Failure {
     },
     /// The procedure failed in this way.
     Procedure(End),
+}
+
+impl Failure {
+    /// Return why node `T` refused a request or was busy; None for other failures, and if the
+    /// response has no reason.
+    #[must_use]
+    pub fn reason<T: Refusals>(&self) -> Option<T::Reason> {
+        match self {
+            Self::Refused { code, .. } | Self::Busy { code, .. } => code.map(T::reason),
+            _ => None,
+        }
+    }
 }
 
 impl From<io::Error> for Failure {
@@ -66,6 +87,13 @@ impl fmt::Display for Failure {
                 write!(out, "request {id} is refused")?;
                 code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;
                 reason.map_or(Ok(()), |reason| write!(out, ": {reason:?}"))
+            }
+            Self::Busy { id, attempts, .. } => {
+                let times = if *attempts == 1 { "" } else { "s" };
+                write!(
+                    out,
+                    "the device is still busy after {attempts} attempt{times} at request {id}"
+                )
             }
             Self::Timeout { id, attempts: 1 } => {
                 write!(out, "no answer to request {id}, asked once")

@@ -14,7 +14,8 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::steps::{Piece, Place, Role, Step};
 pub use self::stream::{
-    CheckForm, CheckKind, Delimiter, EnvelopeField, EnvelopeRole, Stream, StreamRow,
+    CheckForm, CheckKind, Delimiter, Echo, EnvelopeField, EnvelopeRole, Exchange, NumberPlace,
+    Response, Stream, StreamRow, Verdict,
 };
 pub use self::transfer::{
     DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, OperationForm, UploadForm,
@@ -189,6 +190,16 @@ pub struct Settings {
     pub poll_interval_ms: u32,
     /// Longest processing time of a telecommand.
     pub poll_timeout_ms: u32,
+    /// Time after a time-out in which a response can still come.
+    pub late_ms: u32,
+    /// Pause before a request is sent to a busy device again.
+    pub busy_pause_ms: u32,
+    /// Shortest time between two transmissions.
+    pub gap_ms: u32,
+    /// Number of requests that the device handles at a time.
+    pub in_flight: u8,
+    /// Longest time by which reports of progress extend a time-out.
+    pub progress_for_ms: u32,
 }
 
 /// What an error code means.

@@ -100,6 +100,11 @@ pub static LINK: NodeLink<crate::bootloader::Node> = NodeLink::new(link::Link {
         poll_interval_ms: 20,
         // Assumed. No time is given.
         poll_timeout_ms: 5_000,
+        late_ms: 1_000,
+        busy_pause_ms: 100,
+        gap_ms: 0,
+        in_flight: 1,
+        progress_for_ms: 60_000,
     },
     errors: &[
         (0, link::Reason::NoError),

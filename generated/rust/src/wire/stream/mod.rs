@@ -2,6 +2,7 @@
 
 //! Messages with header and trailer, in a stream of bytes or in packets.
 
+mod awaited;
 mod check;
 mod client;
 mod decoder;
@@ -21,4 +22,4 @@ pub use self::judge::Event;
 pub use self::request::Request;
 pub use self::sender::Sender;
 #[cfg(feature = "std")]
-pub use self::session::Session;
+pub use self::session::{Outcome, Session};

@@ -6,13 +6,22 @@
 use super::{Client, Event, NodeEvent, Request, Values};
 use crate::wire::link::Settings;
 use crate::wire::session::{Failure, Waiting};
-use crate::wire::{Error, Linked, Started, TelecommandOf, TelemetryOf};
+use crate::wire::{Error, Linked, TelecommandOf, TelemetryOf};
 use std::boxed::Box;
 use std::io::{Read, Write};
 use std::vec;
 use std::vec::Vec;
 
 type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
+
+/// How a request ended that did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The device executed it.
+    Done,
+    /// It was sent, and nothing responds to it.
+    Sent,
+}
 
 /// Blocking client. `N` is the constant `LONGEST`, `S` the constant `SEQUENCES` and `T` the type
 /// `Node` of the module of the node.
@@ -87,20 +96,20 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
     /// [`Failure`]
     pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
         self.client.request::<M>(self.port.now())?;
-        Ok(M::read(&self.outcome(Started::Waiting)?)?)
+        Ok(M::read(&self.outcome()?.1)?)
     }
 
-    /// Send a telecommand and wait for its reply, if the ICD defines one.
+    /// Send a telecommand and wait for the responses that the ICD describes.
     ///
     /// # Errors
     ///
-    /// [`Failure`]
-    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
-        let started = self.client.send(self.port.now(), message)?;
-        self.outcome(started).map(|_| ())
+    /// [`Failure`]; for the reason of a refusal see [`Failure::reason`].
+    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<Outcome, Failure> {
+        self.client.send(self.port.now(), message)?;
+        Ok(self.outcome()?.0)
     }
 
-    /// Send a telecommand and wait for telemetry `A`, regardless of the ICD.
+    /// Send a telecommand and wait for telemetry `A`, although the ICD does not describe that reply.
     ///
     /// # Errors
     ///
@@ -110,17 +119,18 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         message: &M,
     ) -> Result<A, Failure> {
         self.client.ask::<A, M>(self.port.now(), message)?;
-        Ok(A::read(&self.outcome(Started::Waiting)?)?)
+        Ok(A::read(&self.outcome()?.1)?)
     }
 
-    /// Send any request, wait for its outcome, and return the data of the reply, if it has one.
+    /// Send any request and wait for its outcome. Return the data of the requested telemetry, or of
+    /// the response that confirmed the request; no data if nothing responds to it.
     ///
     /// # Errors
     ///
     /// [`Failure`]
     pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
-        let started = self.client.start(self.port.now(), request)?;
-        self.outcome(started)
+        self.client.start(self.port.now(), request)?;
+        Ok(self.outcome()?.1)
     }
 
     /// Wait for the next telemetry `M`, unsolicited or not. Return None if none arrives within this
@@ -146,39 +156,49 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
         self.wait(|_| {})
     }
 
-    /// What became of the request; one that failed with its port must not be in the way of the next.
-    fn outcome(&mut self, started: Started) -> Result<Vec<u8>, Failure> {
-        let outcome = match started {
-            Started::Done => self.flush().map(|()| Vec::new()),
-            Started::Waiting => self.awaited(),
-        };
+    /// Wait until the request has ended. One that failed with its port must not be in the way of the
+    /// next.
+    fn outcome(&mut self) -> Result<(Outcome, Vec<u8>), Failure> {
+        let outcome = self.ended();
         if outcome.is_err() {
             self.client.cancel();
         }
         outcome
     }
 
-    fn awaited(&mut self) -> Result<Vec<u8>, Failure> {
-        let mut found = None;
+    fn ended(&mut self) -> Result<(Outcome, Vec<u8>), Failure> {
+        let mut ending = Ending::default();
+        self.flush()?;
+        // One to which nothing responds has ended now.
+        self.process(&[], |event| ending.hear(event));
         loop {
-            self.wait(|event| found = found.take().or_else(|| outcome_of(event)))?;
-            if let Some(outcome) = found {
-                return outcome;
+            if let Some(outcome) = ending.outcome.take() {
+                let (outcome, data) = outcome?;
+                return Ok((outcome, ending.reply.unwrap_or(data)));
             }
+            self.wait(|event| ending.hear(event))?;
         }
     }
 
-    fn wait(&mut self, mut on_event: impl FnMut(&NodeEvent<'_, T>)) -> Result<(), Failure> {
+    fn wait(&mut self, on_event: impl FnMut(&NodeEvent<'_, T>)) -> Result<(), Failure> {
         self.flush()?;
         let mut input = [0; 512];
         let bytes = self.port.read(&mut input)?;
-        let now = self.port.now();
-        let told = &mut self.on_event;
-        self.client.received(now, bytes, |event| {
+        self.process(bytes, on_event);
+        self.flush()
+    }
+
+    fn process(&mut self, bytes: &[u8], mut on_event: impl FnMut(&NodeEvent<'_, T>)) {
+        let (now, told) = (self.port.now(), &mut self.on_event);
+        let both = |event: NodeEvent<'_, T>| {
             on_event(&event);
             told(&event);
-        });
-        self.flush()
+        };
+        if bytes.is_empty() {
+            self.client.tick(now, both);
+        } else {
+            self.client.received(now, bytes, both);
+        }
     }
 
     fn flush(&mut self) -> Result<(), Failure> {
@@ -189,11 +209,33 @@ impl<T, P: Read + Write, const N: usize, const S: usize> Session<T, P, N, S> {
     }
 }
 
-/// What the event says of the request.
-fn outcome_of(event: &Event<'_>) -> Option<Result<Vec<u8>, Failure>> {
-    match *event {
-        Event::Done { data, .. } => Some(Ok(data.to_vec())),
-        Event::Timeout { id, attempts, .. } => Some(Err(Failure::Timeout { id, attempts })),
-        _ => None,
+/// The events of a request until it has ended.
+#[derive(Default)]
+struct Ending {
+    reply: Option<Vec<u8>>, // the requested telemetry, if it came before the acknowledge
+    outcome: Option<Result<(Outcome, Vec<u8>), Failure>>,
+}
+
+impl Ending {
+    fn hear(&mut self, event: &Event<'_>) {
+        let outcome = match *event {
+            Event::Done { data, .. } => Ok((Outcome::Done, data.to_vec())),
+            Event::Sent { .. } => Ok((Outcome::Sent, Vec::new())),
+            Event::Refused { id, code, .. } => Err(Failure::Refused {
+                id,
+                code,
+                reason: None,
+            }),
+            Event::Busy {
+                id, attempts, code, ..
+            } => Err(Failure::Busy { id, attempts, code }),
+            Event::Timeout { id, attempts, .. } => Err(Failure::Timeout { id, attempts }),
+            Event::Reply { data, .. } => {
+                self.reply = Some(data.to_vec());
+                return;
+            }
+            _ => return,
+        };
+        self.outcome = self.outcome.take().or(Some(outcome));
     }
 }

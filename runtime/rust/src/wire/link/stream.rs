@@ -110,8 +110,86 @@ pub struct StreamRow {
     pub cuts_zeros: bool,
     /// Seed: byte that the checksum covers last.
     pub seed: u8,
-    /// Telecommand: id of the telemetry that is its reply.
-    pub reply: Option<u32>,
+    /// Telecommand: index of its exchange in [`Stream::exchanges`]; None if nothing responds to it.
+    pub exchange: Option<usize>,
+    /// Telecommand: whether it may be sent again after a time-out.
+    pub repeats: bool,
+    /// Telecommand: id of the telemetry that it requests if it is sent as `least` zero bytes.
+    pub requests: Option<u32>,
+}
+
+/// What a response says about a telecommand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// It was accepted.
+    Ack,
+    /// The telemetry that it requested.
+    Reply,
+    /// It was refused.
+    Nak,
+    /// The device is busy.
+    Busy,
+    /// It is still being executed.
+    Progress,
+}
+
+/// Place of a number: the `size` bytes (at most 4) from byte `at` on, shifted right by `shift` and
+/// masked to `bits` bits. Bytes that a message does not have are 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NumberPlace {
+    /// Its first byte.
+    pub at: usize,
+    /// Bytes that it has part in.
+    pub size: usize,
+    /// Bits below it.
+    pub shift: u32,
+    /// Its width.
+    pub bits: u32,
+    /// Whether the least significant byte comes first.
+    pub little: bool,
+}
+
+/// A number of a response that repeats a number of the telecommand.
+#[derive(Clone, Copy, Debug)]
+pub struct Echo {
+    /// Its place in the response.
+    pub place: NumberPlace,
+    /// Index in [`Exchange::sources`].
+    pub source: usize,
+}
+
+/// Telemetry that can end, refuse, defer or prolong a telecommand.
+#[derive(Clone, Copy, Debug)]
+pub struct Response {
+    /// Its id.
+    pub telemetry: u32,
+    /// What it means; with a status, what a value means that is not in `meanings`.
+    pub verdict: Verdict,
+    /// Numbers that must be equal to those of the telecommand.
+    pub echoes: &'static [Echo],
+    /// The status.
+    pub status: Option<NumberPlace>,
+    /// Values of the status and their meanings.
+    pub meanings: &'static [(u32, Verdict)],
+    /// Reason of a refusal.
+    pub reason: Option<NumberPlace>,
+}
+
+/// The possible responses to a telecommand.
+#[derive(Clone, Copy, Debug)]
+pub struct Exchange {
+    /// Numbers of the telecommand that responses repeat, at most [`Exchange::SOURCES`]: places in
+    /// its id, as 4 bytes with the most significant first, followed by its data.
+    pub sources: &'static [NumberPlace],
+    /// The responses.
+    pub responses: &'static [Response],
+    /// The time-out; 0: that of the client.
+    pub timeout_ms: u32,
+}
+
+impl Exchange {
+    /// Largest number of sources.
+    pub const SOURCES: usize = 4;
 }
 
 /// Framing of messages in a stream of bytes or in packets.
@@ -135,4 +213,8 @@ pub struct Stream {
     pub telecommands: &'static [StreamRow],
     /// The telemetry, in ascending order of the ids.
     pub telemetry: &'static [StreamRow],
+    /// The exchanges of the telecommands.
+    pub exchanges: &'static [Exchange],
+    /// Ids of telemetry that only responds to telecommands, and is not requested.
+    pub confirming: &'static [u32],
 }

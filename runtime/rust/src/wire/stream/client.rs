@@ -1,5 +1,4 @@
-//! Client for messages with header and trailer. Several requests may be in progress if their
-//! replies differ.
+//! Client for messages with header and trailer. Several requests may be in progress.
 
 use super::decoder::Decoder;
 use super::encoder::Values;
@@ -7,20 +6,28 @@ use super::judge::Event;
 use super::sender::Sender;
 use super::slots::Slots;
 use super::Request;
-use crate::wire::link::{Settings, Stream};
-use crate::wire::request::Started;
-use crate::wire::{Direction, Error, Linked, TelecommandOf, TelemetryOf};
+use crate::wire::link::Settings;
+use crate::wire::{Direction, Error, Linked, Refusals, TelecommandOf, TelemetryOf};
 use core::fmt;
 use core::marker::PhantomData;
 use core::ops::Deref;
 
 /// A client of node `T` for messages with header and trailer. `N` is the constant `LONGEST` and `S`
-/// the constant `SEQUENCES` of the module of the node. Up to `R` requests may be in progress at the
-/// same time if they wait for telemetry with different ids.
+/// the constant `SEQUENCES` of the module of the node. Up to `R` requests may be in progress or wait
+/// to be sent.
 ///
-/// The application passes received bytes to the client, takes its output, and calls
-/// [`Client::tick`] at the [`Client::deadline`]. Unsolicited telemetry is reported as
-/// [`Event::Message`]. All times `now` are in milliseconds and may wrap around.
+/// The application passes received bytes to the client, takes its output after each call, and calls
+/// [`Client::tick`] at the [`Client::deadline`]. All times `now` are in milliseconds and may wrap
+/// around; between two calls must be less than 24 days.
+///
+/// Requests are sent in the order in which they began. A request waits while as many are in progress
+/// as the device handles, or while a response to another request could be taken for a response to
+/// it.
+///
+/// Every request ends with one event: [`Event::Sent`] if nothing responds to it, otherwise
+/// [`Event::Done`], [`Event::Refused`], [`Event::Busy`] or [`Event::Timeout`]. Unsolicited telemetry
+/// is reported as [`Event::Message`], a response to a request that has ended as [`Event::Late`], any
+/// other response as [`Event::Stray`].
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::Client;
@@ -42,7 +49,6 @@ use core::ops::Deref;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Client<T, const N: usize, const S: usize, const R: usize> {
-    form: &'static Stream,
     sender: Sender<T, S>,
     decoder: Decoder<N, S>,
     slots: Slots<N, R>,
@@ -62,11 +68,11 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         if actual < expected {
             return Err(Error::Length { expected, actual });
         }
+        let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
         Ok(Self {
-            form: link.stream.as_ref().ok_or(Error::Unsupported)?,
             sender,
             decoder: Decoder::with_limit(link, Direction::Telemetry, link.longest)?,
-            slots: Slots::new(link.client),
+            slots: Slots::new(form, link.client),
         })
     }
 
@@ -84,7 +90,7 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     ///
     /// [`Error::Range`] if a value does not fit into its field.
     pub fn set_values(&mut self, values: Values) -> Result<(), Error> {
-        values.check(self.form)?;
+        values.check(self.slots.form)?;
         self.sender.values = values;
         Ok(())
     }
@@ -108,22 +114,21 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     ///
     /// See [`Client::start`].
     pub fn request<M: TelemetryOf<T>>(&mut self, now: u32) -> Result<(), Error> {
-        self.start(now, &Request::telemetry(M::TELEMETRY_ID))?;
-        Ok(())
+        self.start(now, &Request::telemetry(M::TELEMETRY_ID))
     }
 
-    /// Send a telecommand. The ICD decides which reply it has. `now` is in milliseconds.
+    /// Send a telecommand. The ICD describes the responses. `now` is in milliseconds.
     ///
     /// # Errors
     ///
     /// See [`Client::start`]; also [`Error::Range`] if a value does not fit into its field.
-    pub fn send<M: TelecommandOf<T>>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
+    pub fn send<M: TelecommandOf<T>>(&mut self, now: u32, message: &M) -> Result<(), Error> {
         let data = message.to_bytes()?;
         self.start(now, &Request::telecommand(M::TELECOMMAND_ID, data.as_ref()))
     }
 
-    /// Send a telecommand and wait for telemetry `A`, regardless of the ICD. `now` is in
-    /// milliseconds.
+    /// Send a telecommand to which telemetry `A` replies, although the ICD does not describe that.
+    /// `now` is in milliseconds.
     ///
     /// # Errors
     ///
@@ -136,23 +141,23 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         let data = message.to_bytes()?;
         let request = Request::telecommand(M::TELECOMMAND_ID, data.as_ref());
         let reply = Some(A::TELEMETRY_ID);
-        self.start(now, &Request { reply, ..request })?;
-        Ok(())
+        self.start(now, &Request { reply, ..request })
     }
 
-    /// Start a request. The data are copied. `now` is in milliseconds.
+    /// Start a request. The data are copied; [`Client::output`] returns the message when it may be
+    /// sent. `now` is in milliseconds.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] if another request
-    /// waits for the same reply or `R` requests are in progress, [`Error::Length`] if the data have
-    /// the wrong length, [`Error::Unsupported`] if no telecommand without parameters requests this
-    /// telemetry.
-    pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<Started, Error> {
-        self.slots.start(self.form, now, request)
+    /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] if `R` requests are in
+    /// progress or wait to be sent, [`Error::Length`] if the data have the wrong length,
+    /// [`Error::Unsupported`] if no telecommand without parameters requests this telemetry.
+    pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
+        self.slots.start(now, request)
     }
 
-    /// Encode the next message to send into `line`. Return None if there is none.
+    /// Encode the next message to send into `line`. Return None if there is none. Its times count
+    /// from the `now` of the previous call of another method.
     ///
     /// # Errors
     ///
@@ -169,19 +174,18 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         self.tick(now, &mut on_event);
         let slots = &mut self.slots;
         self.decoder.feed(bytes, |found| {
-            on_event(NodeEvent::new(slots.found(now, found)));
+            on_event(NodeEvent::new(slots.found(found)));
         });
     }
 
-    /// Process timeouts: send again or end the request whose time is up. Call at the deadline at
+    /// Process timeouts: send again or end the requests whose time is up. Call at the deadline at
     /// the latest; calling more often is harmless. `now` is in milliseconds.
     pub fn tick(&mut self, now: u32, mut on_event: impl FnMut(NodeEvent<'_, T>)) {
         let told = &mut |event: Event<'_>| on_event(NodeEvent::new(event));
         self.slots.tick(now, told);
     }
 
-    /// Cancel all requests without events, and drop their remaining output. A late reply is
-    /// reported as [`Event::Message`].
+    /// Cancel all requests without events. Those that were not sent yet are not sent.
     pub fn cancel(&mut self) {
         self.slots.cancel(None);
     }
@@ -205,13 +209,24 @@ impl<'a, T> NodeEvent<'a, T> {
         Self { event, node }
     }
 
-    /// Return the telemetry `M`, unsolicited or a reply; None if the event contains no such
-    /// message.
+    /// Return the telemetry `M`: unsolicited, a reply or any other response; None if the event
+    /// contains no such message.
     #[must_use]
     pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
+        match self.event.telemetry() {
+            Some((id, data)) if id == M::TELEMETRY_ID => M::read(data).ok(),
+            _ => None,
+        }
+    }
+}
+
+impl<T: Refusals> NodeEvent<'_, T> {
+    /// Return why the device refused a request or was busy; None for other events, and if the
+    /// response has no reason.
+    #[must_use]
+    pub fn reason(&self) -> Option<T::Reason> {
         match self.event {
-            Event::Done { reply, data, .. } if reply == M::TELEMETRY_ID => M::read(data).ok(),
-            Event::Message { id, data, .. } if id == M::TELEMETRY_ID => M::read(data).ok(),
+            Event::Refused { code, .. } | Event::Busy { code, .. } => code.map(T::reason),
             _ => None,
         }
     }

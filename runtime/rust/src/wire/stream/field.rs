@@ -1,6 +1,7 @@
 //! Fields of the header and trailer.
 
-use crate::wire::link::{EnvelopeField, EnvelopeRole, Stream, StreamRow};
+use crate::wire::bits::{head, number};
+use crate::wire::link::{EnvelopeField, EnvelopeRole, NumberPlace, Stream, StreamRow};
 use crate::wire::Direction;
 
 impl EnvelopeField {
@@ -46,6 +47,20 @@ impl EnvelopeField {
             let [low, ..] = value.wrapping_shr(byte.wrapping_mul(8)).to_le_bytes();
             *place |= low;
         }
+    }
+}
+
+impl NumberPlace {
+    /// Return the number in `first`, followed by `rest`.
+    pub(super) fn get(&self, first: &[u8], rest: &[u8]) -> u32 {
+        let mut octets = [0; 4];
+        let bytes = first.iter().chain(rest).skip(self.at).take(self.size);
+        for (octet, byte) in octets.iter_mut().zip(bytes) {
+            *octet = *byte;
+        }
+        let number = number(head(&octets, self.size), self.little).wrapping_shr(self.shift);
+        let mask = u32::MAX.wrapping_shr(32_u32.wrapping_sub(self.bits));
+        mask & u32::try_from(number).unwrap_or(0)
     }
 }
 

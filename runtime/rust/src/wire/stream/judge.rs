@@ -44,7 +44,7 @@ pub enum Event<'a> {
     Overrun,
     /// Dropped: wrong constant or delimiter.
     Framing,
-    /// Client: the request succeeded.
+    /// Client: the device executed the request.
     Done {
         /// Direction of the request.
         direction: Direction,
@@ -52,14 +52,53 @@ pub enum Event<'a> {
         id: u32,
         /// Number of times the request was sent.
         attempts: u16,
-        /// Id of the reply, if it has one.
+        /// Id of the response that completed it.
         reply: u32,
-        /// Its data.
+        /// Data of the response.
         data: &'a [u8],
-        /// Values of the header and trailer fields of the reply.
+        /// Values of the header and trailer fields of the response.
         values: Values,
     },
-    /// Client: no reply in time.
+    /// Client: the telecommand was sent, and nothing responds to it.
+    Sent {
+        /// Direction of the request.
+        direction: Direction,
+        /// Id of the request.
+        id: u32,
+        /// Number of times the request was sent.
+        attempts: u16,
+    },
+    /// Client: the device refused the request.
+    Refused {
+        /// Direction of the request.
+        direction: Direction,
+        /// Id of the request.
+        id: u32,
+        /// Number of times the request was sent.
+        attempts: u16,
+        /// The reason, if the response has one.
+        code: Option<u32>,
+        /// Id of the response.
+        reply: u32,
+        /// Data of the response.
+        data: &'a [u8],
+    },
+    /// Client: the device was busy each time, so the request was not executed.
+    Busy {
+        /// Direction of the request.
+        direction: Direction,
+        /// Id of the request.
+        id: u32,
+        /// Number of times the request was sent.
+        attempts: u16,
+        /// The reason, if the response has one.
+        code: Option<u32>,
+        /// Id of the response.
+        reply: u32,
+        /// Data of the response.
+        data: &'a [u8],
+    },
+    /// Client: no response in time, so it is not known whether the request was executed.
     Timeout {
         /// Direction of the request.
         direction: Direction,
@@ -68,6 +107,62 @@ pub enum Event<'a> {
         /// Number of times the request was sent.
         attempts: u16,
     },
+    /// Client: a response that does not end the request: the device is still executing it, is busy,
+    /// or has accepted it and its reply is still missing.
+    Progress {
+        /// Direction of the request.
+        direction: Direction,
+        /// Id of the request.
+        id: u32,
+        /// Id of the response.
+        reply: u32,
+        /// Data of the response.
+        data: &'a [u8],
+    },
+    /// Client: the requested telemetry, before the acknowledge of its request.
+    Reply {
+        /// Direction of the request.
+        direction: Direction,
+        /// Id of the request.
+        id: u32,
+        /// Id of the telemetry.
+        reply: u32,
+        /// Data of the telemetry.
+        data: &'a [u8],
+        /// Values of the header and trailer fields of the telemetry.
+        values: Values,
+    },
+    /// Client: a response to a request that has ended.
+    Late {
+        /// Id of the response.
+        id: u32,
+        /// Data of the response.
+        data: &'a [u8],
+    },
+    /// Client: a response to none of the requests.
+    Stray {
+        /// Id of the response.
+        id: u32,
+        /// Data of the response.
+        data: &'a [u8],
+    },
+}
+
+impl<'a> Event<'a> {
+    /// Return id and data of the telemetry that the event is about.
+    pub(super) const fn telemetry(&self) -> Option<(u32, &'a [u8])> {
+        match *self {
+            Self::Message { id, data, .. } | Self::Late { id, data } | Self::Stray { id, data } => {
+                Some((id, data))
+            }
+            Self::Done { reply, data, .. }
+            | Self::Refused { reply, data, .. }
+            | Self::Busy { reply, data, .. }
+            | Self::Progress { reply, data, .. }
+            | Self::Reply { reply, data, .. } => Some((reply, data)),
+            _ => None,
+        }
+    }
 }
 
 /// What a frame turned out to be.

@@ -1,278 +1,443 @@
-//! The requests of a client that are under way.
+//! The requests of a client, and the responses that may still arrive after their end.
 
+use super::awaited::{Awaited, Needed};
+use super::encoder::Values;
 use super::judge::Event;
 use super::Request;
 use crate::wire::bits::{head, reached};
-use crate::wire::link::{Settings, Stream, StreamRow};
-use crate::wire::request::Started;
+use crate::wire::link::{Response, Settings, Stream, StreamRow, Verdict};
 use crate::wire::{Direction, Error};
+
+/// Largest number of requests whose responses are awaited or may still arrive late.
+const MOST_AWAITED: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Idle,
-    /// A late reply to a request before may still come.
-    Hold,
-    /// For the reply.
+    /// To be sent.
+    Queued,
+    /// Nothing responds to it.
+    Sent,
+    /// For a response.
     Wait,
+    /// Before it is sent to a busy device again.
+    Pause,
 }
 
-/// Room for a request, and the memory of the one before that may still be answered.
+/// Room for a request.
 #[derive(Clone, Copy, Debug)]
 struct Slot<const N: usize> {
     state: State,
+    number: u32, // of the request, in the order of their beginning
     direction: Direction,
     id: u32,
-    sent: u32, // id of the telecommand
+    sent_id: u32, // of the telecommand
     data: [u8; N],
     length: usize,
-    repeat: bool,
-    reply: Option<u32>,
+    repeats: bool, // whether it may be sent again after a time-out
+    awaited: Awaited,
+    timeout: u32,
     attempts: u16,
-    until: u32,               // when the state ends by itself
-    ticket: Option<u32>,      // its turn to be sent
-    was_taken: bool,          // by whoever sends
-    late: Option<(u32, u32)>, // id of telemetry that may still come, and until when
+    until: u32, // end of the state
+    limit: u32, // until when progress extends it
+    sent_at: u32,
+    missing: Needed,
+    owed: u16, // responses that may still arrive
 }
 
 impl<const N: usize> Slot<N> {
     const EMPTY: Self = Self {
         state: State::Idle,
+        number: 0,
         direction: Direction::Telecommand,
         id: 0,
-        sent: 0,
+        sent_id: 0,
         data: [0; N],
         length: 0,
-        repeat: false,
-        reply: None,
+        repeats: false,
+        awaited: Awaited::NOTHING,
+        timeout: 0,
         attempts: 0,
         until: 0,
-        ticket: None,
-        was_taken: false,
-        late: None,
+        limit: 0,
+        sent_at: 0,
+        missing: Needed::NONE,
+        owed: 0,
     };
 
-    /// The reply may still come, or come again.
-    fn remember(&mut self, until: u32) {
-        if let (true, Some(reply)) = (self.was_taken, self.reply) {
-            self.late = Some((reply, until));
-        }
+    /// Whether its state ends by itself.
+    fn is_timed(&self) -> bool {
+        !matches!(self.state, State::Idle | State::Queued)
     }
 
-    fn end(&mut self) {
-        self.state = State::Idle;
-        self.ticket = None;
+    /// Whether a response may arrive, also to an earlier attempt.
+    fn is_awaited(&self) -> bool {
+        self.state == State::Wait || self.owed > 0
+    }
+
+    /// Whether the device handles it.
+    fn is_in_flight(&self) -> bool {
+        matches!(self.state, State::Wait | State::Pause)
     }
 }
 
-/// As many requests as there is room for.
+/// Responses that may still arrive although their request has ended.
+#[derive(Clone, Copy, Debug)]
+struct Late {
+    awaited: Awaited,
+    owed: u16,
+    until: u32,
+}
+
+/// The requests of a client.
 #[derive(Clone, Debug)]
 pub(super) struct Slots<const N: usize, const R: usize> {
     pub(super) settings: Settings,
-    rooms: [Slot<N>; R],
-    tickets: u32,
+    pub(super) form: &'static Stream,
+    slots: [Slot<N>; R],
+    late: [Option<Late>; MOST_AWAITED],
+    begun: u32, // number of requests
+    now: u32,   // time of the last call
+    gap_end: Option<u32>,
 }
 
 impl<const N: usize, const R: usize> Slots<N, R> {
-    pub(super) const fn new(settings: Settings) -> Self {
+    pub(super) const fn new(form: &'static Stream, settings: Settings) -> Self {
         Self {
             settings,
-            rooms: [Slot::EMPTY; R],
-            tickets: 0,
+            form,
+            slots: [Slot::EMPTY; R],
+            late: [None; MOST_AWAITED],
+            begun: 0,
+            now: 0,
+            gap_end: None,
         }
     }
 
     pub(super) fn deadline(&self) -> Option<u32> {
-        let busy = self.rooms.iter().filter(|slot| slot.state != State::Idle);
-        let ends = busy.map(|slot| slot.until);
-        ends.reduce(
-            |least, until| {
-                if reached(until, least) {
-                    least
-                } else {
-                    until
-                }
-            },
-        )
+        let timed = self.slots.iter().filter(|slot| slot.is_timed());
+        let ends = timed.map(|slot| slot.until);
+        let is_queued = self.slots.iter().any(|slot| slot.state == State::Queued);
+        // It may be possible to send the request then.
+        let late = self.late.iter().flatten().map(|late| late.until);
+        let chances = self.gap_end.into_iter().chain(late);
+        let chances = chances.filter(|end| is_queued && !reached(self.now, *end));
+        ends.chain(chances).reduce(earlier)
     }
 
-    pub(super) fn start(
-        &mut self,
-        form: &Stream,
-        now: u32,
-        request: &Request<'_>,
-    ) -> Result<Started, Error> {
+    pub(super) fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
         let asks = request.direction == Direction::Telemetry;
-        let row = telecommand(form, request)?;
-        let reply = match request.reply {
-            Some(named) if !asks => {
-                form.row(Direction::Telemetry, named)
-                    .ok_or(Error::UnknownId { id: named })?;
-                Some(named)
-            }
-            _ => row.reply,
-        };
-        let held = reply.and_then(|reply| self.late_until(now, reply));
-        let timeout = self.settings.reply_timeout_ms;
-        let slot = free(&mut self.rooms, reply).ok_or(Error::Busy)?;
-        let data = if asks { &[] } else { request.data };
-        if data.len() < row.least || data.len() > row.most {
-            return Err(Error::Length {
-                expected: data.len().clamp(row.least, row.most),
-                actual: data.len(),
-            });
+        let row = self.telecommand(request)?;
+        let reply = request.reply.filter(|_| !asks);
+        if let Some(id) = reply {
+            let known = self.form.row(Direction::Telemetry, id);
+            known.ok_or(Error::UnknownId { id })?;
         }
-        let (expected, actual) = (data.len(), N);
-        let room = slot.data.get_mut(..data.len());
-        room.ok_or(Error::Length { expected, actual })?
-            .copy_from_slice(data);
-        slot.direction = request.direction;
-        slot.id = request.id;
-        slot.sent = row.id;
-        slot.length = data.len();
-        slot.repeat = request.repeat || asks;
-        slot.reply = reply;
-        slot.attempts = 0;
-        slot.was_taken = false;
-        if let Some(until) = held {
-            slot.state = State::Hold;
-            slot.until = until;
+        let mut slots = self.slots.iter_mut();
+        let free = slots.find(|slot| slot.state == State::Idle);
+        let slot = free.ok_or(Error::Busy)?;
+        let length = if asks { row.least } else { request.data.len() };
+        let expected = length.clamp(row.least, row.most);
+        let room = slot.data.get_mut(..length);
+        let data = room.filter(|_| length == expected).ok_or(Error::Length {
+            expected,
+            actual: length,
+        })?;
+        if asks {
+            data.fill(0);
         } else {
-            transmit(slot, &mut self.tickets, now, timeout);
-            if reply.is_none() {
-                return Ok(Started::Done);
-            }
+            data.copy_from_slice(request.data);
         }
-        Ok(Started::Waiting)
+        let exchange = row
+            .exchange
+            .and_then(|index| self.form.exchanges.get(index));
+        let timeout = exchange.map_or(0, |exchange| exchange.timeout_ms);
+        *slot = Slot {
+            state: State::Queued,
+            number: self.begun,
+            direction: request.direction,
+            id: request.id,
+            sent_id: row.id,
+            length,
+            repeats: asks || request.repeat || row.repeats,
+            awaited: Awaited::new(exchange, reply, row.id, data),
+            timeout: match timeout {
+                0 => self.settings.reply_timeout_ms,
+                _ => timeout,
+            },
+            data: slot.data,
+            ..Slot::EMPTY
+        };
+        self.begun = self.begun.wrapping_add(1);
+        self.set_time(now);
+        Ok(())
     }
 
-    /// Until when that telemetry may be a late reply to another request.
-    fn late_until(&self, now: u32, reply: u32) -> Option<u32> {
-        let late = self.rooms.iter().filter_map(|slot| slot.late);
-        let late = late.filter(|(id, until)| *id == reply && !reached(now, *until));
-        late.map(|(_, until)| until)
-            .max_by_key(|until| until.wrapping_sub(now))
+    /// Return the telecommand that is sent.
+    fn telecommand(&self, request: &Request<'_>) -> Result<&'static StreamRow, Error> {
+        let id = request.id;
+        if request.direction == Direction::Telecommand {
+            let row = self.form.row(Direction::Telecommand, id);
+            return row.map(|(_, row)| row).ok_or(Error::UnknownId { id });
+        }
+        let mut rows = self.form.telecommands.iter();
+        let asking = rows.find(|row| row.requests == Some(id));
+        let is_known = self.form.row(Direction::Telemetry, id).is_some();
+        asking.ok_or(if is_known {
+            Error::Unsupported
+        } else {
+            Error::UnknownId { id }
+        })
     }
 
-    /// Writes the next message to be sent, by `put` with its id and data.
+    /// Store the time, and drop responses that can no longer arrive.
+    fn set_time(&mut self, now: u32) {
+        self.now = now;
+        self.gap_end = self.gap_end.filter(|end| !reached(now, *end));
+        for late in &mut self.late {
+            *late = late.filter(|late| !reached(now, late.until));
+        }
+    }
+
+    /// Return the place of the oldest request with this property.
+    fn oldest(&self, property: impl Fn(&Slot<N>) -> bool) -> Option<usize> {
+        let slots = self.slots.iter().enumerate();
+        let such = slots.filter(|(_, slot)| property(slot));
+        let oldest = such.max_by_key(|(_, slot)| self.begun.wrapping_sub(slot.number));
+        oldest.map(|(place, _)| place)
+    }
+
+    /// Write the next message to send, by `put` with its id and data.
     pub(super) fn output(
         &mut self,
         put: impl FnOnce(u32, &[u8]) -> Result<usize, Error>,
     ) -> Result<Option<usize>, Error> {
-        let tickets = self.tickets;
-        let queued = self.rooms.iter_mut().filter_map(|slot| {
-            let waited = tickets.wrapping_sub(slot.ticket?);
-            Some((waited, slot))
-        });
-        let slot = match queued.max_by_key(|(waited, _)| *waited) {
-            Some((_, slot)) => slot,
+        let place = self.oldest(|slot| slot.state == State::Queued);
+        let sent = place.filter(|place| self.may_be_sent(*place));
+        let slot = match sent.and_then(|place| self.slots.get_mut(place)) {
+            Some(slot) => slot,
             None => return Ok(None),
         };
-        let size = put(slot.sent, head(&slot.data, slot.length))?;
-        slot.ticket = None;
-        slot.was_taken = true;
+        let size = put(slot.sent_id, head(&slot.data, slot.length))?;
+        let now = self.now;
+        slot.attempts = slot.attempts.saturating_add(1);
+        slot.sent_at = now;
+        slot.missing = slot.awaited.needed();
+        slot.owed = slot.owed.saturating_add(slot.missing.count());
+        if slot.missing == Needed::NONE {
+            slot.state = State::Sent;
+            slot.until = now;
+        } else {
+            slot.state = State::Wait;
+            slot.until = now.wrapping_add(slot.timeout);
+        }
+        slot.limit = now.wrapping_add(self.settings.progress_for_ms);
+        self.gap_end = Some(now.wrapping_add(self.settings.gap_ms));
         Ok(Some(size))
     }
 
+    /// Return whether the device handles the queued request now, and no response to another request
+    /// could be taken for a response to it.
+    fn may_be_sent(&self, place: usize) -> bool {
+        let slot = match self.slots.get(place) {
+            Some(slot) if self.gap_end.map_or(true, |end| reached(self.now, end)) => slot,
+            _ => return false,
+        };
+        let others = self.slots.iter().enumerate();
+        let others = others.filter(|(other, _)| *other != place);
+        let others = others.map(|(_, other)| other);
+        let in_flight = others.clone().filter(|other| other.is_in_flight()).count();
+        // Also those that are to be sent again: otherwise one of these and this request could each
+        // wait until the other has ended.
+        let unfinished = others.filter(|other| other.missing != Needed::NONE);
+        let late = self.late.iter().flatten().map(|late| &late.awaited);
+        let mut awaited = unfinished.map(|other| &other.awaited).chain(late);
+        slot.awaited.is_empty()
+            || in_flight < usize::from(self.settings.in_flight)
+                && awaited.clone().count() < MOST_AWAITED
+                && !awaited.any(|other| slot.awaited.is_like(other))
+    }
+
     pub(super) fn tick(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
-        let timeout = self.settings.reply_timeout_ms;
-        for slot in &mut self.rooms {
-            slot.late = slot.late.filter(|(_, until)| !reached(now, *until));
-            if slot.state == State::Idle || !reached(now, slot.until) {
-                continue;
+        self.set_time(now);
+        while let Some(place) = self.oldest(|slot| slot.is_timed() && reached(now, slot.until)) {
+            if let Some(event) = self.expire(place) {
+                on_event(event);
             }
-            let is_left = slot.repeat && slot.attempts <= u16::from(self.settings.retries);
-            if slot.state == State::Hold || is_left {
-                transmit(slot, &mut self.tickets, now, timeout);
-                continue;
-            }
-            slot.end();
-            slot.remember(now.wrapping_add(timeout));
-            on_event(Event::Timeout {
-                direction: slot.direction,
-                id: slot.id,
-                attempts: slot.attempts,
-            });
         }
     }
 
-    /// Telemetry came: the end of a request, or what nobody waits for.
-    pub(super) fn found<'a>(&mut self, now: u32, found: Event<'a>) -> Event<'a> {
-        let (reply, data, values) = match found {
+    /// The state of a request ends.
+    fn expire(&mut self, place: usize) -> Option<Event<'static>> {
+        let retries = u16::from(self.settings.retries);
+        let slot = self.slots.get_mut(place)?;
+        let is_left = slot.repeats && slot.attempts <= retries;
+        if slot.state == State::Pause || slot.state == State::Wait && is_left {
+            slot.state = State::Queued;
+            return None;
+        }
+        let (direction, id, attempts) = (slot.direction, slot.id, slot.attempts);
+        let is_sent = slot.state == State::Sent;
+        self.end(place);
+        Some(if is_sent {
+            Event::Sent {
+                direction,
+                id,
+                attempts,
+            }
+        } else {
+            Event::Timeout {
+                direction,
+                id,
+                attempts,
+            }
+        })
+    }
+
+    /// Return what telemetry is: a response to a request, late, stray or unsolicited.
+    pub(super) fn found<'a>(&mut self, found: Event<'a>) -> Event<'a> {
+        let (id, data, values) = match found {
             Event::Message { id, data, values } => (id, data, values),
             other => return other,
         };
-        let awaits = |slot: &&mut Slot<N>| {
-            slot.state == State::Wait && slot.was_taken && slot.reply == Some(reply)
-        };
-        match self.rooms.iter_mut().find(awaits) {
-            None => found,
-            Some(slot) => {
-                slot.end();
-                if slot.attempts > 1 {
-                    slot.remember(now.wrapping_add(self.settings.reply_timeout_ms));
-                }
-                Event::Done {
-                    direction: slot.direction,
-                    id: slot.id,
-                    attempts: slot.attempts,
-                    reply,
-                    data,
-                    values,
+        let matches = |awaited: &Awaited| awaited.matching(id, data);
+        let place = self.oldest(|slot| slot.is_awaited() && matches(&slot.awaited).is_some());
+        if let Some(place) = place {
+            return self.responded(place, id, data, values).unwrap_or(found);
+        }
+        for entry in &mut self.late {
+            let response = entry.as_ref().and_then(|late| matches(&late.awaited));
+            if let (Some(late), Some(response)) = (entry.as_mut(), response) {
+                let answered = late.awaited.answered(response.verdict_of(data));
+                late.owed = late.owed.saturating_sub(answered);
+                *entry = entry.filter(|late| late.owed > 0);
+                return Event::Late { id, data };
+            }
+        }
+        if self.form.confirming.contains(&id) {
+            return Event::Stray { id, data };
+        }
+        found
+    }
+
+    /// Process a response to a request.
+    fn responded<'a>(
+        &mut self,
+        place: usize,
+        reply: u32,
+        data: &'a [u8],
+        values: Values,
+    ) -> Option<Event<'a>> {
+        let (now, settings) = (self.now, self.settings);
+        let slot = self.slots.get_mut(place)?;
+        let response: Response = slot.awaited.matching(reply, data)?;
+        let verdict = response.verdict_of(data);
+        let code = response.reason.map(|reason| reason.get(data, &[]));
+        let (direction, id, attempts) = (slot.direction, slot.id, slot.attempts);
+        slot.owed = slot.owed.saturating_sub(slot.awaited.answered(verdict));
+        match verdict {
+            Verdict::Progress => {
+                let extended = earlier(now.wrapping_add(slot.timeout), slot.limit);
+                slot.until = later(slot.until, extended);
+            }
+            Verdict::Busy if slot.attempts <= u16::from(settings.retries) => {
+                slot.state = State::Pause;
+                slot.until = now.wrapping_add(settings.busy_pause_ms);
+            }
+            Verdict::Ack => slot.missing.ack = false,
+            Verdict::Reply => slot.missing.reply = false,
+            Verdict::Nak | Verdict::Busy => slot.missing = Needed::NONE,
+        }
+        let is_ended = slot.missing == Needed::NONE;
+        if is_ended {
+            self.end(place);
+        }
+        Some(match verdict {
+            Verdict::Nak => Event::Refused {
+                direction,
+                id,
+                attempts,
+                code,
+                reply,
+                data,
+            },
+            Verdict::Busy if is_ended => Event::Busy {
+                direction,
+                id,
+                attempts,
+                code,
+                reply,
+                data,
+            },
+            Verdict::Ack | Verdict::Reply if is_ended => Event::Done {
+                direction,
+                id,
+                attempts,
+                reply,
+                data,
+                values,
+            },
+            Verdict::Reply => Event::Reply {
+                direction,
+                id,
+                reply,
+                data,
+                values,
+            },
+            Verdict::Ack | Verdict::Busy | Verdict::Progress => Event::Progress {
+                direction,
+                id,
+                reply,
+                data,
+            },
+        })
+    }
+
+    /// End a request, and remember the responses that may still arrive.
+    fn end(&mut self, place: usize) {
+        if let Some(slot) = self.slots.get_mut(place) {
+            // A response counts from the transmission, not from the end of the request.
+            let until = slot.sent_at.wrapping_add(slot.timeout);
+            let until = until.wrapping_add(self.settings.late_ms);
+            let mut entries = self.late.iter_mut();
+            if slot.owed > 0 && !reached(self.now, until) {
+                if let Some(free) = entries.find(|late| late.is_none()) {
+                    *free = Some(Late {
+                        awaited: slot.awaited,
+                        owed: slot.owed,
+                        until,
+                    });
                 }
             }
+            slot.state = State::Idle;
+            slot.missing = Needed::NONE;
+            slot.owed = 0;
         }
     }
 
-    /// Gives up requests; None: all.
+    /// Cancel the requests of a message; None: all.
     pub(super) fn cancel(&mut self, which: Option<(Direction, u32)>) {
-        for slot in &mut self.rooms {
-            if which.map_or(true, |which| which == (slot.direction, slot.id)) {
-                if slot.state != State::Idle {
-                    let more = self.settings.reply_timeout_ms;
-                    slot.remember(slot.until.wrapping_add(more));
-                }
-                slot.end();
-            }
+        let is_meant = |slot: &Slot<N>| {
+            slot.state != State::Idle && which.map_or(true, |it| it == (slot.direction, slot.id))
+        };
+        while let Some(place) = self.oldest(is_meant) {
+            self.end(place);
         }
     }
 }
 
-/// Room for a request with that reply; none if another one waits for it.
-fn free<const N: usize>(slots: &mut [Slot<N>], reply: Option<u32>) -> Option<&mut Slot<N>> {
-    let mut busy = slots.iter().filter(|slot| slot.state != State::Idle);
-    if reply.is_some() && busy.any(|slot| slot.reply == reply) {
-        return None;
-    }
-    let mut slots = slots.iter_mut();
-    slots.find(|slot| slot.state == State::Idle && slot.ticket.is_none())
-}
-
-/// Sends a request, for the first time or again.
-fn transmit<const N: usize>(slot: &mut Slot<N>, tickets: &mut u32, now: u32, timeout: u32) {
-    slot.attempts = slot.attempts.saturating_add(1);
-    if slot.ticket.is_none() {
-        slot.ticket = Some(*tickets);
-        *tickets = tickets.wrapping_add(1);
-    }
-    if slot.reply.is_some() {
-        slot.state = State::Wait;
-        slot.until = now.wrapping_add(timeout);
-    }
-}
-
-/// The telecommand that is sent.
-fn telecommand(form: &Stream, request: &Request<'_>) -> Result<&'static StreamRow, Error> {
-    let id = request.id;
-    if request.direction == Direction::Telecommand {
-        let row = form.row(Direction::Telecommand, id);
-        return row.map(|(_, row)| row).ok_or(Error::UnknownId { id });
-    }
-    let mut rows = form.telecommands.iter();
-    let asking = rows.find(|row| row.reply == Some(id) && row.least == 0);
-    let is_known = form.row(Direction::Telemetry, id).is_some();
-    asking.ok_or(if is_known {
-        Error::Unsupported
+fn earlier(time: u32, other: u32) -> u32 {
+    if reached(time, other) {
+        other
     } else {
-        Error::UnknownId { id }
-    })
+        time
+    }
+}
+
+fn later(time: u32, other: u32) -> u32 {
+    if reached(time, other) {
+        time
+    } else {
+        other
+    }
 }

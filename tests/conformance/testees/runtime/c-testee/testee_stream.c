@@ -71,27 +71,32 @@ static void stream_encode(void)
 
 static void on_stream_event(void *context, const icd_stream_event_t *event)
 {
-    static const char *const names[] = {"message", "gap",     "checksum", "length", "unknown_id",
-                                        "overrun", "framing", "done",     "timeout"};
+    static const char *const names[] = {"message", "gap",     "checksum", "length", "unknown_id", "overrun",
+                                        "framing", "done",    "timeout",  "sent",   "refused",    "busy",
+                                        "progress", "reply", "late",     "stray"};
     const icd_link_t *link = context;
-    put_row(names[event->kind]);
+    const icd_stream_kind_t kind = event->kind;
+    const bool has_code = kind == ICD_STREAM_REFUSED || kind == ICD_STREAM_BUSY;
+    put_row(names[kind]);
     if (event->has_id) {
         put_number("id", event->id);
     }
-    if (event->kind == ICD_STREAM_DONE || event->kind == ICD_STREAM_TIMEOUT) {
+    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_TIMEOUT || kind == ICD_STREAM_SENT || has_code) {
         put_number("attempts", event->attempts);
     }
-    if (event->kind == ICD_STREAM_DONE) {
-        put_octets("bytes", event->data, event->length);
+    if (has_code && event->has_code) {
+        put_number("code", event->code);
     }
-    if (event->has_reply) {
+    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_REPLY) {
         put_number("reply", event->reply);
     }
-    if (event->kind == ICD_STREAM_GAP) {
+    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_MESSAGE || kind >= ICD_STREAM_PROGRESS) {
+        put_octets("bytes", event->data, event->length);
+    }
+    if (kind == ICD_STREAM_GAP) {
         put_number("missing", event->missing);
     }
-    if (event->kind == ICD_STREAM_MESSAGE) {
-        put_octets("bytes", event->data, event->length);
+    if (kind == ICD_STREAM_MESSAGE) {
         for (size_t i = 0; i < link->stream->field_count; ++i) {
             const icd_envelope_role_t role = link->stream->fields[i].role;
             if (role < ICD_ENVELOPE_CONSTANT) {
@@ -149,7 +154,7 @@ static bool begin_stream_client(icd_stream_client_t *client, const icd_link_t *l
                      : icd_stream_client_init(client, link, slots, requests, memory(size), size, sequences, count));
 }
 
-static void start_stream(icd_stream_client_t *client, uint32_t now, icd_direction_t direction, void *context)
+static void start_stream(icd_stream_client_t *client, uint32_t now, icd_direction_t direction)
 {
     icd_stream_request_t request;
     memset(&request, 0, sizeof request);
@@ -163,7 +168,7 @@ static void start_stream(icd_stream_client_t *client, uint32_t now, icd_directio
         request.data = octets.data;
         request.length = octets.length;
     }
-    const icd_status_t status = icd_stream_client_start(client, now, &request, on_stream_event, context);
+    const icd_status_t status = icd_stream_client_start(client, now, &request);
     if (status == ICD_ERROR_LENGTH) {
         put_row("error");
         put_word("error", "length");
@@ -179,9 +184,9 @@ static void start_stream(icd_stream_client_t *client, uint32_t now, icd_directio
 static void happen_to_stream(icd_stream_client_t *client, uint32_t now, const char *what, void *context)
 {
     if (is_word(what, "telecommand")) {
-        start_stream(client, now, ICD_TELECOMMAND, context);
+        start_stream(client, now, ICD_TELECOMMAND);
     } else if (is_word(what, "telemetry")) {
-        start_stream(client, now, ICD_TELEMETRY, context);
+        start_stream(client, now, ICD_TELEMETRY);
     } else if (is_word(what, "received")) {
         const octets_t octets = next_octets();
         icd_stream_client_received(client, now, octets.data, octets.length, on_stream_event, context);
@@ -210,8 +215,14 @@ static void stream_client(void)
     if (!begin_stream_client(client, to.link, requests)) {
         return;
     }
-    client->settings.reply_timeout = next_or(client->settings.reply_timeout);
-    client->settings.retries = (uint8_t)next_or(client->settings.retries);
+    icd_client_settings_t *settings = &client->settings;
+    settings->reply_timeout = next_or(settings->reply_timeout);
+    settings->retries = (uint8_t)next_or(settings->retries);
+    settings->late = next_or(settings->late);
+    settings->busy_pause = next_or(settings->busy_pause);
+    settings->gap = next_or(settings->gap);
+    settings->in_flight = (uint8_t)next_or(settings->in_flight);
+    settings->progress_for = next_or(settings->progress_for);
     while (has_words()) {
         const uint32_t now = next_number();
         const bool takes = next_number() != 0u;

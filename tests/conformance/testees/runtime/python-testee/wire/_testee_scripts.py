@@ -11,22 +11,33 @@ from .can import CanPacket
 from .client import Client, Request
 from .envelope_client import EnvelopeClient
 from .errors import BusyError, UnsupportedError
-from .events import Arrived, Done, Event, LineError, Packet, Refused, Timeout
+from .events import (
+    Arrived,
+    Busy,
+    Done,
+    Event,
+    LineError,
+    Packet,
+    Refused,
+    Stray,
+    Timeout,
+)
 from .link import Bus, Link, Settings
 from .procedures import Procedure
 from .programs import ProgramCopy, ProgramInformation
 from .transfer import Download, Erase, FileList, Format, Upload
 
 _BUSES: tuple[Bus, ...] = ("uart", "i2c", "can")
+_BUS_SETTINGS = Settings._fields[:4]
+_STREAM_SETTINGS = (*Settings._fields[:2], *Settings._fields[4:])
 _OUTCOMES: dict[str, Any] = {"refused": Refused, "timeout": Timeout}
 
 
 def client(link: Link, words: Words) -> str:
     """What a client does in a script."""
     bus, checked, address = _bus(words), number(words) == 1, number(words)
-    given = zip(Settings._fields, [maybe(words) for _ in Settings._fields])
-    known = {key: value for key, value in given if value is not None}
-    tested = Client(link, bus, checked, address, link.settings._replace(**known))
+    settings = _settings(link, words, _BUS_SETTINGS)
+    tested = Client(link, bus, checked, address, settings)
     said = []
     for at in words:
         said.append(" step")
@@ -44,20 +55,25 @@ def client(link: Link, words: Words) -> str:
     return "".join(said)
 
 
+def _settings(link: Link, words: Words, names: tuple[str, ...]) -> Settings:
+    """The settings of a script; what it does not give is that of the ICD."""
+    given = {name: maybe(words) for name in names}
+    known = {name: value for name, value in given.items() if value is not None}
+    return link.settings._replace(**known)
+
+
 def stream_client(link: Link, words: Words) -> str:
     """What a client over envelopes does in a script."""
-    requests, times = number(words), {
-        "reply_timeout": maybe(words),
-        "retries": maybe(words),
-    }
-    known = {key: value for key, value in times.items() if value is not None}
-    tested = EnvelopeClient(link, link.settings._replace(**known), requests=requests)
+    requests = number(words)
+    settings = _settings(link, words, _STREAM_SETTINGS)
+    tested = EnvelopeClient(link, settings, requests=requests)
     said = []
     for at in words:
         said.append(" step")
         takes, action = number(words) == 1, next(words)
         try:
-            said += map(_shown, _asked(tested, int(at), action, words))
+            events = _asked(tested, int(at), action, words)
+            said += [_shown(event, is_of_stream=True) for event in events]
         except BusyError:
             said.append(" error error=busy")
         except UnsupportedError:
@@ -130,14 +146,17 @@ def _output(tested: Client) -> str:
     return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
 
 
-def _shown(event: Event) -> str:
+def _shown(event: Event, is_of_stream: bool = False) -> str:
     if isinstance(event, LineError):
         return row(event.error, id=event.id)
     if isinstance(event, Arrived):
         return row("message", id=event.id, bytes=event.data, **event.values)
-    if isinstance(event, Timeout):
-        return row("timeout", id=event.id, attempts=event.attempts)
-    known = [one.name for one in fields(event) if one.name not in ("type", "log")]
+    hidden = ["type", "log", "handle"]
+    if isinstance(event, (Refused, Busy)):
+        hidden += ["reason", "parameter", "data"] if is_of_stream else ["data"]
+    if isinstance(event, Stray) and not is_of_stream:
+        hidden.append("id")
+    known = [one.name for one in fields(event) if one.name not in hidden]
     facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
     return row(type(event).__name__.lower(), **facts)
 

@@ -5,7 +5,7 @@ use crate::nodes::LONGEST;
 use crate::wire::explained;
 use icd::wire::link::{EnvelopeRole, Link, Stream};
 use icd::wire::stream::{encode, Client, Decoder, Event, NodeEvent, Request, Values};
-use icd::wire::{Direction, Error, Settings, Started};
+use icd::wire::{Direction, Error, Settings};
 use std::fmt::Write;
 
 const SEQUENCES: usize = 64;
@@ -92,11 +92,28 @@ fn shown(form: &Stream, event: &Event<'_>) -> String {
             ..
         } => {
             let bytes = hex(data);
-            format!(" done id={id} attempts={attempts} bytes={bytes} reply={reply}")
+            format!(" done id={id} attempts={attempts} reply={reply} bytes={bytes}")
         }
+        Event::Sent { id, attempts, .. } => format!(" sent id={id} attempts={attempts}"),
+        Event::Refused {
+            id, attempts, code, ..
+        } => format!(" refused id={id} attempts={attempts}{}", coded(code)),
+        Event::Busy {
+            id, attempts, code, ..
+        } => format!(" busy id={id} attempts={attempts}{}", coded(code)),
         Event::Timeout { id, attempts, .. } => format!(" timeout id={id} attempts={attempts}"),
+        Event::Progress { id, data, .. } => format!(" progress id={id} bytes={}", hex(data)),
+        Event::Reply {
+            id, reply, data, ..
+        } => format!(" reply id={id} reply={reply} bytes={}", hex(data)),
+        Event::Late { id, data } => format!(" late id={id} bytes={}", hex(data)),
+        Event::Stray { id, data } => format!(" stray id={id} bytes={}", hex(data)),
         _ => " other".into(),
     }
+}
+
+fn coded(code: Option<u32>) -> String {
+    code.map_or_else(String::new, |code| format!(" code={code}"))
 }
 
 pub fn stream_client(link: &'static Link, words: &mut Words) -> Answer {
@@ -112,6 +129,11 @@ fn scripted<const R: usize>(link: &'static Link, words: &mut Words) -> Answer {
     let settings = Settings {
         reply_timeout_ms: words.maybe().unwrap_or(link.client.reply_timeout_ms),
         retries: words.maybe().unwrap_or(link.client.retries),
+        late_ms: words.maybe().unwrap_or(link.client.late_ms),
+        busy_pause_ms: words.maybe().unwrap_or(link.client.busy_pause_ms),
+        gap_ms: words.maybe().unwrap_or(link.client.gap_ms),
+        in_flight: words.maybe().unwrap_or(link.client.in_flight),
+        progress_for_ms: words.maybe().unwrap_or(link.client.progress_for_ms),
         ..link.client
     };
     let client = Client::<(), LONGEST, SEQUENCES, R>::new(link)?;
@@ -152,11 +174,11 @@ fn happen<const R: usize>(
                 reply,
                 ..Request::telecommand(id, &data)
             };
-            *answer += &begun(client.start(now, &request), id);
+            *answer += &begun(client.start(now, &request));
         }
         "telemetry" => {
             let id = words.number();
-            *answer += &begun(client.start(now, &Request::telemetry(id)), id);
+            *answer += &begun(client.start(now, &Request::telemetry(id)));
         }
         "received" => client.received(now, &words.octets(), on_event),
         "cancel" => match words.word() {
@@ -168,10 +190,9 @@ fn happen<const R: usize>(
     }
 }
 
-fn begun(started: Result<Started, Error>, id: u32) -> String {
+fn begun(started: Result<(), Error>) -> String {
     match started {
-        Ok(Started::Waiting) => String::new(),
-        Ok(Started::Done) => format!(" done id={id} attempts=1 bytes="),
+        Ok(()) => String::new(),
         Err(error) => format!(" error error={}", explained(&error)),
     }
 }

@@ -1,0 +1,362 @@
+"""Responses to telecommands on framed links: ``commands`` of `stream`, and the key
+`response` of messages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map, Seq, unread
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.places import NodePlace
+from icdgen.icd.responses import (
+    ID,
+    KINDS,
+    MOST_SOURCES,
+    NEEDED,
+    NONE,
+    STATUS_SETS,
+    declared_responses,
+    echoes_of,
+    field_of,
+    id_byte_of,
+    number_run,
+    raw_status,
+    reason_of,
+)
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.envelopes import Link, ids_of, links
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.suggestions import suggestion
+from icdgen.wording import count, quote
+
+STREAM_SETTINGS = ("late_ms", "busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
+"""Keys of `client` that only framed links use."""
+
+
+class Declared(NamedTuple):
+    """Response that the ICD declares, with the telecommands that have it."""
+
+    link: Link
+    owner: Map  # mapping with the key `kind`
+    kind: str
+    row: Map  # mapping of the response; empty if it is only a name
+    name: str  # of the telemetry
+    telecommands: list[Message]
+
+    def fault(self, key: str, message: str, help: str, fix: str = "") -> Fault:
+        """Return a fault at a key of the response, or at the response."""
+        owner, key = (self.row, key) if key in self.row else (self.owner, self.kind)
+        return Fault.at(owner, key, message, help, fix)
+
+
+def _declared(ctx: Context, link: Link) -> Iterator[Declared]:
+    """Yield the responses of a link that conform to the schema."""
+    telecommands = [message for _, message in ids_of(ctx, link.node, TELECOMMAND)]
+    commands = link.section.get("commands")
+    commands = commands if isinstance(commands, Map) else unread()
+    own = [
+        (message.response, [message])
+        for message in telecommands
+        if isinstance(message.response, Map)
+    ]
+    for owner, messages in [(commands, telecommands), *own]:
+        for kind in KINDS:
+            value = owner.get(kind, NONE)
+            row = value if isinstance(value, Map) else unread()
+            name = row.get("message") if isinstance(value, Map) else value
+            if isinstance(name, str) and name != NONE:
+                users = [
+                    message
+                    for message in messages
+                    if owner is not commands or _inherits(message, kind)
+                ]
+                yield Declared(link, owner, kind, row, name, users)
+
+
+def _inherits(message: Message, kind: str) -> bool:
+    """Return whether a telecommand has the response of all telecommands."""
+    own: Any = message.response
+    return own is None or (isinstance(own, Map) and kind not in own)
+
+
+def _response(ctx: Context, declared: Declared) -> Message | None:
+    """Return the telemetry of a response; None if there is none."""
+    telemetry = ids_of(ctx, declared.link.node, TELEMETRY)
+    return next((each for _, each in telemetry if each.name == declared.name), None)
+
+
+@rule("ICD176")
+def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        telemetry = ids_of(ctx, link.node, TELEMETRY)
+        ids = [id for id, _ in telemetry]
+        names = {message.name: id for id, message in telemetry}
+        telecommands = {each.name for _, each in ids_of(ctx, link.node, TELECOMMAND)}
+        broken = ctx.broken_messages(link.node)
+        for declared in _declared(ctx, link):
+            name = declared.name
+            if name in telecommands and name not in names:
+                message = f"{quote(name)} is a telecommand, and a response comes from the device"
+                yield declared.fault("message", message, "name telemetry")
+            elif name not in names and name not in broken:
+                message = f"there is no telemetry {quote(name)}"
+                yield declared.fault(
+                    "message", message, *suggestion(name, names, "correct the name")
+                )
+            elif name in names and ids.count(names[name]) > 1:
+                message = f"other telemetry has the id of {quote(name)}, so a client cannot tell that it is a response"
+                yield declared.fault(
+                    "message",
+                    message,
+                    "make it one message, with a field that `status` names",
+                )
+
+
+@rule("ICD177")
+def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        for declared in _declared(ctx, link):
+            response = _response(ctx, declared)
+            if response is None:
+                continue  # ICD176
+            yield from _echoes(declared, response)
+            yield from _status(declared, response)
+            yield from _reason(declared, response)
+        yield from _reasons(ctx, link)
+
+
+def _number(
+    message: Message, node: Node, name: str, role: str
+) -> tuple[NodePlace | None, str, str]:
+    """Return a field that can be compared with a number; otherwise what is wrong, and
+    its remedy.
+    """
+    field = field_of(message, name)
+    if field is None:
+        names = [place.name for place in message.fields]
+        remedy = suggestion(name, names, "correct the name")
+        return None, f"{quote(message.name)} has no field {quote(name)}", remedy[0]
+    is_fixed = field.steps[0].node in message.layout.fixed
+    if not is_fixed or field.conditions or field.node is not field.scalar:
+        what = "is not in every message at the same place"
+    elif number_run(field, node) is None:
+        what = "is not a number of at most 32 bits in at most 4 bytes"
+    else:
+        return field, "", ""
+    return None, f"{quote(name)} {what}", f"let `{role}` name another field"
+
+
+def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
+    """Yield the faults of fields that repeat parts of the telecommand."""
+    node, row = declared.link.node, declared.row
+    echo = row.get("echo")
+    owner = echo if isinstance(echo, Map) else row
+    for name, repeated in echoes_of(row).items():
+        if not isinstance(repeated, str):
+            continue
+        key = name if isinstance(echo, Map) else "echo"
+        field, text, help = _number(response, node, name, "echo")
+        if field is None:
+            yield Fault.at_key(owner, key, text, help)
+            continue
+        for message in declared.telecommands:
+            bits, text, help = _repeated(node, message, repeated)
+            if not text and bits > field.bits:
+                text = f"{quote(name)} of {count(field.bits, 'bit')} cannot repeat {count(bits, 'bit')} of {quote(message.name)}"
+                help = "correct the width of the field, or name another field"
+            if text:
+                yield Fault.at(owner, key, text, help)
+                break
+    users = declared.telecommands
+    if len(set(echoes_of(row).values())) > MOST_SOURCES and users:
+        text = f"a response repeats more than {MOST_SOURCES} parts of a telecommand"
+        yield Fault.at(row, "echo", text, "leave out the parts that tell the least")
+
+
+def _repeated(node: Node, message: Message, name: str) -> tuple[int, str, str]:
+    """Return the bits of a part of a telecommand; otherwise what is wrong, and its
+    remedy.
+    """
+    if name == ID:
+        return (message.telecommand_id or 0).bit_length(), "", ""
+    if id_byte_of(node, name) is not None:
+        return 8, "", ""
+    field, text, help = _number(message, node, name, "echo")
+    if field is None:
+        return 0, text, f"{help}, or write `id`" if "correct" in help else help
+    return field.bits, "", ""
+
+
+def _status(declared: Declared, response: Message) -> Iterator[Fault]:
+    """Yield the faults of the field that says whether the telecommand was executed."""
+    row, node = declared.row, declared.link.node
+    name = row.get("status")
+    if declared.kind not in NEEDED:
+        return  # The schema check reports a status.
+    if name is None:
+        for key in STATUS_SETS:
+            if key in row:
+                text = f"`{key}` lists values of a status, and there is no `status`"
+                yield Fault.at_key(row, key, text, f"add `status`, or remove `{key}`")
+        return
+    field, text, help = _number(response, node, name, "status")
+    if field is None:
+        yield Fault.at(row, "status", text, help)
+        return
+    if "success" not in row:
+        text = "no value of the status confirms the telecommand"
+        yield Fault.at(row, "status", text, "add `success:`, the values that do")
+    seen: dict[int, str] = {}
+    for key in STATUS_SETS:
+        values = row.get(key)
+        for value, place in values.placed() if isinstance(values, Seq) else ():
+            raw = raw_status(field, value)
+            if raw is None:
+                members = field.scalar.enum.members if field.scalar.enum else ()
+                names = [member.name for member in members]
+                text = f"{quote(name)} has no value {quote(str(value))}"
+                remedy = suggestion(str(value), names, "correct it, or write a number")
+                yield Fault.of_place(row, place, text, *remedy)
+            elif raw in seen:
+                text = f"{quote(str(value))} is in `{seen[raw]}` already"
+                yield Fault(row, place, text, "remove it from one of the two lists")
+            else:
+                seen[raw] = key
+
+
+def _reason(declared: Declared, response: Message) -> Iterator[Fault]:
+    """Yield the faults of the field with the reason of a refusal."""
+    row = declared.row
+    name = row.get("reason")
+    if name is None:
+        return
+    if declared.kind in NEEDED and "status" not in row:
+        text = f"a response `{declared.kind}` without a status refuses nothing, so it has no reason"
+        yield Fault.at_key(row, "reason", text, "add `status`, or remove `reason`")
+        return
+    field, text, help = _number(response, declared.link.node, name, "reason")
+    if field is None:
+        yield Fault.at(row, "reason", text, help)
+    elif field.scalar.enum is None:
+        text = f"{quote(name)} has no enumeration, so a refusal would be a bare number"
+        help = "give the field `type: enum` with the reasons of the manual"
+        yield Fault.at(row, "reason", text, help)
+
+
+def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
+    """Yield the faults of reasons that no refusal has."""
+    commands = link.section.get("commands")
+    reasons = commands.get("reasons") if isinstance(commands, Map) else None
+    if not isinstance(reasons, Map):
+        return
+    members: list[str] = []
+    for declared in _declared(ctx, link):
+        response = _response(ctx, declared)
+        field = response and field_of(response, reason_of(declared.row))
+        if field and field.scalar.enum:
+            members += [member.name for member in field.scalar.enum.members]
+    for cause, name in reasons.items():
+        if isinstance(name, str) and cause != "assumptions" and name not in members:
+            text = f"no refusal has the reason {quote(name)}"
+            help = suggestion(name, members, "name a member of the enumeration")
+            yield Fault.at(reasons, cause, text, *help)
+
+
+@rule("ICD178")
+def telecommands_of_one_id_have_one_response(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        first_of_id: dict[int, Message] = {}
+        for id, message in ids_of(ctx, link.node, TELECOMMAND):
+            first = first_of_id.setdefault(id, message)
+            for key in ("response", "repeat"):
+                if getattr(message, key) != getattr(first, key):
+                    owner = message if key in message.source else first
+                    text = f"`{key}` of {quote(message.name)} differs from that of {quote(first.name)}, which has the same id"
+                    yield Fault.at_key(
+                        owner.source, key, text, "give both the same, or other ids"
+                    )
+            yield from _places_of_variants(link, first, message)
+
+
+def _places_of_variants(
+    link: Link, first: Message, message: Message
+) -> Iterator[Fault]:
+    """Yield a fault if a part that responses repeat is at different places in two
+    messages of one id.
+    """
+    if first is message:
+        return
+    commands = link.section.get("commands")
+    rows = declared_responses(commands if isinstance(commands, Map) else {}, message)
+    for name in {name for row in rows.values() for name in echoes_of(row).values()}:
+        places = [
+            number_run(field, link.node)
+            for field in (field_of(first, name), field_of(message, name))
+            if field is not None
+        ]
+        if len(places) == 2 and places[0] != places[1]:
+            text = f"{quote(name)}, which a response repeats, is not where {quote(first.name)} has it, which has the same id"
+            yield Fault.at(message.source, "name", text, "correct its place, or the id")
+
+
+@rule("ICD179")
+def responses_tell_the_outcome(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        reported: set[tuple[int, str]] = set()
+        commands = link.section.get("commands")
+        commands = commands if isinstance(commands, Map) else unread()
+        for _, message in ids_of(ctx, link.node, TELECOMMAND):
+            rows = declared_responses(commands, message)
+            for kind, text, help in _contradictions(rows):
+                own: Any = message.response
+                owner = own if isinstance(own, Map) and kind in own else commands
+                if kind in owner and (id(owner), kind) not in reported:
+                    reported.add((id(owner), kind))
+                    text = text.format(name=quote(message.name))
+                    yield Fault.at(owner, kind, text, help)
+
+
+def _contradictions(rows: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield the kind of each response that contradicts another one, with what is wrong
+    and its remedy.
+    """
+    if rows and not set(rows) & set(NEEDED):
+        text = "{name} has no response that confirms it, so a client could not tell success from loss"
+        help = "add `ack` or `reply`, or let `response: none` say that nothing responds"
+        yield next(iter(rows)), text, help
+    seen: dict[object, str] = {}
+    for kind, row in rows.items():
+        name = row.get("message")
+        if isinstance(name, str) and name in seen:
+            text = f"`{seen[name]}` and `{kind}` of {{name}} are the same telemetry"
+            help = "write one `ack` whose `status` says which it is"
+            yield kind, text, help
+        seen.setdefault(name, kind)
+
+
+@rule("ICD183")
+def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
+    framed: set[int] = set()  # id() of nodes on a framed link
+    for link in links(ctx):
+        framed.update(id(node) for node in ctx.scope(link.node))
+    for message, node in ctx.messages:
+        for key in ("response", "repeat"):
+            if key not in message.source:
+                continue
+            if message.telecommand_id is None:
+                text = f"`{key}` applies to a telecommand, not to telemetry"
+                yield Fault.at_key(message.source, key, text, "remove it")
+            elif id(node) not in framed and ctx.complete:
+                text = f"`{key}` has an effect on framed links (`stream`) only"
+                yield Fault.at_key(message.source, key, text, "remove it")
+    for node in ctx.icd.nodes:
+        protocol = node.source.get("protocol")
+        client = protocol.get("client") if isinstance(protocol, Map) else None
+        if isinstance(client, Map) and "stream" not in ctx.protocol_of(node):
+            for key in STREAM_SETTINGS:
+                if key in client:
+                    text = f"`{key}` has an effect on framed links (`stream`) only"
+                    yield Fault.at_key(client, key, text, "remove it")

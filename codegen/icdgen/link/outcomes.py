@@ -1,0 +1,53 @@
+"""Outcomes of requests in words."""
+
+from __future__ import annotations
+
+from icdgen_runtime.wire.events import Busy, Outcome, Refused, Timeout
+
+from icdgen.icd.error_codes import error_enum
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.responses import declared_responses, echoes_of, reason_of
+
+
+def reason_name(icd: Icd, node: Node, outcome: Outcome) -> str | None:
+    """Return the name that the ICD has for the reason of a refusal or of a busy device;
+    None without one.
+    """
+    if not isinstance(outcome, Refused | Busy) or outcome.code is None:
+        return None
+    if "stream" in icd.protocol_of(node):
+        return outcome.reason
+    enum = error_enum(icd, node)
+    member = enum.member_of(outcome.code) if enum else None
+    return member.name if member else None
+
+
+def failure_text(icd: Icd, node: Node, outcome: Refused | Busy) -> str:
+    """Return a refusal or a busy device with its reason, such as ``refused: Bad length
+    (code 2)``.
+    """
+    word = "refused" if isinstance(outcome, Refused) else "busy"
+    if outcome.code is None:
+        return word
+    name = reason_name(icd, node, outcome) or "unknown error"
+    return f"{word}: {name} (code {outcome.code})"
+
+
+def attempts_text(outcome: Busy | Timeout) -> str:
+    """Return the number of attempts, such as `` after 3 attempts``; empty for one."""
+    return f" after {outcome.attempts} attempts" if outcome.attempts > 1 else ""
+
+
+def has_further_fields(icd: Icd, node: Node, sent: Message, response: Message) -> bool:
+    """Return whether a response says more than the telecommand, the status and the
+    reason.
+    """
+    commands = icd.protocol_of(node).get("stream", {}).get("commands", {})
+    known: set[str | None] = set()
+    for row in declared_responses(commands, sent).values():
+        if row["message"] == response.name:
+            known |= {*echoes_of(row), row.get("status"), reason_of(row)}
+    return any(
+        field.name not in known and field.const is None
+        for field in icd.longest_frame(response)
+    )

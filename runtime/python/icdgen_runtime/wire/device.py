@@ -1,0 +1,134 @@
+"""The device's half of a link with header and trailer: responses to telecommands, for
+simulators and for tests of a client.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple, Optional, Union
+
+from .._base import Message
+from .._errors import RangeError
+from .._hints import Buffer
+from .envelope import Exchange, NumberPlace, Response, Stream, Verdict
+from .errors import need
+from .link import Link
+from .message_ids import message_id
+
+_ID_BYTES = 4  # of the id in front of the data, in `Exchange.sources`
+
+
+class TelemetryData(NamedTuple):
+    """Data of telemetry and its id, for `Sender.encode`."""
+
+    id: int
+    data: bytes
+
+
+def response_to(
+    link: Link,
+    telecommand: Union[Message, int],
+    data: Buffer = b"",
+    verdict: Verdict = "ack",
+    reason: Optional[int] = None,
+    frames: Optional[Mapping[int, Buffer]] = None,
+) -> Optional[TelemetryData]:
+    """Return the response of a device to a telecommand; None if the ICD has no such
+    response.
+
+    The telecommand is a message, or an id and its data. An id that the node does not
+    have can be refused (``"nak"``). The response repeats the numbers of the telecommand
+    that the ICD describes as `echo`, and has the status for ``verdict``: of several
+    values, the one that the ICD lists first. ``reason`` is the reason of a refusal.
+    ``frames`` has the other bits, by id of the telemetry; without, they are 0. Raise
+    `RangeError` for a reason whose number is the status of another verdict.
+    """
+    form = need(link.stream, "stream")
+    if isinstance(telecommand, Message):
+        id = message_id(link, "telecommand", type(telecommand))
+        data = telecommand.to_bytes()
+    else:
+        id = telecommand
+    exchange = _exchange_of(form, id, verdict)
+    response = _response(exchange, verdict) if exchange else None
+    if exchange is None or response is None:
+        return None
+    filled = bytearray((frames or {}).get(response.telemetry, b""))
+    row = next(row for row in form.telemetry if row.id == response.telemetry)
+    filled.extend(bytes(max(0, row.least - len(filled))))
+    sent = id.to_bytes(_ID_BYTES, "big") + bytes(data)
+    for echo in response.echoes:
+        echo.place.put(exchange.sources[echo.source].of(sent), filled)
+    if response.status:
+        response.status.put(_status(response, verdict), filled)
+    if reason is not None and response.reason:
+        response.reason.put(reason, filled)
+        is_kept = response.reason.of(bytes(filled)) == reason
+        if not is_kept or response.verdict_of(bytes(filled)) != verdict:
+            raise RangeError("reason", f"a reason of the verdict {verdict}", reason)
+    return TelemetryData(response.telemetry, bytes(filled))
+
+
+def response_of(form: Stream, id: int, verdict: Verdict) -> Optional[Response]:
+    """Return the response that says ``verdict`` about a telecommand; None without one.
+
+    If the node does not have the telecommand, it refuses it by the first response that
+    repeats no part of a telecommand but its id.
+    """
+    exchange = _exchange_of(form, id, verdict)
+    return _response(exchange, verdict) if exchange else None
+
+
+def _exchange_of(form: Stream, id: int, verdict: Verdict) -> Optional[Exchange]:
+    row = next((row for row in form.telecommands if row.id == id), None)
+    if row is None:
+        return _refusing(form) if verdict == "nak" else None
+    return None if row.exchange is None else form.exchanges[row.exchange]
+
+
+def _response(exchange: Exchange, verdict: Verdict) -> Optional[Response]:
+    """Return the response of a verdict.
+
+    A response that only refuses precedes one whose status can also refuse.
+    """
+    for response in exchange.responses:
+        meanings = [meaning for _, meaning in response.meanings]
+        if verdict in (meanings if response.status else [response.verdict]):
+            return response
+    for response in exchange.responses:
+        place = response.status
+        is_left = place is not None and len(response.meanings) < 1 << place.bits
+        if is_left and response.verdict == verdict:
+            return response
+    return None
+
+
+def _refusing(form: Stream) -> Optional[Exchange]:
+    """Return the exchange by whose response an unknown telecommand is refused."""
+    for exchange in form.exchanges:
+        response = _response(exchange, "nak")
+        if response and all(
+            _is_in_id(exchange.sources[echo.source]) for echo in response.echoes
+        ):
+            return exchange
+    return None
+
+
+def _is_in_id(place: NumberPlace) -> bool:
+    return place.at + place.size <= _ID_BYTES
+
+
+def _status(response: Response, verdict: Verdict) -> int:
+    """Return the status that says ``verdict``: the first listed value; of a refusal, the
+    first value that is not listed.
+    """
+    listed = next((value for value, says in response.meanings if says == verdict), None)
+    if listed is not None:
+        return listed
+    taken = {value for value, _ in response.meanings}
+    # A reason in the field of the status is a member of its enumeration. Otherwise, one
+    # of the `len(taken) + 1` lowest numbers is left.
+    is_reason = response.reason == response.status
+    members = [value for value, _ in response.reasons] if is_reason else []
+    candidates: list[int] = [*members, *range(len(taken) + 1)]
+    return next(value for value in candidates if value not in taken)

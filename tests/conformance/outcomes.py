@@ -1,0 +1,298 @@
+"""Random scripts of the client of framed links, with the answers of the reference
+implementation.
+
+    python -m tests.conformance.outcomes --lang c,rust --scripts 3000
+    python -m tests.conformance.outcomes --lang c --seed 7 --show 5 my_link.yaml
+
+Each script starts and cancels requests, lets time pass, and receives responses to
+earlier requests, responses to other requests, damaged messages and unsolicited
+telemetry. Ends with status 0 if no answer differs, else 1. The test
+``test_outcomes.py`` runs some scripts in each language.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import sys
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+from icdgen.icd.model import Icd
+from icdgen.icd.responses import BUSY, NAK
+from icdgen.protocol import facts
+from icdgen.protocol.envelope import Stream, StreamRow
+from icdgen.protocol.exchange import Exchange, Response
+from icdgen.runtime_objects import reference
+from icdgen.vectors.wire.asking import Sample
+from tests.conformance.build import BuildError, build
+from tests.conformance.compare import difference
+from tests.conformance.driver import Testee
+from tests.conformance.icds import LINKS, ROOT, icd_of
+from tests.conformance.languages import SELFTEST, all_languages
+from tests.conformance.run import chosen
+
+EXAMPLES = [ROOT / "examples" / "links", LINKS]
+TIMES = {
+    "reply_timeout": (1, 100, 100, 300),
+    "retries": (0, 1, 2),
+    "late": (1, 50, 100),
+    "busy_pause": (1, 30, 100),
+    "gap": (0, 0, 5, 50),
+    "in_flight": (1, 1, 2, 3, 8),
+    "progress_for": (1, 120, 250),
+}
+# Sums and differences of the times above, so that scripts often meet the exact end of a
+# time-out; the last ones are the time-outs of the examples.
+STEPS = (
+    0,
+    0,
+    0,
+    0,
+    1,
+    1,
+    5,
+    10,
+    20,
+    29,
+    30,
+    49,
+    50,
+    51,
+    70,
+    95,
+    99,
+    100,
+    101,
+    200,
+    3000,
+)
+HALF = 1 << 31  # times that a counter of 32 bits could take for negative
+Row = dict[str, object]
+
+
+class Script:
+    """Builder of a script for a node."""
+
+    def __init__(self, form: Stream, source: random.Random) -> None:
+        self.form, self.source = form, source
+        self.sample = Sample(form, source)
+        self.begun: list[tuple[StreamRow, Row]] = []
+        self.now = source.choice((0, 0, 1000, HALF - 300))
+
+    def rows(self, count: int) -> Iterator[Row]:
+        """Yield rows of the script."""
+        makers = (self.telecommand, self.telemetry, self.receive, self.cancel, dict)
+        weights = (30, 8, 40, 4, 18)
+        for _ in range(count):
+            self.now += self.source.choice(STEPS)
+            (make,) = self.source.choices(makers, weights)
+            row = make() | {"at": self.now}
+            if self.source.random() < 0.1:
+                row["untaken"] = True
+            yield row
+
+    def telecommand(self) -> Row:
+        """Return a row that starts a request, sometimes with an error."""
+        # Telecommands with responses are of more interest.
+        of_interest = [row for row in self.form.telecommands if row.exchange]
+        row = self.source.choice(
+            of_interest
+            if of_interest and self.source.random() < 0.8
+            else self.form.telecommands
+        )
+        size = self.source.choice((row.least, row.most, row.most))
+        if self.source.random() < 0.05:
+            size = self.source.randrange(row.most + 2)
+        started: Row = {
+            "telecommand": row.id ^ (self.source.random() < 0.02),
+            "bytes": self.data(size).hex(),
+        }
+        if self.source.random() < 0.4:
+            started["repeat"] = True
+        if self.form.telemetry and self.source.random() < 0.15:
+            reply = self.source.choice(self.form.telemetry).id
+            started["reply"] = reply ^ (self.source.random() < 0.05)
+        self.begun.append((row, started))
+        return started
+
+    def telemetry(self) -> Row:
+        """Return a row that requests telemetry."""
+        asking = [row for row in self.form.telecommands if row.requests is not None]
+        if asking and self.source.random() < 0.8:
+            row = self.source.choice(asking)
+            data = bytes(row.least).hex()
+            self.begun.append((row, {"telecommand": row.id, "bytes": data}))
+            return {"telemetry": row.requests}
+        ids = [row.id for row in self.form.telemetry]
+        return {"telemetry": self.source.choice([*ids, 3])}
+
+    def data(self, size: int) -> bytes:
+        """Return data that are often equal to those of other messages."""
+        if self.source.random() < 0.7:
+            return bytes(self.source.choices((0, 1), k=size))
+        return self.source.randbytes(size)
+
+    def receive(self) -> Row:
+        """Return a row that receives one or two messages, sometimes cut or damaged."""
+        count = self.source.choice((1, 1, 1, 1, 2))
+        line = b"".join(self.line() for _ in range(count))
+        if line and self.source.random() < 0.05:
+            damaged = bytearray(line)
+            damaged[self.source.randrange(len(line))] ^= 1
+            line = bytes(damaged)
+        if self.source.random() < 0.03:
+            line = line[: self.source.randrange(len(line) + 1)]
+        return {"receive": line.hex()}
+
+    def line(self) -> bytes:
+        """Return an encoded message: mostly a response to a recent telecommand."""
+        if not self.form.telemetry:
+            return b""
+        row, started = self.source.choice(self.begun[-4:]) if self.begun else (None, {})
+        chance = self.source.random()
+        if row and row.exchange and chance < 0.8:
+            return self.response(row.exchange, started)
+        frame = self.source.choice(self.form.telemetry)
+        named = started.get("reply")
+        if chance < 0.9:
+            frame = next((row for row in self.form.telemetry if row.id == named), frame)
+        return self.encoded(frame, self.data(frame.most))
+
+    def response(self, exchange: Exchange, started: Row) -> bytes:
+        """Return a response to a telecommand, sometimes with a foreign echo."""
+        # Otherwise most requests would be refused.
+        kept = [row for row in exchange.responses if row.verdict not in (NAK, BUSY)]
+        response = self.source.choice(
+            kept if kept and self.source.random() < 0.4 else exchange.responses
+        )
+        frame = next(row for row in self.form.telemetry if row.id == response.telemetry)
+        data = bytearray(self.data(frame.most))
+        self._echo(data, exchange, response, started)
+        if response.status and response.meanings and self.source.random() < 0.8:
+            value, _ = self.source.choice(response.meanings)
+            response.status.put(data, value)
+        return self.encoded(frame, bytes(data))
+
+    def _echo(
+        self, data: bytearray, exchange: Exchange, response: Response, started: Row
+    ) -> None:
+        id, text = started["telecommand"], started["bytes"]
+        assert isinstance(id, int) and isinstance(text, str)
+        telecommand = id.to_bytes(4, "big") + bytes.fromhex(text)
+        for echo in response.echoes:
+            number = exchange.sources[echo.source].of(telecommand)
+            foreign = self.source.random() < 0.05
+            echo.place.put(data, number ^ foreign)
+
+    def encoded(self, frame: StreamRow, data: bytes) -> bytes:
+        """Return a message with header and trailer."""
+        size = len(data)
+        if self.source.random() < 0.05:
+            size = self.source.randint(frame.least, frame.most)
+        lost = self.source.choice((0,) * 20 + (1, 2))
+        line = self.sample.come(0, frame, lost, data[:size])["receive"]
+        return bytes.fromhex(line)
+
+    def cancel(self) -> Row:
+        """Return a row that cancels requests."""
+        if not self.begun or self.source.random() < 0.3:
+            return {"cancel": True}
+        row, started = self.source.choice(self.begun[-4:])
+        if row.requests is not None and self.source.random() < 0.5:
+            return {"cancel": True, "telemetry": row.requests}
+        return {"cancel": True, "telecommand": started["telecommand"]}
+
+
+def requests(icd: Icd, source: random.Random) -> Iterator[dict]:
+    """Yield scripts of all nodes with framing, without end."""
+    forms = [
+        (node.name, form)
+        for node in icd.nodes
+        if icd.protocol_of(node)
+        and (form := facts.of(icd, node).stream)
+        and form.telecommands
+    ]
+    # The nodes whose telecommands have responses come first more often.
+    weights = [1 + 9 * min(2, len(form.exchanges)) for _, form in forms]
+    while forms:
+        ((name, form),) = source.choices(forms, weights)
+        keys = source.sample(sorted(TIMES), source.randrange(len(TIMES) + 1))
+        yield {
+            "op": "stream_client",
+            "node": name,
+            "requests": source.choice((1, 2, 3, 3)),
+            "settings": {key: source.choice(TIMES[key]) for key in keys},
+            "script": list(Script(form, source).rows(source.choice((4, 10, 30, 80)))),
+        }
+
+
+def cases(icd: Icd, seed: int, count: int) -> list[tuple[dict, dict]]:
+    """Return requests and the answers of the reference implementation."""
+    chosen_requests = islice(requests(icd, random.Random(seed)), count)
+    return [(request, reference.answer(icd, request)) for request in chosen_requests]
+
+
+def differences(testee: Testee, asked: list[tuple[dict, dict]]) -> Iterator[str]:
+    """Yield each script that a language answers differently, and the first
+    difference.
+    """
+    lines = [json.dumps(request).encode() for request, _ in asked]
+    for (request, expected), line in zip(asked, testee.ask(lines), strict=True):
+        what = difference(expected, line)
+        if what:
+            yield f"{_first_step(expected, line) or what}\n  in {json.dumps(request)}"
+
+
+def _first_step(expected: dict, line: bytes | None) -> str | None:
+    """Return the first step of two answers that differs, with both; None if the
+    difference is elsewhere.
+    """
+    steps = json.loads(line or b"{}").get("steps", [])
+    for number, (want, got) in enumerate(zip(expected["steps"], steps, strict=False)):
+        if want != got:
+            return f"step {number}: {json.dumps(got)}\n  expected {json.dumps(want)}"
+    return None
+
+
+def main(arguments: list[str] | None = None) -> int:
+    languages = {
+        name: one for name, one in all_languages().items() if one.kind != SELFTEST
+    }
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.conformance.outcomes",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--lang",
+        default="c,python,rust",
+        help=f"comma-separated, of {', '.join(languages)} (default: %(default)s)",
+    )
+    parser.add_argument("--scripts", type=int, default=1000, help="number of scripts")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--show", type=int, default=2, help="number of differences")
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs (default: the framed links)"
+    )
+    options = parser.parse_args(arguments)
+    icd = icd_of(options.icds or EXAMPLES)
+    asked = cases(icd, options.seed, options.scripts)
+    failed = False
+    for language in chosen(parser, options.lang, languages):
+        try:
+            testee = Testee(build(language, icd))
+        except BuildError as error:
+            print(error, file=sys.stderr)
+            return 2
+        different = list(differences(testee, asked))
+        failed = bool(testee.close()) or bool(different) or failed
+        print(f"{language.name}: {len(asked)} scripts, {len(different)} differ")
+        print(*different[: options.show], testee.complaint(), sep="\n")
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
