@@ -73,7 +73,7 @@ def send(place: str, *words: str):
             ["--fault", "busy=100%"],
             ["Set Mode", "mode=Speed"],
             4,
-            "Set Mode: busy after 3 attempts; it was not executed",
+            "Set Mode: busy after 3 attempts",
         ),
         (
             ["--fault", "drop=50%@acknowledge", "--seed", str(LOSES_FIRST)],

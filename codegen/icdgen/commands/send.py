@@ -178,7 +178,7 @@ def _outcome_text(
         return failure_text(icd, node, outcome)
     if isinstance(outcome, Busy):
         attempts = attempts_text(outcome)
-        return f"{failure_text(icd, node, outcome)}{attempts}; it was not executed"
+        return f"{failure_text(icd, node, outcome)}{attempts}"
     if isinstance(outcome, Timeout):
         attempts = attempts_text(outcome)
         return f"no answer{attempts}; whether it was executed is not known"

@@ -92,9 +92,10 @@ class Sent:
 
 @dataclass(frozen=True)
 class Busy:
-    """The device was busy each time, so the request was not executed.
+    """The device was busy at the last attempt.
 
-    ``code`` and ``reason``: see `Refused`.
+    If an earlier attempt had no response, it may have been executed. ``code`` and
+    ``reason``: see `Refused`.
     """
 
     id: int

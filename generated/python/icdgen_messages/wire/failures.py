@@ -24,12 +24,13 @@ class RefusedError(IcdError):
 
 
 class DeviceBusyError(IcdError):
-    """The device was busy each time a request was sent. ``name`` is the message."""
+    """The device was busy at the last attempt. ``name`` is the message."""
 
     def __init__(self, event: Busy, name: str = "") -> None:
         often = "1 attempt" if event.attempts == 1 else f"{event.attempts} attempts"
-        text = f"the device was still busy after {often}"
-        super().__init__(f"{_request(event, name)} was not executed: {text}")
+        super().__init__(
+            f"{_request(event, name)}: the device was still busy after {often}"
+        )
         self.event, self.name = event, name
 
     def __reduce__(self) -> tuple[type[DeviceBusyError], tuple[Busy, str]]:
