@@ -91,7 +91,7 @@ RESERVED_IN_C = re.compile(
     # the user's next version of the ICD may need it.
     r"\w+_(NODE_TYPE|INTERFACE_VERSION|\w*BYTES|SEQUENCES|LONGEST)"
     r"|\w+_(telemetry|telecommand)_(t|name|length|size|decode|encode)"
-    r"|\w+_client_(uart|i2c|can)|\w+_(sender_t|sender_init|(ask|put|send|request)_\w+)"
+    r"|\w+_client_(uart|i2c|can)|\w+_(sender_t|sender_init|refusal|(ask|put|send|request)_\w+)"
     r"|ICD_\w+|icd_status_t|ICDGEN_SHARED|icdgen(_wide|_wire)?\.[hc]"
 )
 

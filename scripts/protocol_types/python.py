@@ -74,6 +74,8 @@ def _member(fact: Fact, part: type) -> str:
     kind = _TYPES.get(fact.kind, "int")
     if part is Settings and fact.kind is Kind.TIME:
         kind = "Number"  # users can set it, also to fractions
+    if part is Settings:
+        return f"    {fact.name}: {kind} = {fact.default}"
     if fact.is_optional:
         return f"    {fact.name}: Optional[{kind}] = None"
     return f"    {fact.name}: {kind}" + (" = ()" if fact.default == () else "")

@@ -41,7 +41,7 @@ static inline void session_forget(session_t *session)
 /* The same device, while the program of that link runs. */
 static inline void session_becomes(session_t *session, const icd_link_t *link)
 {
-    const icd_client_settings_t settings = {150, 4, 5, 2000};
+    const icd_client_settings_t settings = {150, 4, 5, 2000, 1000, 100, 0, 1, 60000};
     const int port = session->port;
     session_forget(session);
     memset(session, 0, sizeof *session);

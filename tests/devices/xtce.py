@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from icdgen.definitions import run, xtce, xtce_layout
+from icdgen.definitions import run, xtce, xtce_parts
 from icdgen.diagnostics import Findings
 from tests.conftest import ROOT
 from tests.devices.definition import Definition, Definitions, NotSupported, Values
@@ -37,7 +37,7 @@ def packets() -> Iterator[Definitions]:
         open_ = "".join(
             one.message
             for one in read.definitions.import_findings
-            if one.code == xtce_layout.OPEN
+            if one.code == xtce_parts.OPEN
         )
         for one in tree[
             "messages"

@@ -25,7 +25,12 @@ def errata_of_enum(enum: Enum) -> list[Erratum]:
 
 
 def _each_once(things: Iterable[Thing | LayoutNode]) -> list[Erratum]:
-    return list(dict.fromkeys(erratum for thing in things for erratum in thing.errata))
+    # An erratum can hold a mapping, so it cannot be compared by its hash.
+    by_id: dict[str, Erratum] = {}
+    for thing in things:
+        for erratum in thing.errata:
+            by_id.setdefault(erratum.id, erratum)
+    return list(by_id.values())
 
 
 def first_owners(things: Iterable[Thing]) -> dict[str, Thing]:

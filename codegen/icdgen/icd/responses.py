@@ -115,11 +115,19 @@ def number_run(place: NodePlace, node: Node) -> NumberRun | None:
     return NumberRun(pieces[0].byte, len(pieces), upwards[0].shift, little)
 
 
-def raw_status(field: NodePlace, value: object) -> int | None:
-    """Return the raw value of a status, which is given as a number or as a member of
-    its enumeration; None if there is no such member.
+def status_value(field: NodePlace, value: object) -> int | None:
+    """Return a value of the status, which is given as a number or as a member of its
+    enumeration; None if there is no such member.
     """
     if isinstance(value, int):
         return int(value)
     members = field.scalar.enum.members if field.scalar.enum else ()
     return next((member.value for member in members if member.name == value), None)
+
+
+def raw_status(field: NodePlace, value: object) -> int | None:
+    """Return a value of the status as the number without sign that clients compare;
+    None if there is no such member.
+    """
+    number = status_value(field, value)
+    return None if number is None else number & (1 << field.bits) - 1

@@ -109,6 +109,9 @@ def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     node: Any = tree
     holder, owner, place = tree, tree, tree.place
     for step in path:
+        if isinstance(node, Map) and step not in node:
+            # The validator takes the text of a number as the number.
+            step = next(key for key in node if str(key) == str(step))
         holder = owner
         place = node.item_at(step) if isinstance(node, Seq) else node.at(step)
         node = node[step]

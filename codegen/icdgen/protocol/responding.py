@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from icdgen.icd.located import Map
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
     ID,
+    MOST_SOURCES,
     NAK,
     STATUS_SETS,
     Section,
@@ -60,8 +60,10 @@ def exchange_of(
                 _names(field_of(response, reason_of(row))),
             )
         )
+    # A model from the cache has plain mappings.
     own: Any = message.response
-    timeout = own.get("timeout_ms", 0) if isinstance(own, Map) else 0
+    timeout = own.get("timeout_ms", 0) if isinstance(own, Mapping) else 0
+    assert len(sources) <= MOST_SOURCES, "rule ICD177 checks the number"
     return Exchange(tuple(sources), tuple(responses), timeout) if responses else None
 
 
@@ -87,8 +89,10 @@ def _place(node: Node, field: NodePlace | None, offset: int = 0) -> NumberPlace 
 
 def _names(field: NodePlace | None) -> tuple[tuple[int, str], ...]:
     """Return the values of a field with an enumeration, and their names."""
-    members = field.scalar.enum.members if field and field.scalar.enum else ()
-    return tuple((member.value, member.name) for member in members)
+    if field is None or field.scalar.enum is None:
+        return ()
+    mask = (1 << field.bits) - 1  # clients compare numbers without sign
+    return tuple((each.value & mask, each.name) for each in field.scalar.enum.members)
 
 
 def _meanings(kind: str, row: Section, message: Message) -> Iterator[tuple[int, str]]:

@@ -485,7 +485,7 @@ ICDGEN_API const icd_link_t *common_link(void)
         22u, /* longest without id and checksum */
         -1, /* node type */
         -1, /* interface version */
-        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* reply_timeout, retries, poll_interval, poll_timeout, late, busy_pause, gap, in_flight, progress_for */
+        {1000u, 3u, 20u, 5000u, 1000u, 100u, 0u, 1u, 60000u}, /* times and limits: icd_client_settings_t */
         errors, /* error codes */
         5u, 0u, /* how many; no error */
         &framing, /* framing of the UART */

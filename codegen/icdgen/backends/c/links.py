@@ -187,7 +187,7 @@ class _Tables:
             Row(f"{facts.longest_data}u", "longest without id and checksum"),
             Row(or_none(facts.node.node_type), "node type"),
             Row(or_none(facts.node.interface_version), "interface version"),
-            Row(settings, ", ".join(fact.name for fact in facts_of(facts.client))),
+            Row(settings, "times and limits: icd_client_settings_t"),
             Row(
                 self.array("errors", "icd_error_code_t", map(_error_code, codes)),
                 "error codes",

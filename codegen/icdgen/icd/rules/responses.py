@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from icdgen.icd.fault import Fault
+from icdgen.icd.layout import integer_range
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.places import NodePlace
@@ -25,6 +26,7 @@ from icdgen.icd.responses import (
     number_run,
     raw_status,
     reason_of,
+    status_value,
 )
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
@@ -67,13 +69,23 @@ def _declared(ctx: Context, link: Link) -> Iterator[Declared]:
             value = owner.get(kind, NONE)
             row = value if isinstance(value, Map) else unread()
             name = row.get("message") if isinstance(value, Map) else value
-            if isinstance(name, str) and name != NONE:
+            if isinstance(name, str) and name != NONE and _is_sound(row):
                 users = [
                     message
                     for message in messages
                     if owner is not commands or _inherits(message, kind)
                 ]
                 yield Declared(link, owner, kind, row, name, users)
+
+
+def _is_sound(row: Map) -> bool:
+    """Return whether the values of a response that these rules use conform to the
+    schema.
+    """
+    echo = row.get("echo", "")
+    parts = [*echo, *echo.values()] if isinstance(echo, Map) else [echo]
+    texts = [*parts, row.get("status", ""), row.get("reason", "")]
+    return all(isinstance(text, str) for text in texts)
 
 
 def _inherits(message: Message, kind: str) -> bool:
@@ -126,6 +138,21 @@ def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
             yield from _status(declared, response)
             yield from _reason(declared, response)
         yield from _reasons(ctx, link)
+        yield from _numbers_of_parts(ctx, link)
+
+
+def _numbers_of_parts(ctx: Context, link: Link) -> Iterator[Fault]:
+    """Yield a fault for each telecommand of which responses repeat too many parts."""
+    parts: dict[int, set[str]] = {}
+    for declared in _declared(ctx, link):
+        for message in declared.telecommands:
+            repeated = parts.setdefault(id(message), set())
+            before = len(repeated)
+            repeated.update(echoes_of(declared.row).values())
+            if before <= MOST_SOURCES < len(repeated):
+                text = f"responses repeat {len(repeated)} parts of {quote(message.name)}, more than {MOST_SOURCES}"
+                help = "leave out the parts that tell the least"
+                yield declared.fault("echo", text, help)
 
 
 def _number(
@@ -170,10 +197,6 @@ def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
             if text:
                 yield Fault.at(owner, key, text, help)
                 break
-    users = declared.telecommands
-    if len(set(echoes_of(row).values())) > MOST_SOURCES and users:
-        text = f"a response repeats more than {MOST_SOURCES} parts of a telecommand"
-        yield Fault.at(row, "echo", text, "leave out the parts that tell the least")
 
 
 def _repeated(node: Node, message: Message, name: str) -> tuple[int, str, str]:
@@ -213,18 +236,31 @@ def _status(declared: Declared, response: Message) -> Iterator[Fault]:
     for key in STATUS_SETS:
         values = row.get(key)
         for value, place in values.placed() if isinstance(values, Seq) else ():
-            raw = raw_status(field, value)
-            if raw is None:
+            raw, number = raw_status(field, value), status_value(field, value)
+            if raw is None or number is None:
                 members = field.scalar.enum.members if field.scalar.enum else ()
                 names = [member.name for member in members]
                 text = f"{quote(name)} has no value {quote(str(value))}"
                 remedy = suggestion(str(value), names, "correct it, or write a number")
                 yield Fault.of_place(row, place, text, *remedy)
+            elif not _fits(field, number):
+                text = (
+                    f"{number} does not fit {count(field.bits, 'bit')} of {quote(name)}"
+                )
+                yield Fault(
+                    row, place, text, "correct the value, or name another field"
+                )
             elif raw in seen:
                 text = f"{quote(str(value))} is in `{seen[raw]}` already"
                 yield Fault(row, place, text, "remove it from one of the two lists")
             else:
                 seen[raw] = key
+
+
+def _fits(field: NodePlace, number: int) -> bool:
+    """Return whether a raw value fits into a field."""
+    least, most = integer_range(field.bits, field.scalar.is_signed)
+    return least <= number <= most
 
 
 def _reason(declared: Declared, response: Message) -> Iterator[Fault]:
@@ -330,7 +366,9 @@ def _contradictions(rows: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
     seen: dict[object, str] = {}
     for kind, row in rows.items():
         name = row.get("message")
-        if isinstance(name, str) and name in seen:
+        if not isinstance(name, str):
+            continue  # The schema check reports it.
+        if name in seen:
             text = f"`{seen[name]}` and `{kind}` of {{name}} are the same telemetry"
             help = "write one `ack` whose `status` says which it is"
             yield kind, text, help

@@ -43,6 +43,7 @@ MOST_AWAITED = 8
 """Largest number of requests whose responses are awaited or may still arrive late."""
 
 _NO_EXCHANGE = Exchange((), ())
+_NEEDED: tuple[Verdict, ...] = ("ack", "reply")
 
 
 class _Awaited(NamedTuple):
@@ -57,7 +58,7 @@ class _Awaited(NamedTuple):
         verdicts = {response.verdict for response in self.responses}
         for response in self.responses:
             verdicts.update(verdict for _, verdict in response.meanings)
-        return frozenset(verdicts & {"ack", "reply"})
+        return frozenset(verdict for verdict in _NEEDED if verdict in verdicts)
 
     def matching(self, id: int, data: bytes) -> Optional[Response]:
         """Return the response that telemetry is; None if it is none of them."""

@@ -38,23 +38,23 @@ class Assumption(NamedTuple):
 class Settings(NamedTuple):
     """Timeouts and retries of a client, in milliseconds."""
 
-    reply_timeout: Number
+    reply_timeout: Number = 1000
     """Time-out of a reply, in milliseconds."""
-    retries: int
+    retries: int = 3
     """Number of retries of a request."""
-    poll_interval: Number
+    poll_interval: Number = 20
     """Time between two polls for an acknowledge, in milliseconds."""
-    poll_timeout: Number
+    poll_timeout: Number = 5000
     """Longest processing time of a telecommand, in milliseconds."""
-    late: Number
+    late: Number = 1000
     """Time after a time-out in which a response can still come, in milliseconds."""
-    busy_pause: Number
+    busy_pause: Number = 100
     """Pause before a request is sent to a busy device again, in milliseconds."""
-    gap: Number
+    gap: Number = 0
     """Shortest time between two transmissions, in milliseconds."""
-    in_flight: int
+    in_flight: int = 1
     """Number of requests that the device handles at a time."""
-    progress_for: Number
+    progress_for: Number = 60000
     """Longest time by which reports of progress extend a time-out, in milliseconds."""
 
 
