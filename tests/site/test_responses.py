@@ -62,7 +62,7 @@ def test_a_status_says_which_values_confirm_and_which_do_not(tmp_path):
     page = plain(tmp_path / "arm" / "protocol.html")
     assert "Group = id[0], Number = id[1]" in page
     assert (
-        "Status: Done, 9: confirms; Later: the device is busy; Moving: still being "
+        "Status: Done, 6: confirms; Later: the device is busy; Moving: still being "
         "executed; otherwise: refuses; reason in Detail"
     ) in page
 
