@@ -94,7 +94,7 @@ struct Late {
 pub(super) struct Slots<const N: usize, const R: usize> {
     pub(super) settings: Settings,
     pub(super) form: &'static Stream,
-    slots: [Slot<N>; R],
+    requests: [Slot<N>; R],
     late: [Option<Late>; MOST_AWAITED],
     begun: u32, // number of requests
     now: u32,   // time of the last call
@@ -106,7 +106,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         Self {
             settings,
             form,
-            slots: [Slot::EMPTY; R],
+            requests: [Slot::EMPTY; R],
             late: [None; MOST_AWAITED],
             begun: 0,
             now: 0,
@@ -115,9 +115,9 @@ impl<const N: usize, const R: usize> Slots<N, R> {
     }
 
     pub(super) fn deadline(&self) -> Option<u32> {
-        let timed = self.slots.iter().filter(|slot| slot.is_timed());
+        let timed = self.requests.iter().filter(|slot| slot.is_timed());
         let ends = timed.map(|slot| slot.until);
-        let is_queued = self.slots.iter().any(|slot| slot.state == State::Queued);
+        let is_queued = self.requests.iter().any(|slot| slot.state == State::Queued);
         // It may be possible to send the request then.
         let late = self.late.iter().flatten().map(|late| late.until);
         let chances = self.gap_end.into_iter().chain(late);
@@ -133,7 +133,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
             let known = self.form.row(Direction::Telemetry, id);
             known.ok_or(Error::UnknownId { id })?;
         }
-        let mut slots = self.slots.iter_mut();
+        let mut slots = self.requests.iter_mut();
         let free = slots.find(|slot| slot.state == State::Idle);
         let slot = free.ok_or(Error::Busy)?;
         let length = if asks { row.least } else { request.data.len() };
@@ -201,7 +201,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
 
     /// Return the place of the oldest request with this property.
     fn oldest(&self, property: impl Fn(&Slot<N>) -> bool) -> Option<usize> {
-        let slots = self.slots.iter().enumerate();
+        let slots = self.requests.iter().enumerate();
         let such = slots.filter(|(_, slot)| property(slot));
         let oldest = such.max_by_key(|(_, slot)| self.begun.wrapping_sub(slot.number));
         oldest.map(|(place, _)| place)
@@ -214,7 +214,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
     ) -> Result<Option<usize>, Error> {
         let place = self.oldest(|slot| slot.state == State::Queued);
         let sent = place.filter(|place| self.may_be_sent(*place));
-        let slot = match sent.and_then(|place| self.slots.get_mut(place)) {
+        let slot = match sent.and_then(|place| self.requests.get_mut(place)) {
             Some(slot) => slot,
             None => return Ok(None),
         };
@@ -239,11 +239,11 @@ impl<const N: usize, const R: usize> Slots<N, R> {
     /// Return whether the device handles the queued request now, and no response to another request
     /// could be taken for a response to it.
     fn may_be_sent(&self, place: usize) -> bool {
-        let slot = match self.slots.get(place) {
+        let slot = match self.requests.get(place) {
             Some(slot) if self.gap_end.map_or(true, |end| reached(self.now, end)) => slot,
             _ => return false,
         };
-        let others = self.slots.iter().enumerate();
+        let others = self.requests.iter().enumerate();
         let others = others.filter(|(other, _)| *other != place);
         let others = others.map(|(_, other)| other);
         let in_flight = others.clone().filter(|other| other.is_in_flight()).count();
@@ -270,7 +270,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
     /// The state of a request ends.
     fn expire(&mut self, place: usize) -> Option<Event<'static>> {
         let retries = u16::from(self.settings.retries);
-        let slot = self.slots.get_mut(place)?;
+        let slot = self.requests.get_mut(place)?;
         let is_left = slot.repeats && slot.attempts <= retries;
         if slot.state == State::Pause || slot.state == State::Wait && is_left {
             slot.state = State::Queued;
@@ -329,7 +329,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         values: Values,
     ) -> Option<Event<'a>> {
         let (now, settings) = (self.now, self.settings);
-        let slot = self.slots.get_mut(place)?;
+        let slot = self.requests.get_mut(place)?;
         let response: Response = slot.awaited.matching(reply, data)?;
         let verdict = response.verdict_of(data);
         let code = response.reason.map(|reason| reason.get(data, &[]));
@@ -395,7 +395,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
 
     /// End a request, and remember the responses that may still arrive.
     fn end(&mut self, place: usize) {
-        if let Some(slot) = self.slots.get_mut(place) {
+        if let Some(slot) = self.requests.get_mut(place) {
             // A response counts from the transmission, not from the end of the request.
             let until = slot.sent_at.wrapping_add(slot.timeout);
             let until = until.wrapping_add(self.settings.late_ms);
