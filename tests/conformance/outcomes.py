@@ -26,7 +26,7 @@ from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.exchange import Exchange, Response
 from icdgen.runtime_objects import reference
-from icdgen.vectors.wire.asking import Sample
+from icdgen.vectors.wire.asking import Sample, wire_place
 from tests.conformance.build import BuildError, build
 from tests.conformance.compare import difference
 from tests.conformance.driver import Testee
@@ -173,7 +173,7 @@ class Script:
         self._echo(data, exchange, response, started)
         if response.status and response.meanings and self.source.random() < 0.8:
             value, _ = self.source.choice(response.meanings)
-            response.status.put(data, value)
+            wire_place(response.status).put(value, data)
         return self.encoded(frame, bytes(data))
 
     def _echo(
@@ -183,9 +183,9 @@ class Script:
         assert isinstance(id, int) and isinstance(text, str)
         telecommand = id.to_bytes(4, "big") + bytes.fromhex(text)
         for echo in response.echoes:
-            number = exchange.sources[echo.source].of(telecommand)
+            number = wire_place(exchange.sources[echo.source]).of(telecommand)
             foreign = self.source.random() < 0.05
-            echo.place.put(data, number ^ foreign)
+            wire_place(echo.place).put(number ^ foreign, data)
 
     def encoded(self, frame: StreamRow, data: bytes) -> bytes:
         """Return a message with header and trailer."""

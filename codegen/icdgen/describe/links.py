@@ -200,7 +200,8 @@ class LinkDescription:
     def reason_enum(self) -> EnumDescription | None:
         """Enumeration of the reasons of refusals in packets.
 
-        None without reasons, or if they are not all of one enumeration.
+        None without reasons, or if they are not all of one enumeration without negative
+        values: clients compare numbers without sign.
         """
         icd, node = self._description.icd, self.facts.node
         commands = icd.protocol_of(node).get("stream", {}).get("commands", {})
@@ -219,6 +220,8 @@ class LinkDescription:
             if (message.model.name, field.model.name) in reasons
         ]
         first = enums[0] if enums else None
+        if first is None or first.storage.signed:
+            return None
         return first if all(enum is first for enum in enums) else None
 
     @property

@@ -97,9 +97,9 @@ class MessageDescription(Composite[Message]):
         return self.model.layout.has_gaps
 
     @property
-    def steady_bytes(self) -> int:
+    def constant_bytes(self) -> int:
         """Bytes that every frame has outside its parts of variable length."""
-        return self.model.layout.steady_bytes
+        return self.model.layout.constant_bytes
 
     @property
     def counted_parts(self) -> tuple[VariablePartDescription, ...]:

@@ -257,21 +257,21 @@ class Layout:
         return (*self.fixed, *self.sequence, *self.derived)
 
     @property
-    def steady_bytes(self) -> int:
+    def constant_bytes(self) -> int:
         """Bytes that every frame has outside its variable parts."""
         return self.length + sum(part.behind for part in self.parts)
 
     @property
     def longest(self) -> int:
         """Length of the longest frame in bytes."""
-        return self.steady_bytes + sum(part.most * part.step for part in self.parts)
+        return self.constant_bytes + sum(part.most * part.step for part in self.parts)
 
     @property
     def shortest(self) -> int:
         """Length of the shortest frame in bytes; at least 1 if frames may end early,
         unless the message is empty.
         """
-        shortest = self.steady_bytes + sum(
+        shortest = self.constant_bytes + sum(
             part.fewest * part.shortest_step for part in self.parts
         )
         return min(1, shortest) if self.may_end_early else shortest
@@ -412,7 +412,7 @@ class Layout:
 
     def size_of_frame(self, sizes: Sizes) -> int:
         """Return the length in bytes of a frame of these sizes."""
-        return self.steady_bytes + sum(
+        return self.constant_bytes + sum(
             sizes[part.name] * part.step_of(sizes) for part in self.parts
         )
 

@@ -18,7 +18,7 @@ from icdgen.icd.pieces import pieces_at
 from icdgen.icd.places import NodePlace
 
 ACK, REPLY, NAK, BUSY, PROGRESS = KINDS = ("ack", "reply", "nak", "busy", "progress")
-"""What a response says about a telecommand: it was accepted; here is the requested
+"""Statement of a response about a telecommand: it was accepted; here is the requested
 telemetry; it was refused; the device is busy; it is still being executed.
 """
 
@@ -32,6 +32,7 @@ is an acknowledge or a reply, as the response itself.
 ID = "id"  # in `echo`: the id of the telecommand
 MOST_SOURCES = 4  # different numbers of a telecommand that responses repeat
 MOST_BYTES = 4  # of a number that a client compares
+ID_BYTES = 4  # of the id of a telecommand, in front of its data
 _ID_BYTE = re.compile(r"id\[(\d+)\]")
 
 Section = Mapping[str, Any]
@@ -90,7 +91,7 @@ def id_byte_of(node: Node, name: str) -> int | None:
     """
     match, size = _ID_BYTE.fullmatch(name), ceil(node.id_bits / 8)
     index = int(match[1]) if match else size
-    return MOST_BYTES - size + index if index < size else None
+    return ID_BYTES - size + index if index < size else None
 
 
 def field_of(message: Message, name: str | None) -> NodePlace | None:

@@ -7,12 +7,8 @@ decode messages.
 
 from __future__ import annotations
 
-from typing import Literal
-
 from icdgen.frozen import dataclass
-from icdgen.icd.responses import NEEDED, REPLY
-
-ID_BYTES = 4  # of the id in front of the data, in `Exchange.sources`
+from icdgen.icd.responses import REPLY
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,26 +24,6 @@ class NumberPlace:
     shift: int
     bits: int
     little: bool
-
-    def of(self, data: bytes) -> int:
-        """Return the number in a message."""
-        number = self._number(data[self.at :].ljust(self.size, b"\0"))
-        return number >> self.shift & (1 << self.bits) - 1
-
-    def put(self, into: bytearray, number: int) -> None:
-        """Write the lowest bits of a number into a message that has all bytes."""
-        mask = (1 << self.bits) - 1 << self.shift
-        kept = self._number(bytes(into[self.at :])) & ~mask
-        whole = kept | number << self.shift & mask
-        end = self.at + self.size
-        into[self.at : end] = whole.to_bytes(self.size, self._order)
-
-    @property
-    def _order(self) -> Literal["little", "big"]:
-        return "little" if self.little else "big"
-
-    def _number(self, data: bytes) -> int:
-        return int.from_bytes(data[: self.size], self._order)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,15 +62,6 @@ class Exchange:
     sources: tuple[NumberPlace, ...]
     responses: tuple[Response, ...]
     timeout: int  # time-out in milliseconds; 0: that of the client
-
-    @property
-    def needed(self) -> frozenset[str]:
-        """Verdicts that must arrive before the telecommand is done: `ACK`, `REPLY`."""
-        verdicts = {response.verdict for response in self.responses}
-        verdicts |= {
-            verdict for response in self.responses for _, verdict in response.meanings
-        }
-        return frozenset(verdicts.intersection(NEEDED))
 
     @property
     def reply(self) -> int | None:

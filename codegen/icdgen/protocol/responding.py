@@ -11,6 +11,7 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
     ID,
+    ID_BYTES,
     MOST_SOURCES,
     NAK,
     STATUS_SETS,
@@ -23,7 +24,7 @@ from icdgen.icd.responses import (
     raw_status,
     reason_of,
 )
-from icdgen.protocol.exchange import ID_BYTES, Echo, Exchange, NumberPlace, Response
+from icdgen.protocol.exchange import Echo, Exchange, NumberPlace, Response
 
 FindTelemetry = Callable[[str], tuple[int, Message] | None]
 """Function that returns id and message of telemetry with a name."""
@@ -36,10 +37,10 @@ def exchange_of(
     sources: list[NumberPlace] = []
     responses = []
     for kind, row in declared_responses(commands, message).items():
-        found = telemetry(row["message"])
-        if found is None:
+        declared = telemetry(row["message"])
+        if declared is None:
             continue
-        id, response = found
+        id, response = declared
         echoes = []
         for name, repeated in echoes_of(row).items():
             source = _source(node, message, repeated)

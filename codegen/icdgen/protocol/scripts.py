@@ -43,14 +43,10 @@ def client(facts: Facts, request: dict[str, Any]) -> dict[str, Any]:
     rows = mappings(request, "script")
     return {
         "steps": [
-            step(
-                tested_client,
-                row,
-                _client_events,
-                _client_output,
-                refused,
-                lambda client: client.deadline,
-            )
+            {
+                **step(tested_client, row, _client_events, _client_output, refused),
+                "deadline": tested_client.deadline,
+            }
             for row in rows
         ]
     }
@@ -87,9 +83,8 @@ def step(
     events_of: Callable[[AnyClient, int, dict[str, Any]], list[Event]],
     output: Callable[[AnyClient, dict[str, Any]], list[object]],
     refused: tuple[type[Refused], ...],
-    deadline: Callable[[AnyClient], int | None],
 ) -> dict[str, Any]:
-    """Return the reaction of a client to one row of a script."""
+    """Return the reaction of a client to one row of a script, without its deadline."""
     refusal: dict[str, Any] = {}
     events: list[Event] = []
     try:
@@ -100,7 +95,6 @@ def step(
         **refusal,
         "out": output(tested_client, row),
         "events": events,
-        "deadline": deadline(tested_client),
     }
 
 

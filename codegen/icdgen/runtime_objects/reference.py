@@ -58,7 +58,10 @@ def _stream_client(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any
     )
     return {
         "steps": [
-            step(client, row, _events, _output, refused, _deadline)
+            {
+                **step(client, row, _events, _output, refused),
+                "deadline": _deadline(client),
+            }
             for row in mappings(request, "script")
         ]
     }

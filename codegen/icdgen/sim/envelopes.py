@@ -151,14 +151,11 @@ class EnvelopeLine(DeviceLine):
             lengths = [
                 range(each.layout.shortest, each.length + 1) for each in messages
             ]
-            is_too_long_or_short = not any(len(data) in each for each in lengths)
+            if not any(len(data) in each for each in lengths):
+                return "length"
             # Constants distinguish messages that share an id, such as the number of a
             # command: another constant is another telecommand.
-            return (
-                "length"
-                if is_too_long_or_short
-                else "unknown_id" if len(messages) > 1 else "value"
-            )
+            return "unknown_id" if len(messages) > 1 else "value"
         try:
             raw = codec.decode(program.icd.node(message.node), message, data)
         except codec.LengthError:

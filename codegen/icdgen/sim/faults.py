@@ -121,11 +121,12 @@ def parse(text: str) -> Fault:
         value = -1.0
     if not 0 <= value <= 1:
         raise UserError(f"`{text}`: the share is not between 0 and 1 (100%)", HELP)
-    telecommand = ("telecommand",)
-    allowed = (
-        telecommand if kind in OUTCOMES else OUT if kind == "late" else (*OUT, *IN)
-    )
-    default = telecommand if kind in OUTCOMES else OUT
+    default: tuple[str, ...] = OUT
+    allowed: tuple[str, ...] = (*OUT, *IN)
+    if kind in OUTCOMES:
+        default = allowed = ("telecommand",)
+    elif kind == "late":
+        allowed = OUT
     on = tuple(match["on"].split(",")) if match["on"] else default
     for what in on:
         if what not in allowed:

@@ -42,7 +42,7 @@ def size(message: MessageDescription) -> list[str]:
         )
         for part in message.variable_parts
     ]
-    fixed = message.steady_bytes
+    fixed = message.constant_bytes
     if message.has_gaps:
         return [f"{fixed}u", *parts]
     if not fixed:

@@ -17,9 +17,10 @@ from icdgen.describe.links import (
     StepDescription,
     byte_table,
 )
+from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.envelope import CRC, PACKET, EnvelopeField, Stream, StreamRow
-from icdgen.protocol.exchange import ID_BYTES, Exchange, NumberPlace, Response
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF

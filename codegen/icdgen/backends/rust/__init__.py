@@ -122,7 +122,7 @@ def _functions() -> dict[str, object]:
         nodes.summary, nodes.typed, parts.parts_of, physical.big_parts, physical.derived_statements,
         physical.has_constant, presence_comment, RUST_NAMES.symbol, sentence, text.arm, text.assigned, text.code,
         text.described, text.doc, text.integer, text.mask, text.prose, text.signature, text.string,
-        types.enum_path, types.message_path, types.open_type, types.raw_type, words,
+        types.enum_path, types.message_path, types.open_type, types.raw_type, types.reason_number, words,
     )  # fmt: skip
     return {function.__name__: function for function in functions}
 

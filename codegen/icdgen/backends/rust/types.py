@@ -19,6 +19,18 @@ def enum_path(enum: EnumDescription, node: Node) -> str:
     return name if enum.node.name == node.name else f"crate::{enum.node.name}::{name}"
 
 
+def reason_number(enum: EnumDescription) -> str:
+    """Return the expression that converts `code`, the number of a reason in 32 bits, to
+    the storage of its enumeration. A number that does not fit is its largest value.
+    """
+    bits = enum.storage.bits
+    if bits == 32:
+        return "code"
+    if bits == 64:
+        return "u64::from(code)"
+    return f"u{bits}::try_from(code).unwrap_or(u{bits}::MAX)"
+
+
 def message_path(message: MessageDescription, node: Node) -> str:
     """The type of a message as the module of ``node`` writes it."""
     name = RUST_NAMES.symbol(message, "type")

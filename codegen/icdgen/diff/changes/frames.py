@@ -136,7 +136,7 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
         if (
             old.layout.sequence
             and new.layout.sequence
-            and old.layout.steady_bytes != new.layout.steady_bytes
+            and old.layout.constant_bytes != new.layout.constant_bytes
         ):
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield CheckResult(text, ("length",), length_text(old), length_text(new))

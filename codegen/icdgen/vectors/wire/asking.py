@@ -8,10 +8,12 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from icdgen.icd.responses import NEEDED, PROGRESS
+from icdgen_runtime.wire.envelope import NumberPlace as WirePlace
+
+from icdgen.icd.responses import ID_BYTES, NEEDED, PROGRESS
 from icdgen.protocol import stream
 from icdgen.protocol.envelope import Stream, StreamRow
-from icdgen.protocol.exchange import ID_BYTES, Exchange, Response
+from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import Settings
 from icdgen.vectors.wire import Requests, Row, Script
@@ -19,6 +21,11 @@ from icdgen.vectors.wire import Requests, Row, Script
 SETTINGS = {"reply_timeout": 100, "retries": 2, "late": 100}
 MOST_MOMENTS = 100  # of a script
 OUTCOME_SETTINGS = {"busy_pause": 30, "progress_for": 250}
+
+
+def wire_place(place: NumberPlace) -> WirePlace:
+    """Return the place in the runtime, which reads and writes numbers."""
+    return WirePlace(place.at, place.size, place.shift, place.bits, place.little)
 
 
 class Sample:
@@ -70,10 +77,10 @@ class Sample:
             asked["bytes"]
         )
         for echo in response.echoes:
-            number = exchange.sources[echo.source].of(telecommand)
-            echo.place.put(data, number ^ int(foreign))
+            number = wire_place(exchange.sources[echo.source]).of(telecommand)
+            wire_place(echo.place).put(number ^ int(foreign), data)
         if response.status and status is not None:
-            response.status.put(data, status)
+            wire_place(response.status).put(status, data)
         return self.come(at, row, data=bytes(data))
 
 

@@ -102,7 +102,7 @@ class Response(NamedTuple):
 
     telemetry: int
     verdict: Verdict
-    """What it means; with a status, what a value means that is not in ``meanings``."""
+    """Its meaning; with a status, the meaning of a value that ``meanings`` lacks."""
     echoes: tuple[Echo, ...] = ()
     status: Optional[NumberPlace] = None
     meanings: tuple[tuple[int, Verdict], ...] = ()

@@ -269,7 +269,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         }
     }
 
-    /// The state of a request ends.
+    /// End the state of a request whose time is up. Return the outcome, if it has one.
     fn expire(&mut self, place: usize) -> Option<Event<'static>> {
         let retries = u16::from(self.settings.retries);
         let slot = self.requests.get_mut(place)?;
