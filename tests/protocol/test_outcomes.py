@@ -19,6 +19,7 @@ from tests.conftest import ROOT
 # The modules of the runtime, which `icdgen.runtime_objects` has made importable.
 _client = import_module("icdgen_runtime.wire.envelope_client")
 _stream = import_module("icdgen_runtime.wire.stream")
+Sender = import_module("icdgen_runtime.wire.sender").Sender
 _events = import_module("icdgen_runtime.wire.events")
 EnvelopeClient, Request = _client.EnvelopeClient, _client.Request
 StreamDecoder, stream_encode = _stream.StreamDecoder, _stream.stream_encode
@@ -112,3 +113,81 @@ def test_no_response_is_taken_for_that_of_another_request(link, in_flight):
 
 def test_responses_after_the_late_time_can_confuse_so_the_test_can_fail(link):
     assert wrong_outcomes(link, Line(loss=0.2, delay=1500), 100, 1)
+
+
+class Arm:
+    """Client of the test link `arm`: telecommands with a status, an acknowledge and a
+    reply; time-out 300 ms, late time 50 ms, pause of a busy device 100 ms.
+    """
+
+    MOVE, READ_POSITION, READ_LOAD = 0x0201, 0x0205, 0x0208
+    RESULT, POSITION, LOAD = 0x8001, 0x0205, 0x0208
+    DONE, LATER, MOVING, FAILED = 0, 1, 2, 3
+
+    def __init__(self, **settings: int) -> None:
+        path = ROOT / "tests" / "conformance" / "links" / "outcomes.yaml"
+        icd = load([path]).icd
+        self.link = link_of(icd, facts.of(icd, icd.node("arm")))
+        own = self.link.settings._replace(**settings)
+        self.client = EnvelopeClient(self.link, own)
+        self.device = Sender(self.link, "telemetry")
+
+    def send(self, now: int, id: int, data: bytes = b"", reply: int | None = None):
+        """Start a telecommand that may be sent again, and return whether it was sent at
+        once.
+        """
+        self.client.start(now, Request("telecommand", id, data, True), reply)
+        return bool(self.client.output())
+
+    def result(self, now: int, telecommand: int, status: int) -> list[str]:
+        """Receive a command result, and return the names of the events."""
+        data = bytes([status, 0]) + telecommand.to_bytes(2, "big") + bytes(2)
+        return self.receive(now, self.RESULT, data)
+
+    def receive(self, now: int, id: int, data: bytes) -> list[str]:
+        events = self.client.received(now, self.device.encode(id, data))
+        return [type(event).__name__ for event in events]
+
+
+def test_after_progress_the_late_time_counts_from_the_longer_timeout():
+    arm = Arm(retries=0, progress_for=1000)
+    assert arm.send(0, arm.MOVE, bytes(7))
+    assert arm.result(200, arm.MOVE, arm.MOVING) == ["Progress"]
+    assert [type(each).__name__ for each in arm.client.tick(500)] == ["Timeout"]
+    assert not arm.send(510, arm.MOVE, bytes(7)), "its answer could be the late one"
+    assert arm.result(549, arm.MOVE, arm.DONE) == ["Late"]
+
+
+def test_progress_does_not_make_the_pause_of_a_busy_device_longer():
+    arm = Arm(retries=2, busy_pause=100)
+    assert arm.send(0, arm.MOVE, bytes(7))
+    assert arm.client.tick(300) == []
+    assert arm.client.output(), "sent again, so that one more response may arrive"
+    assert arm.result(310, arm.MOVE, arm.LATER) == ["Progress"]
+    assert arm.result(320, arm.MOVE, arm.MOVING) == ["Progress"]
+    assert arm.client.deadline == 410
+
+
+def test_an_acknowledge_that_comes_twice_does_not_count_as_the_reply_to_come():
+    arm = Arm(retries=0)
+    assert arm.send(0, arm.READ_POSITION, b"\1")  # its time-out is 120 ms
+    assert arm.result(10, arm.READ_POSITION, arm.DONE) == ["Progress"]
+    assert arm.result(11, arm.READ_POSITION, arm.DONE) == ["Progress"]
+    assert [type(each).__name__ for each in arm.client.tick(120)] == ["Timeout"]
+    assert not arm.send(
+        130, arm.READ_POSITION, b"\1"
+    ), "the reply could be the late one"
+    assert arm.receive(140, arm.POSITION, b"\1\0\0") == ["Late"]
+
+
+def test_a_reply_named_by_the_caller_replaces_one_with_a_status():
+    arm = Arm()
+    assert arm.send(0, arm.READ_LOAD, reply=arm.POSITION)
+    assert arm.receive(10, arm.LOAD, b"\0\0\0") == ["Arrived"]
+    assert arm.receive(20, arm.POSITION, b"\0\0\0") == ["Done"]
+
+
+def test_a_reply_named_by_the_caller_keeps_the_echo_and_status_of_the_icd():
+    arm = Arm()
+    assert arm.send(0, arm.READ_LOAD, reply=arm.LOAD)
+    assert arm.receive(10, arm.LOAD, bytes([arm.FAILED, 0, 0])) == ["Refused"]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from icdgen.frozen import dataclass
 from icdgen.icd import checksum
-from icdgen.icd.responses import REPLY
 from icdgen.protocol.exchange import Exchange
 from icdgen.protocol.sections import Crc
 
@@ -118,7 +117,7 @@ class Stream:
         nor sent unasked.
         """
         responses = {
-            (response.telemetry, response.verdict == REPLY)
+            (response.telemetry, response.is_reply)
             for exchange in self.exchanges
             for response in exchange.responses
         }

@@ -50,6 +50,11 @@ class Response:
     reason: NumberPlace | None
     reasons: tuple[tuple[int, str], ...]  # values of the reason and their names
 
+    @property
+    def is_reply(self) -> bool:
+        """Whether it can be the telemetry that the telecommand requests."""
+        return REPLY in (self.verdict, *(verdict for _, verdict in self.meanings))
+
 
 @dataclass(frozen=True, slots=True)
 class Exchange:
@@ -66,6 +71,4 @@ class Exchange:
     @property
     def reply(self) -> int | None:
         """Id of the telemetry that the telecommand requests; None without a reply."""
-        return next(
-            (row.telemetry for row in self.responses if row.verdict == REPLY), None
-        )
+        return next((row.telemetry for row in self.responses if row.is_reply), None)

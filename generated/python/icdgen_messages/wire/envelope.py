@@ -118,6 +118,10 @@ class Response(NamedTuple):
             return self.verdict
         return dict(self.meanings).get(self.status.of(data), self.verdict)
 
+    def can_be(self, verdict: Verdict) -> bool:
+        """Return whether it can mean ``verdict``."""
+        return verdict == self.verdict or verdict in dict(self.meanings).values()
+
 
 class Exchange(NamedTuple):
     """The possible responses to a telecommand."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
@@ -56,10 +56,11 @@ class _Awaited(NamedTuple):
     @property
     def needed(self) -> frozenset[Verdict]:
         """Return the responses without which a request is not done."""
-        verdicts = {response.verdict for response in self.responses}
-        for response in self.responses:
-            verdicts.update(verdict for _, verdict in response.meanings)
-        return frozenset(verdict for verdict in _NEEDED if verdict in verdicts)
+        return frozenset(
+            verdict
+            for verdict in _NEEDED
+            if any(response.can_be(verdict) for response in self.responses)
+        )
 
     def matching(self, id: int, data: bytes) -> Optional[Response]:
         """Return the response that telemetry is; None if it is none of them."""
@@ -88,6 +89,33 @@ class _Awaited(NamedTuple):
         )
 
 
+class _Owed:
+    """Numbers of responses that may still arrive, for each needed verdict.
+
+    One number for all verdicts would not do: an acknowledge that comes twice would
+    count as the reply that is still missing.
+    """
+
+    def __init__(self, needed: frozenset[Verdict]) -> None:
+        self._numbers = dict.fromkeys(needed, 0)
+
+    def __bool__(self) -> bool:
+        return any(self._numbers.values())
+
+    def add_transmission(self) -> None:
+        """Count the responses to one more transmission."""
+        for verdict in self._numbers:
+            self._numbers[verdict] += 1
+
+    def remove(self, received: Verdict) -> None:
+        """Count off what has arrived: a refusal replaces all responses."""
+        if received == "progress":
+            return
+        for verdict, number in self._numbers.items():
+            if number and (received == verdict or received not in _NEEDED):
+                self._numbers[verdict] = number - 1
+
+
 @dataclass(eq=False)
 class _Slot:
     """A request in progress."""
@@ -103,15 +131,18 @@ class _Slot:
     state: Literal["queued", "sent", "wait", "pause"] = "queued"
     attempts: int = 0
     until: float = 0  # end of the state
-    limit: float = 0  # until when progress extends it
-    sent_at: float = 0
+    latest: float = 0  # until when a response is in time
+    limit: float = 0  # until when progress extends `latest`
     missing: frozenset[Verdict] = frozenset()
-    owed: int = 0  # responses that may still arrive
+    owed: _Owed = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.owed = _Owed(self.awaited.needed)
 
     @property
     def is_awaited(self) -> bool:
         """Whether a response may arrive, also to an earlier attempt."""
-        return self.state == "wait" or self.owed > 0
+        return self.state == "wait" or bool(self.owed)
 
 
 @dataclass(eq=False)
@@ -119,7 +150,7 @@ class _Late:
     """Responses that may still arrive although their request has ended."""
 
     awaited: _Awaited
-    owed: int
+    owed: _Owed
     until: float
 
 
@@ -228,10 +259,10 @@ class EnvelopeClient(Generic[N]):
             return b""
         line = self._sender.encode(slot.sent_id, slot.request.data)
         slot.attempts += 1
-        slot.sent_at, slot.missing = now, slot.awaited.needed
-        slot.owed += len(slot.missing)
+        slot.missing = slot.awaited.needed
+        slot.owed.add_transmission()
         slot.state = "wait" if slot.missing else "sent"
-        slot.until = now + slot.timeout if slot.missing else now
+        slot.until = slot.latest = now + slot.timeout if slot.missing else now
         slot.limit = now + self.settings.progress_for
         self._next_output = now + self.settings.gap
         return line
@@ -302,8 +333,8 @@ class EnvelopeClient(Generic[N]):
         for late in self._late:
             response = late.awaited.matching(id, data)
             if response:
-                late.owed -= _answered(response.verdict_of(data), late.awaited)
-                self._late = [entry for entry in self._late if entry.owed > 0]
+                late.owed.remove(response.verdict_of(data))
+                self._late = [entry for entry in self._late if entry.owed]
                 return Late(id, data, kind)
         if id in self._form.confirming:
             return Stray(data, id, kind)
@@ -315,9 +346,11 @@ class EnvelopeClient(Generic[N]):
         """Process a response to a request."""
         verdict, data = response.verdict_of(event.data), event.data
         id, response_id, handle = slot.request.id, response.telemetry, slot.handle
-        slot.owed = max(0, slot.owed - _answered(verdict, slot.awaited))
+        slot.owed.remove(verdict)
         if verdict == "progress":
-            slot.until = max(slot.until, min(now + slot.timeout, slot.limit))
+            slot.latest = max(slot.latest, min(now + slot.timeout, slot.limit))
+            if slot.state == "wait":  # the pause of a busy device stays as it is
+                slot.until = slot.latest
             return Progress(id, data, event.kind, handle)
         if verdict in ("ack", "reply"):
             slot.missing -= {verdict}
@@ -361,8 +394,9 @@ class EnvelopeClient(Generic[N]):
             _NO_EXCHANGE if row.exchange is None else self._form.exchanges[row.exchange]
         )
         responses = exchange.responses
-        if reply is not None:
-            others = (each for each in responses if each.verdict != "reply")
+        replies = [each for each in responses if each.can_be("reply")]
+        if reply is not None and all(each.telemetry != reply for each in replies):
+            others = (each for each in responses if each not in replies)
             responses = (*others, Response(reply, "reply"))
         telecommand = row.id.to_bytes(4, "big") + request.data
         sources = tuple(place.of(telecommand) for place in exchange.sources)
@@ -428,14 +462,8 @@ class EnvelopeClient(Generic[N]):
         """End a request, and remember the responses that may still arrive."""
         self._slots.remove(slot)
         if slot.owed:
-            # A response counts from the transmission, not from the end of the request.
-            until = slot.sent_at + slot.timeout + self.settings.late
+            # A response counts from the transmission or from progress, not from the end
+            # of the request.
+            until = slot.latest + self.settings.late
             if self._now < until:
                 self._late.append(_Late(slot.awaited, slot.owed, until))
-
-
-def _answered(verdict: Verdict, awaited: _Awaited) -> int:
-    """Return the number of awaited responses that this one replaces."""
-    if verdict == "progress":
-        return 0
-    return 1 if verdict in ("ack", "reply") else len(awaited.needed)
