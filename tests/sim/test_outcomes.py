@@ -92,6 +92,13 @@ def test_send_reports_the_outcome_and_its_exit_status(options, words, status, te
     assert not other or "foreign=100%" in options
 
 
+def test_the_option_timeout_replaces_the_time_out_of_the_telecommand_itself():
+    chosen = ("--tcp", "0", "--every", "0", "--fault", "late=1:800@acknowledge")
+    with simulator(*chosen, "--icd", str(WHEEL)) as (place, _):
+        assert send(place, "Save").returncode == 0  # `timeout_ms: 3000`
+        assert send(place, "Save", "--timeout", "200").returncode == 3
+
+
 @pytest.mark.pty
 def test_the_acknowledge_of_another_telecommand_is_counted_and_confirms_nothing():
     chosen = ("--pty", "--every", "0", "--fault", "foreign=100%", "--icd", str(WHEEL))
