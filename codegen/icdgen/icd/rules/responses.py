@@ -32,12 +32,16 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
+from icdgen.icd.trees import at_path
 from icdgen.wording import count, quote
 
 WHOLE_NUMBERS = ("uint", "int", "bool", "enum")
 """Types of fields with a number that a wider field can repeat, unless it is signed."""
 
 MOST_VALUES = 256  # of a range of reasons, since a client stores the name of each value
+
+OTHER_LINKS = (("uart", "framing"), ("i2c",), ("can",))
+"""Paths in a protocol section that describe a link other than a framed one."""
 
 STREAM_SETTINGS = ("late_ms", "busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
 """Keys of `client` that only framed links use."""
@@ -445,9 +449,6 @@ def _contradictions(rows: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 @rule("ICD183")
 def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
-    framed: set[int] = set()  # id() of nodes on a framed link
-    for link in links(ctx):
-        framed.update(id(node) for node in ctx.scope(link.node))
     for message, node in ctx.messages:
         for key in ("response", "repeat"):
             if key not in message.source:
@@ -455,14 +456,27 @@ def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
             if message.telecommand_id is None:
                 text = f"`{key}` applies to a telecommand, not to telemetry"
                 yield Fault.at_key(message.source, key, text, "remove it")
-            elif id(node) not in framed and ctx.complete:
+            elif _is_on_other_links(ctx, node) and ctx.complete:
                 text = f"`{key}` has an effect on framed links (`stream`) only"
                 yield Fault.at_key(message.source, key, text, "remove it")
     for node in ctx.icd.nodes:
         protocol = node.source.get("protocol")
         client = protocol.get("client") if isinstance(protocol, Map) else None
-        if isinstance(client, Map) and "stream" not in ctx.protocol_of(node):
+        if isinstance(client, Map) and _is_on_other_links(ctx, node):
             for key in STREAM_SETTINGS:
                 if key in client:
                     text = f"`{key}` has an effect on framed links (`stream`) only"
                     yield Fault.at_key(client, key, text, "remove it")
+
+
+def _is_on_other_links(ctx: Context, node: Node) -> bool:
+    """Return whether the messages of a node are transmitted, and never on a framed link.
+
+    A file that other files include often describes no link.
+    """
+    protocols = [ctx.protocol_of(user) for user in ctx.users(node)]
+    return not any("stream" in protocol for protocol in protocols) and any(
+        at_path(protocol, path) is not None
+        for protocol in protocols
+        for path in OTHER_LINKS
+    )
