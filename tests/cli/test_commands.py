@@ -25,6 +25,37 @@ class TestCheck:
         result = icdgen("check")
         assert (result.status, result.out) == (0, "no findings\n")
 
+        assert "checked the ICDs that come with icdgen" in result.err
+
+    @pytest.mark.parametrize("command", ["check", "fmt"])
+    def test_the_icds_of_the_current_folder_are_the_default(
+        self, icdgen, tmp_path, command
+    ):
+        broken = DEMO.replace("length: 3", "length: [")
+        (tmp_path / "pump.yaml").write_text(broken)
+        (tmp_path / "other.yaml").write_text("tool: of another kind\n")
+        (tmp_path / "below").mkdir()
+        (tmp_path / "below" / "valve.yaml").write_text(broken)
+        result = icdgen(command)
+        assert result.status == 1
+        findings = result.out + result.err
+        assert "pump.yaml:" in findings and "valve.yaml:" not in findings
+        assert "ed pump.yaml; name others as arguments or in icdgen.toml" in result.err
+
+    def test_the_folder_icd_is_part_of_the_default(self, icdgen, demo, tmp_path):
+        (tmp_path / "pump.yaml").write_text(DEMO.replace("name: demo", "name: pump"))
+        result = icdgen("check")
+        assert (result.status, result.out) == (0, "no findings\n")
+        assert "checked pump.yaml and icd;" in result.err
+
+    def test_the_configuration_precedes_the_icds_of_the_folder(
+        self, icdgen, demo, tmp_path
+    ):
+        (tmp_path / "icdgen.toml").write_text('icds = ["icd/demo.yaml"]\n')
+        (tmp_path / "pump.yaml").write_text("icdgen: 1\n")
+        result = icdgen("check")
+        assert (result.status, result.out, result.err) == (0, "no findings\n", "")
+
     @pytest.mark.parametrize("form", ["json", "sarif"])
     def test_json_forms_are_json(self, icdgen, demo, form):
         demo.write_text(DEMO.replace("length: 3", "length: 2"))

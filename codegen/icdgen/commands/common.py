@@ -15,6 +15,7 @@ from icdgen.diagnostics import Finding
 from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
 from icdgen.reports.excerpt import printable
+from icdgen.wording import listing
 
 if TYPE_CHECKING:
     from icdgen.values.frame import Frame
@@ -127,9 +128,14 @@ def print_frame(frame: Frame) -> None:
     click.echo(to_text(frame, tables.width_of(sys.stdout)), nl=False)
 
 
-def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
+def chosen(
+    icds: tuple[Path, ...], prefers_folder: bool = False
+) -> tuple[list[Path], config.Config]:
     """Return the selected ICDs, relative to the current folder if possible, and the
     configuration.
+
+    The default is the ICDs of the configuration. Without any, it is the shipped ICDs;
+    with ``prefers_folder``, those of the current folder if it has some.
     """
     try:
         configuration = config.find(Path.cwd())
@@ -137,12 +143,30 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
         raise UserError(
             "the current folder is no longer there", "change to another one"
         ) from None
-    paths = list(icds) or configuration.icds or [shipped.icds()]
+    paths = list(icds) or configuration.icds
+    if not paths and prefers_folder:
+        from icdgen.icd.folders import icds_of_project
+
+        paths = icds_of_project(Path.cwd())
+    paths = paths or [shipped.icds()]
     # Functions of this module also run outside of a command, in tests.
     context = click.get_current_context(silent=True)
     if context is not None and not icds:
         context.meta[_CONFIG_KEY] = configuration
     return [_short(path) for path in paths], configuration
+
+
+def say_default(paths: list[Path], verb: str) -> None:
+    """Print to standard error which ICDs a command used that the user did not name."""
+    context = click.get_current_context()
+    configuration = context.meta.get(_CONFIG_KEY)
+    if configuration is None or configuration.icds:
+        return
+    if paths == [_short(shipped.icds())]:
+        names = f"the ICDs that come with icdgen, as the current folder has none ({paths[0]})"
+    else:
+        names = listing(str(path) for path in paths)
+    say(f"icdgen: {verb} {names}; name others as arguments or in icdgen.toml", err=True)
 
 
 def beside_shipped(error: UserError, context: click.Context) -> UserError:

@@ -13,6 +13,7 @@ from icdgen.commands.common import (
     icd_arguments,
     print_findings,
     say,
+    say_default,
     write_file,
 )
 from icdgen.diagnostics import Findings
@@ -27,12 +28,17 @@ from icdgen.errors import UserError
     help="Write nothing; name the files that are not in the canonical layout and exit with 1.",
 )
 def fmt(icds: tuple[Path, ...], check: bool) -> None:
-    """Write ICDs and errata files in the canonical layout; comments are preserved."""
+    """Write ICDs and errata files in the canonical layout; comments are preserved.
+
+    Without arguments, these are the ICDs of icdgen.toml; else the ICD files in the
+    current folder, and its folder icd; else the ICDs that come with icdgen.
+    """
     from icdgen.icd import source
     from icdgen.icd.fmt import format_text
 
     status = changed = unchanged = 0
-    for path in _files(chosen(icds)[0]):
+    paths = chosen(icds, prefers_folder=True)[0]
+    for path in _files(paths):
         text = ""
         try:
             data = source.contents(path, str(path))
@@ -60,6 +66,7 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
         say(f"{path}: formatted")
     if changed or unchanged:
         say(_summary(changed, unchanged, check))
+    say_default(paths, "checked" if check else "formatted")
     sys.exit(status)
 
 

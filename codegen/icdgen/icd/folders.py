@@ -78,6 +78,16 @@ def search(top: Path) -> Search:
     return result
 
 
+def icds_of_project(folder: Path) -> list[Path]:
+    """Return the ICDs directly in a folder, and its subfolder ``icd`` if it has ICDs."""
+    result = Search()
+    for name in _entries(folder)[0]:
+        if name.endswith(".yaml") and not name.startswith("."):
+            _list_of(result, folder / name, is_direct=False).append(folder / name)
+    usual = folder / "icd"
+    return [*result.icds, *([usual] if search(usual).icds else [])]
+
+
 def _entries(folder: Path) -> tuple[list[str], list[str]]:
     """Return the names of the files and of the subfolders of a folder; empty lists if
     it cannot be read.
