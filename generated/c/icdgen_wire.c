@@ -867,18 +867,18 @@ static inline icd_stream_event_t icdgen_stream_event(icd_stream_kind_t kind)
     return event;
 }
 
-static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
+static inline void icdgen_stream_tell_of(
+    const icdgen_listener_t *listener, icd_stream_kind_t kind, bool has_id, uint32_t id)
 {
-    const icd_stream_event_t event = icdgen_stream_event(kind);
+    icd_stream_event_t event = icdgen_stream_event(kind);
+    event.has_id = has_id;
+    event.id = id;
     listener->on_event(listener->context, &event);
 }
 
-static inline void icdgen_stream_tell_of(const icdgen_listener_t *listener, icd_stream_kind_t kind, uint32_t id)
+static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
 {
-    icd_stream_event_t event = icdgen_stream_event(kind);
-    event.has_id = true;
-    event.id = id;
-    listener->on_event(listener->context, &event);
+    icdgen_stream_tell_of(listener, kind, false, 0);
 }
 
 static inline void icdgen_stream_clear(icd_stream_decoder_t *decoder)
@@ -1036,21 +1036,21 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     field = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
     if (field != NULL && form->check != NULL) {
         if (form->check->is_seeded && row == NULL) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
+            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
             return ICDGEN_DOUBTFUL;
         }
         const uint32_t sum = icdgen_envelope_check(form, row, frame, frame + form->header_bytes, length, trailer);
         if (icdgen_envelope_get(field, field->in_trailer ? trailer : frame) != sum) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, id);
+            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, true, id);
             return ICDGEN_DOUBTFUL;
         }
     }
     if (row == NULL) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
+        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
         return ICDGEN_PROVEN;
     }
     if (length < row->least || length > row->most) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, id);
+        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, true, id);
         return ICDGEN_PROVEN;
     }
     icdgen_stream_message(decoder, row, frame, length, listener);
@@ -2716,8 +2716,6 @@ static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
     return UINT32_C(1) << ICDGEN_U32(verdict);
 }
 
-#define ICDGEN_NEEDED_VERDICTS 3u /* mask of ICD_VERDICT_ACK and ICD_VERDICT_REPLY */
-
 /* Return a number of a message. See icd_number_place_t. */
 static inline uint32_t icdgen_stream_number(
     const icd_number_place_t *place, uint32_t id, const uint8_t *data, size_t length)
@@ -2744,70 +2742,84 @@ static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_n
     return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
 }
 
-/* Return the number of possible responses to a request. */
-static inline size_t icdgen_response_count(const icd_stream_awaited_t *awaited)
+/* The reply that the caller specified. Its id is in icd_stream_awaited_t. */
+static const icd_response_t icdgen_specified_reply = {
+    0u, ICD_VERDICT_REPLY, 0u, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
+
+/* Return what a response can mean, as a mask of verdicts. */
+static inline uint32_t icdgen_verdicts(const icd_response_t *response)
 {
-    return (awaited->exchange != NULL ? awaited->exchange->response_count : ICDGEN_SIZE(0)) +
-        (awaited->has_reply ? 1u : 0u);
+    uint32_t verdicts = icdgen_verdict_bit(response->verdict);
+    for (size_t i = 0; i < response->meaning_count; ++i) {
+        verdicts |= icdgen_verdict_bit(response->meanings[i].verdict);
+    }
+    return verdicts;
+}
+
+static inline bool icdgen_can_be_reply(const icd_response_t *response)
+{
+    return (icdgen_verdicts(response) & icdgen_verdict_bit(ICD_VERDICT_REPLY)) != 0u;
 }
 
 /*
- * Return a possible response to a request, and its id. The last is the reply that the caller specified, which replaces
- * that of the ICD: NULL for the latter.
+ * Return the possible response to a request after `last`, or the first one after NULL. NULL if there is none. The last
+ * is the reply that the caller specified, which takes the place of those in the ICD.
  */
-static inline const icd_response_t *icdgen_response(const icd_stream_awaited_t *awaited, size_t index, uint32_t *id)
+static inline const icd_response_t *icdgen_next_response(
+    const icd_stream_awaited_t *awaited, const icd_response_t *last)
 {
-    static const icd_response_t specified = {
-        0u, ICD_VERDICT_REPLY, 0u, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
-    if (awaited->exchange == NULL || index == awaited->exchange->response_count) {
-        *id = awaited->reply;
-        return &specified;
+    const icd_exchange_t *const exchange = awaited->exchange;
+    const bool has_reply = awaited->reply != NULL;
+    if (last == &icdgen_specified_reply) {
+        return NULL;
     }
-    const icd_response_t *const response = &awaited->exchange->responses[index];
-    *id = response->telemetry;
-    return awaited->has_reply && response->verdict == ICD_VERDICT_REPLY ? NULL : response;
+    if (exchange != NULL) {
+        size_t next = last == NULL ? ICDGEN_SIZE(0) : ICDGEN_SIZE(last - exchange->responses) + 1u;
+        while (next < exchange->response_count && has_reply && icdgen_can_be_reply(&exchange->responses[next])) {
+            next++;
+        }
+        if (next < exchange->response_count) {
+            return &exchange->responses[next];
+        }
+    }
+    return has_reply ? &icdgen_specified_reply : NULL;
+}
+
+static inline uint32_t icdgen_response_id(const icd_stream_awaited_t *awaited, const icd_response_t *response)
+{
+    return response == &icdgen_specified_reply ? awaited->reply->id : response->telemetry;
 }
 
 /* Return the verdicts without which a request is not done, as a mask. */
-static inline uint8_t icdgen_needed(const icd_stream_awaited_t *awaited)
+static inline uint32_t icdgen_needed(const icd_stream_awaited_t *awaited)
 {
-    uint32_t needed = 0;
-    for (size_t i = 0; i < icdgen_response_count(awaited); ++i) {
-        uint32_t id = 0;
-        const icd_response_t *const response = icdgen_response(awaited, i, &id);
-        if (response != NULL) {
-            needed |= icdgen_verdict_bit(response->verdict);
-            for (size_t j = 0; j < response->meaning_count; ++j) {
-                needed |= icdgen_verdict_bit(response->meanings[j].verdict);
-            }
-        }
+    uint32_t verdicts = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, NULL);
+    while (response != NULL) {
+        verdicts |= icdgen_verdicts(response);
+        response = icdgen_next_response(awaited, response);
     }
-    return ICDGEN_U8(needed & ICDGEN_NEEDED_VERDICTS);
-}
-
-static inline uint32_t icdgen_needed_count(const icd_stream_awaited_t *awaited)
-{
-    return awaited->needed == ICDGEN_NEEDED_VERDICTS ? 2u : 1u;
+    return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
 }
 
 /* Return the response to a request that telemetry is; NULL if it is none of them. */
 static inline const icd_response_t *icdgen_matching(
     const icd_stream_awaited_t *awaited, const icd_stream_event_t *event)
 {
-    for (size_t i = 0; i < icdgen_response_count(awaited); ++i) {
-        uint32_t id = 0;
-        const icd_response_t *const response = icdgen_response(awaited, i, &id);
-        bool matches = response != NULL && id == event->id;
-        for (size_t j = 0; matches && j < response->echo_count; ++j) {
-            const icd_echo_t *const echo = &response->echoes[j];
+    const icd_response_t *response = icdgen_next_response(awaited, NULL);
+    while (response != NULL) {
+        bool matches = icdgen_response_id(awaited, response) == event->id;
+        for (size_t i = 0; matches && i < response->echo_count; ++i) {
+            const icd_echo_t *const echo = &response->echoes[i];
             matches = icdgen_stream_number(&echo->place, event->id, event->data, event->length) ==
                 awaited->sources[echo->source];
         }
         if (matches) {
-            return response;
+            break;
         }
+        response = icdgen_next_response(awaited, response);
     }
-    return NULL;
+    return response;
 }
 
 /* Return whether the responses to two requests have different numbers at the same place. */
@@ -2833,16 +2845,17 @@ static inline bool icdgen_differs_in_echo(
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_stream_awaited_t *b)
 {
-    for (size_t i = 0; i < icdgen_response_count(a); ++i) {
-        uint32_t id_a = 0;
-        const icd_response_t *const response_a = icdgen_response(a, i, &id_a);
-        for (size_t j = 0; response_a != NULL && j < icdgen_response_count(b); ++j) {
-            uint32_t id_b = 0;
-            const icd_response_t *const response_b = icdgen_response(b, j, &id_b);
-            if (response_b != NULL && id_a == id_b && !icdgen_differs_in_echo(a, response_a, b, response_b)) {
+    const icd_response_t *of_a = icdgen_next_response(a, NULL);
+    while (of_a != NULL) {
+        const icd_response_t *of_b = icdgen_next_response(b, NULL);
+        while (of_b != NULL) {
+            if (icdgen_response_id(a, of_a) == icdgen_response_id(b, of_b) &&
+                !icdgen_differs_in_echo(a, of_a, b, of_b)) {
                 return true;
             }
+            of_b = icdgen_next_response(b, of_b);
         }
+        of_a = icdgen_next_response(a, of_a);
     }
     return false;
 }
@@ -2860,20 +2873,20 @@ static inline icd_verdict_t icdgen_verdict(const icd_response_t *response, const
     return response->verdict;
 }
 
-/* Return the number of awaited responses that one stands for. */
-static inline uint32_t icdgen_settled(const icd_stream_awaited_t *awaited, icd_verdict_t verdict)
+static inline bool icdgen_is_owed(const icd_stream_awaited_t *awaited)
 {
-    if (verdict == ICD_VERDICT_PROGRESS) {
-        return 0u;
-    }
-    return verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY ? 1u : icdgen_needed_count(awaited);
+    return awaited->owed[ICD_VERDICT_ACK] != 0u || awaited->owed[ICD_VERDICT_REPLY] != 0u;
 }
 
-/* Count a response. */
+/* Count a response. A refusal takes the place of all others to the same transmission. */
 static inline void icdgen_settle(icd_stream_awaited_t *awaited, icd_verdict_t verdict)
 {
-    const uint32_t count = icdgen_settled(awaited, verdict);
-    awaited->owed = awaited->owed > count ? ICDGEN_U16(awaited->owed - count) : ICDGEN_U16(0);
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
+        const bool settles = ICDGEN_SIZE(verdict) == i || verdict == ICD_VERDICT_NAK || verdict == ICD_VERDICT_BUSY;
+        if (settles && awaited->owed[i] != 0u) {
+            awaited->owed[i]--;
+        }
+    }
 }
 
 static inline uint32_t icdgen_stream_timeout(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
@@ -2882,10 +2895,20 @@ static inline uint32_t icdgen_stream_timeout(const icd_stream_client_t *client, 
     return is_own ? awaited->exchange->timeout : client->settings.reply_timeout;
 }
 
-/* Return how long after the transmission responses to a request can arrive. */
-static inline uint32_t icdgen_stream_arrival(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
+/* Return the time at which a late response to a request can no longer arrive. */
+static inline uint32_t icdgen_late_end(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
 {
-    return icdgen_stream_timeout(client, awaited) + client->settings.late;
+    return awaited->latest + client->settings.late;
+}
+
+/*
+ * Return whether a late response to a request can still arrive. An idle client may not be called for so long that the
+ * clock wraps around, so a time in the future is only one that is not further away than it can be.
+ */
+static inline bool icdgen_can_be_late(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
+{
+    const uint32_t left = icdgen_late_end(client, awaited) - client->now;
+    return left != 0u && left <= icdgen_stream_timeout(client, awaited) + client->settings.late;
 }
 
 /* Remove an entry of the late responses. */
@@ -2897,17 +2920,14 @@ static inline void icdgen_stream_forget(icd_stream_client_t *client, size_t inde
     }
 }
 
-/*
- * Store the time, and drop what has passed. Times are compared by the time since the transmission: an idle client may
- * not be called for so long that the clock wraps around.
- */
+/* Store the time, and drop what has passed. */
 static inline void icdgen_stream_set_time(icd_stream_client_t *client, uint32_t now)
 {
     size_t i = 0;
     client->now = now;
     client->in_gap = client->in_gap && now - client->sent_at < client->settings.gap;
     while (i < client->late_count) {
-        if (now - client->late[i].sent_at < icdgen_stream_arrival(client, &client->late[i])) {
+        if (icdgen_can_be_late(client, &client->late[i])) {
             i++;
         } else {
             icdgen_stream_forget(client, i);
@@ -2915,13 +2935,18 @@ static inline void icdgen_stream_set_time(icd_stream_client_t *client, uint32_t 
     }
 }
 
+/* Return the id with which a request was started. */
+static inline uint32_t icdgen_request_id(const icd_stream_slot_t *slot)
+{
+    return slot->direction == ICD_TELEMETRY ? slot->row->requested : slot->row->id;
+}
+
 /* End a request, and remember the responses that may still arrive. */
 static inline void icdgen_request_end(icd_stream_client_t *client, size_t index)
 {
     const icd_stream_awaited_t *const awaited = &client->slots[index].awaited;
     uint8_t *const data = client->slots[index].data;
-    if (awaited->owed != 0u && client->now - awaited->sent_at < icdgen_stream_arrival(client, awaited) &&
-        client->late_count < ICDGEN_MOST_AWAITED) {
+    if (icdgen_is_owed(awaited) && icdgen_can_be_late(client, awaited) && client->late_count < ICDGEN_MOST_AWAITED) {
         client->late[client->late_count] = *awaited;
         client->late_count++;
     }
@@ -2943,39 +2968,39 @@ static inline icd_stream_slot_t *icdgen_stream_queued(const icd_stream_client_t 
     return NULL;
 }
 
-ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline)
+/* The earliest of some times. */
+typedef struct {
+    uint32_t time;
+    bool exists;
+} icdgen_earliest_t;
+
+static inline void icdgen_earliest_add(icdgen_earliest_t *earliest, uint32_t time)
 {
-    uint32_t first = 0;
-    bool waits = false;
-    const bool queued = icdgen_stream_queued(client) != NULL;
-    for (size_t i = 0; i < client->started; ++i) {
-        const icd_stream_slot_t *const slot = &client->slots[i];
-        if (slot->state != ICD_STREAM_SLOT_QUEUED) {
-            first = waits && icdgen_reached(slot->until, first) ? first : slot->until;
-            waits = true;
-        }
+    if (!earliest->exists || icdgen_reached(earliest->time, time)) {
+        earliest->time = time;
+        earliest->exists = true;
     }
-    if (queued && client->in_gap) {
-        const uint32_t end = client->sent_at + client->settings.gap;
-        first = waits && icdgen_reached(end, first) ? first : end;
-        waits = true;
-    }
-    for (size_t i = 0; queued && i < client->late_count; ++i) {
-        const uint32_t end = client->late[i].sent_at + icdgen_stream_arrival(client, &client->late[i]);
-        first = waits && icdgen_reached(end, first) ? first : end;
-        waits = true;
-    }
-    *deadline = first;
-    return waits;
 }
 
-/* Return whether header and trailer values fit into their fields. */
-static inline bool icdgen_stream_fits(const icd_stream_client_t *client, uint32_t id, size_t length)
+ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline)
 {
-    const icd_stream_sender_t *const sender = &client->sender;
-    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
-    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    return icdgen_envelope_fill(client->link->stream, ICD_TELECOMMAND, id, length, &sender->values, header, trailer);
+    icdgen_earliest_t earliest = {0u, false};
+    for (size_t i = 0; i < client->started; ++i) {
+        if (client->slots[i].state != ICD_STREAM_SLOT_QUEUED) {
+            icdgen_earliest_add(&earliest, client->slots[i].until);
+        }
+    }
+    if (icdgen_stream_queued(client) != NULL) {
+        /* It may be possible to send the request then. */
+        if (client->in_gap) {
+            icdgen_earliest_add(&earliest, client->sent_at + client->settings.gap);
+        }
+        for (size_t i = 0; i < client->late_count; ++i) {
+            icdgen_earliest_add(&earliest, icdgen_late_end(client, &client->late[i]));
+        }
+    }
+    *deadline = earliest.time;
+    return earliest.exists;
 }
 
 /* Return the telecommand that requests telemetry: the first one; NULL if there is none. */
@@ -2988,6 +3013,18 @@ static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form
         }
     }
     return NULL;
+}
+
+/* Return whether telemetry is a possible reply in the ICD. */
+static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
+{
+    for (size_t i = 0; exchange != NULL && i < exchange->response_count; ++i) {
+        const icd_response_t *const response = &exchange->responses[i];
+        if (response->telemetry == id && icdgen_can_be_reply(response)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 ICDGEN_API icd_status_t
@@ -3006,7 +3043,8 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     }
     const size_t length = asks ? row->least : request->length;
     const bool has_reply = request->has_reply && !asks;
-    if (has_reply && icdgen_stream_row(form, ICD_TELEMETRY, request->reply) == NULL) {
+    const icd_stream_row_t *const reply = has_reply ? icdgen_stream_row(form, ICD_TELEMETRY, request->reply) : NULL;
+    if (has_reply && reply == NULL) {
         return ICD_ERROR_UNKNOWN_ID;
     }
     if (client->started == client->slot_count) {
@@ -3015,25 +3053,29 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     if (length < row->least || length > row->most) {
         return ICD_ERROR_LENGTH;
     }
-    if (!icdgen_stream_fits(client, row->id, length)) {
-        return ICD_ERROR_RANGE;
-    }
     icd_stream_slot_t *const slot = &client->slots[client->started];
     uint8_t *const data = slot->data;
+    for (size_t i = 0; i < length; ++i) {
+        data[i] = asks ? 0u : request->data[i];
+    }
+    /* Without a buffer, this checks whether header and trailer values fit into their fields. */
+    size_t written = 0;
+    if (icd_stream_encode(
+            client->link, ICD_TELECOMMAND, row->id, data, length, &client->sender.values, NULL, 0, &written) ==
+        ICD_ERROR_RANGE) {
+        return ICD_ERROR_RANGE;
+    }
     (void)memset(slot, 0, sizeof *slot);
     slot->row = row;
     slot->data = data;
     slot->length = length;
-    for (size_t i = 0; i < length; ++i) {
-        data[i] = asks ? 0u : request->data[i];
-    }
     slot->repeat = request->repeat || asks || row->repeats;
     slot->direction = request->direction;
     slot->state = ICD_STREAM_SLOT_QUEUED;
     slot->awaited.exchange = row->exchange;
-    slot->awaited.has_reply = has_reply;
-    slot->awaited.reply = request->reply;
-    slot->awaited.needed = icdgen_needed(&slot->awaited);
+    if (reply != NULL && !icdgen_has_reply(row->exchange, reply->id)) {
+        slot->awaited.reply = reply;
+    }
     for (size_t i = 0; row->exchange != NULL && i < row->exchange->source_count; ++i) {
         slot->awaited.sources[i] = icdgen_stream_number(&row->exchange->sources[i], row->id, data, length);
     }
@@ -3090,7 +3132,7 @@ static inline bool icdgen_stream_may_be_sent(const icd_stream_client_t *client, 
     if (client->in_gap) {
         return false;
     }
-    if (icdgen_response_count(&slot->awaited) == 0u) {
+    if (icdgen_next_response(&slot->awaited, NULL) == NULL) {
         return true;
     }
     for (size_t i = 0; i < client->started; ++i) {
@@ -3128,16 +3170,14 @@ ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *b
     icd_stream_awaited_t *const awaited = &slot->awaited;
     client->sent_at = client->now;
     client->in_gap = client->settings.gap != 0u;
-    awaited->sent_at = client->now;
+    slot->sent_at = client->now;
     slot->attempts++;
-    slot->missing = awaited->needed;
-    if (awaited->needed != 0u) {
-        awaited->owed = ICDGEN_U16(awaited->owed + icdgen_needed_count(awaited));
-        slot->state = ICD_STREAM_SLOT_WAIT;
-        slot->until = client->now + icdgen_stream_timeout(client, awaited);
-    } else {
-        slot->state = ICD_STREAM_SLOT_SENT;
-        slot->until = client->now;
+    slot->missing = ICDGEN_U8(icdgen_needed(awaited));
+    slot->state = slot->missing != 0u ? ICD_STREAM_SLOT_WAIT : ICD_STREAM_SLOT_SENT;
+    slot->until = client->now + (slot->missing != 0u ? icdgen_stream_timeout(client, awaited) : 0u);
+    awaited->latest = slot->until;
+    for (size_t i = 0; i < ICDGEN_NEEDED_VERDICTS; ++i) {
+        awaited->owed[i] = ICDGEN_U16(awaited->owed[i] + ((ICDGEN_U32(slot->missing) >> i) & 1u));
     }
     return true;
 }
@@ -3151,27 +3191,25 @@ typedef struct {
 
 /* Report an event of a request. An outcome ends the request. */
 static inline void icdgen_stream_report(
-    const icdgen_stream_call_t *call, icd_stream_kind_t kind, size_t index, const icd_stream_event_t *event)
+    const icdgen_stream_call_t *call, icd_stream_kind_t kind, size_t index, icd_stream_event_t *event)
 {
     const icd_stream_slot_t *const slot = &call->client->slots[index];
-    icd_stream_event_t reported = *event;
-    reported.kind = kind;
-    reported.has_id = true;
-    reported.id = slot->direction == ICD_TELEMETRY ? slot->row->requested : slot->row->id;
-    reported.link = call->client->link;
-    reported.direction = slot->direction;
-    reported.attempts = slot->attempts;
+    event->kind = kind;
+    event->has_id = true;
+    event->id = icdgen_request_id(slot);
+    event->link = call->client->link;
+    event->direction = slot->direction;
+    event->attempts = slot->attempts;
     if (kind != ICD_STREAM_PROGRESS && kind != ICD_STREAM_REPLY) {
         icdgen_request_end(call->client, index);
     }
-    call->on_event(call->context, &reported);
+    call->on_event(call->context, event);
 }
 
 ICDGEN_API void icd_stream_client_tick(
     icd_stream_client_t *client, uint32_t now, icd_stream_event_fn *on_event, void *context)
 {
     const icdgen_stream_call_t call = {client, on_event, context};
-    const icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_TIMEOUT);
     size_t i = 0;
     icdgen_stream_set_time(client, now);
     while (i < client->started) {
@@ -3183,6 +3221,7 @@ ICDGEN_API void icd_stream_client_tick(
             slot->state = ICD_STREAM_SLOT_QUEUED;
             i++;
         } else {
+            icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_TIMEOUT);
             icdgen_stream_report(
                 &call, slot->state == ICD_STREAM_SLOT_SENT ? ICD_STREAM_SENT : ICD_STREAM_TIMEOUT, i, &event);
         }
@@ -3191,21 +3230,25 @@ ICDGEN_API void icd_stream_client_tick(
 
 /* Process a response to a request. */
 static inline void icdgen_stream_responded(
-    const icdgen_stream_call_t *call, size_t index, const icd_response_t *response, const icd_stream_event_t *event)
+    const icdgen_stream_call_t *call, size_t index, const icd_response_t *response, icd_stream_event_t *event)
 {
     icd_stream_client_t *const client = call->client;
     icd_stream_slot_t *const slot = &client->slots[index];
     const icd_verdict_t verdict = icdgen_verdict(response, event);
     icd_stream_kind_t kind = ICD_STREAM_PROGRESS;
-    icd_stream_event_t reported = *event;
-    reported.has_reply = true;
-    reported.reply = event->id;
+    event->has_reply = true;
+    event->reply = event->id;
     icdgen_settle(&slot->awaited, verdict);
     if (verdict == ICD_VERDICT_PROGRESS) {
-        const uint32_t limit = slot->awaited.sent_at + client->settings.progress_for;
+        const uint32_t limit = slot->sent_at + client->settings.progress_for;
         const uint32_t extended = client->now + icdgen_stream_timeout(client, &slot->awaited);
-        const uint32_t until = icdgen_reached(extended, limit) ? limit : extended;
-        slot->until = icdgen_reached(slot->until, until) ? slot->until : until;
+        const uint32_t latest = icdgen_reached(extended, limit) ? limit : extended;
+        if (icdgen_reached(latest, slot->awaited.latest)) {
+            slot->awaited.latest = latest;
+        }
+        if (slot->state == ICD_STREAM_SLOT_WAIT) {
+            slot->until = slot->awaited.latest;
+        }
     } else if (verdict == ICD_VERDICT_ACK || verdict == ICD_VERDICT_REPLY) {
         slot->missing = ICDGEN_U8(slot->missing & ~icdgen_verdict_bit(verdict));
         if (slot->missing == 0u) {
@@ -3221,11 +3264,11 @@ static inline void icdgen_stream_responded(
     } else {
         kind = verdict == ICD_VERDICT_BUSY ? ICD_STREAM_BUSY : ICD_STREAM_REFUSED;
         if (response->reason.bits != 0u) {
-            reported.has_code = true;
-            reported.code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
+            event->has_code = true;
+            event->code = icdgen_stream_number(&response->reason, event->id, event->data, event->length);
         }
     }
-    icdgen_stream_report(call, kind, index, &reported);
+    icdgen_stream_report(call, kind, index, event);
 }
 
 /* Return whether telemetry is a response to a request that has ended. */
@@ -3235,7 +3278,7 @@ static inline bool icdgen_stream_is_late(icd_stream_client_t *client, const icd_
         const icd_response_t *const response = icdgen_matching(&client->late[i], event);
         if (response != NULL) {
             icdgen_settle(&client->late[i], icdgen_verdict(response, event));
-            if (client->late[i].owed == 0u) {
+            if (!icdgen_is_owed(&client->late[i])) {
                 icdgen_stream_forget(client, i);
             }
             return true;
@@ -3265,10 +3308,10 @@ static inline void icdgen_stream_on_event(void *context, const icd_stream_event_
     if (event->kind == ICD_STREAM_MESSAGE) {
         for (size_t i = 0; i < client->started; ++i) {
             const icd_stream_slot_t *const slot = &client->slots[i];
-            const bool is_awaited = slot->state == ICD_STREAM_SLOT_WAIT || slot->awaited.owed != 0u;
+            const bool is_awaited = slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
             const icd_response_t *const response = is_awaited ? icdgen_matching(&slot->awaited, event) : NULL;
             if (response != NULL) {
-                icdgen_stream_responded(call, i, response, event);
+                icdgen_stream_responded(call, i, response, &reported);
                 return;
             }
         }
@@ -3313,8 +3356,7 @@ ICDGEN_API void icd_stream_client_cancel_request(icd_stream_client_t *client, ic
     size_t i = 0;
     while (i < client->started) {
         const icd_stream_slot_t *const slot = &client->slots[i];
-        const uint32_t own = slot->direction == ICD_TELEMETRY ? slot->row->requested : slot->row->id;
-        if (slot->direction == direction && own == id) {
+        if (slot->direction == direction && icdgen_request_id(slot) == id) {
             icdgen_request_end(client, i);
         } else {
             i++;

@@ -1472,15 +1472,15 @@ typedef enum {
     ICD_STREAM_SLOT_PAUSE   /* the device was busy */
 } icd_stream_slot_state_t;
 
-/* A request that was sent, and the responses that may arrive. */
+#define ICDGEN_NEEDED_VERDICTS 2u /* ICD_VERDICT_ACK and ICD_VERDICT_REPLY: without these a request is not done */
+
+/* The responses that may arrive for a request that was sent. */
 typedef struct {
     const icd_exchange_t *exchange;
-    uint32_t sources[ICD_MOST_SOURCES]; /* numbers that responses must repeat */
-    uint32_t reply;                     /* id of the reply that the caller specified */
-    bool has_reply;
-    uint8_t needed; /* verdicts without which the request is not done, as a mask */
-    uint16_t owed;  /* number of responses that may still arrive */
-    uint32_t sent_at;
+    const icd_stream_row_t *reply;         /* the reply that the caller specified; NULL: as in the ICD */
+    uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
+    uint32_t latest;                       /* time until which a response is not late */
+    uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
 } icd_stream_awaited_t;
 
 /** Memory for a request. */
@@ -1489,7 +1489,8 @@ typedef struct {
     const icd_stream_row_t *row; /* the telecommand */
     uint8_t *data;
     size_t length;
-    uint32_t until; /* time at which the state ends */
+    uint32_t sent_at; /* time of the last transmission */
+    uint32_t until;   /* time at which the state ends */
     uint16_t attempts;
     uint8_t missing; /* needed verdicts that did not arrive, as a mask; 0: never sent, or nothing responds */
     bool repeat;

@@ -158,3 +158,129 @@ def test_a_ninth_request_waits_until_responses_to_another_can_no_longer_come(
     testee = Testee(build(all_languages()[name], icd))
     assert list(outcomes.differences(testee, [(request, answer)])) == []
     assert testee.close() == 0, testee.complaint()
+
+
+MOVE, READ_POSITION, READ_LOAD = 0x0201, 0x0205, 0x0208
+RESULT, POSITION, LOAD = 0x8001, 0x0205, 0x0208
+DONE, LATER, MOVING, FAILED = range(4)
+
+
+def result(at, telecommand, status):
+    """Return what arrives when the test link `arm` reports the result of a
+    telecommand.
+    """
+    return at, RESULT, bytes([status, 0]) + telecommand.to_bytes(2, "big") + bytes(2)
+
+
+def send(at, id, size, **more):
+    """Return a row that starts a telecommand that may be sent again."""
+    return {
+        "at": at,
+        "telecommand": id,
+        "bytes": bytes(size).hex(),
+        "repeat": True,
+    } | more
+
+
+# Settings, steps and the events that they lead to. Random scripts rarely meet these.
+RARE = {
+    "progress-prolongs-the-late-time": (
+        {"retries": 0},
+        [
+            send(0, MOVE, 7),
+            result(200, MOVE, MOVING),
+            {"at": 500},
+            send(510, MOVE, 7),
+            result(549, MOVE, DONE),
+        ],
+        ["progress", "timeout", "late"],
+    ),
+    "progress-does-not-prolong-a-pause": (
+        {"retries": 2, "busy_pause": 100},
+        [
+            send(0, MOVE, 7),
+            {"at": 300},
+            result(310, MOVE, LATER),
+            result(320, MOVE, MOVING),
+            {"at": 410},
+            result(420, MOVE, DONE),
+        ],
+        ["progress", "progress", "done"],
+    ),
+    "progress-in-a-pause-prolongs-the-late-time": (
+        {"retries": 2, "busy_pause": 500},
+        [
+            send(0, MOVE, 7),
+            {"at": 300},
+            result(310, MOVE, LATER),
+            result(600, MOVE, MOVING),
+            {"at": 601, "cancel": True},
+            result(920, MOVE, DONE),
+        ],
+        ["progress", "progress", "late"],
+    ),
+    "two-acknowledges-leave-room-for-a-reply": (
+        {"retries": 0},
+        [
+            send(0, READ_POSITION, 1),
+            result(10, READ_POSITION, DONE),
+            result(11, READ_POSITION, DONE),
+            {"at": 120},
+            send(130, READ_POSITION, 1),
+            (140, POSITION, bytes(3)),
+        ],
+        ["progress", "progress", "timeout", "late"],
+    ),
+    "a-named-reply-replaces-one-with-a-status": (
+        {},
+        [
+            send(0, READ_LOAD, 0, reply=POSITION),
+            (10, LOAD, bytes(3)),
+            (20, POSITION, bytes(3)),
+        ],
+        ["message", "done"],
+    ),
+    "a-named-reply-keeps-its-status": (
+        {},
+        [send(0, READ_LOAD, 0, reply=LOAD), (10, LOAD, bytes([FAILED, 0, 0]))],
+        ["refused"],
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def rare_cases(icd):
+    """Return requests and answers of the rare cases."""
+    form = facts.of(icd, icd.node("arm")).stream
+    rows = {row.id: row for row in form.telemetry}
+    cases = []
+    for settings, steps, _ in RARE.values():
+        sample = outcomes.Sample(form, random.Random(1))
+        script = [
+            (
+                step
+                if isinstance(step, dict)
+                else sample.come(step[0], rows[step[1]], data=step[2])
+            )
+            for step in steps
+        ]
+        request = {"op": "stream_client", "node": "arm", "requests": 2}
+        request |= {"settings": settings, "script": script}
+        cases.append((request, reference.answer(icd, request)))
+    return cases
+
+
+def test_rare_cases_lead_to_the_events_that_a_user_expects(rare_cases):
+    for (_, answer), (name, (*_, expected)) in zip(
+        rare_cases, RARE.items(), strict=True
+    ):
+        steps = answer["steps"]
+        events = [event["event"] for step in steps for event in step["events"]]
+        assert events == expected, name
+
+
+@pytest.mark.parametrize("name", ["python", "c-sanitizers", "rust-debug"])
+def test_a_language_reports_the_events_of_rare_cases(icd, rare_cases, name):
+    testee = Testee(build(all_languages()[name], icd))
+    assert list(outcomes.differences(testee, rare_cases)) == []
+    assert testee.close() == 0, testee.complaint()

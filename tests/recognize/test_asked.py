@@ -7,12 +7,10 @@ from __future__ import annotations
 import re
 
 import pytest
-from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import facts
+from icdgen.protocol import facts, stream
 from icdgen.recognize import recognize
-from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import Ambiguous
 from tests.features.outputs import icd_of
 
@@ -52,8 +50,9 @@ def icd(tmp_path_factory) -> Icd:
 
 
 def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
-    link = link_of(icd, facts.of(icd, icd.node("pack")))
-    return stream_encode(link, id, data, direction).hex()
+    return stream.encode(
+        facts.of(icd, icd.node("pack")).stream, direction, id, data
+    ).hex()
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,12 @@ import random
 import sys
 
 import pytest
-from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd
 from icdgen.loading import load
-from icdgen.protocol import facts, uart
+from icdgen.protocol import facts, stream, uart
 from icdgen.recognize import recognize
-from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from icdgen.vectors.make import make as golden
 from tests.conftest import ROOT
@@ -99,9 +97,7 @@ def packets(icd: Icd) -> list[tuple[str, bytes]]:
                         found.append(
                             (
                                 message.message.name,
-                                stream_encode(
-                                    link_of(icd, known), id, row.frame, direction
-                                ),
+                                stream.encode(known.stream, direction, id, row.frame),
                             )
                         )
                     elif known.framing:

@@ -7,8 +7,6 @@ range of bytes in a byte order, a shift and a width.
 
 from __future__ import annotations
 
-from typing import Literal
-
 from icdgen.frozen import dataclass
 from icdgen.icd import checksum
 from icdgen.protocol.exchange import Exchange
@@ -30,8 +28,7 @@ ROLES = ("constant", "id", "length", "checksum", *GIVEN)
 """Roles as code knows them: a `sync` is a constant."""
 
 CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = checksum.KINDS
-Direction = Literal["telecommand", "telemetry"]
-DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
+DIRECTIONS = ("telecommand", "telemetry")
 DATA = "data"  # in `covers`: the data between header and trailer
 WORD = 32  # bits of the decoder's arithmetic
 

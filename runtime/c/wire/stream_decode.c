@@ -21,18 +21,18 @@ static inline icd_stream_event_t icdgen_stream_event(icd_stream_kind_t kind)
     return event;
 }
 
-static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
+static inline void icdgen_stream_tell_of(
+    const icdgen_listener_t *listener, icd_stream_kind_t kind, bool has_id, uint32_t id)
 {
-    const icd_stream_event_t event = icdgen_stream_event(kind);
+    icd_stream_event_t event = icdgen_stream_event(kind);
+    event.has_id = has_id;
+    event.id = id;
     listener->on_event(listener->context, &event);
 }
 
-static inline void icdgen_stream_tell_of(const icdgen_listener_t *listener, icd_stream_kind_t kind, uint32_t id)
+static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
 {
-    icd_stream_event_t event = icdgen_stream_event(kind);
-    event.has_id = true;
-    event.id = id;
-    listener->on_event(listener->context, &event);
+    icdgen_stream_tell_of(listener, kind, false, 0);
 }
 
 static inline void icdgen_stream_clear(icd_stream_decoder_t *decoder)
@@ -190,21 +190,21 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     field = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
     if (field != NULL && form->check != NULL) {
         if (form->check->is_seeded && row == NULL) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
+            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
             return ICDGEN_DOUBTFUL;
         }
         const uint32_t sum = icdgen_envelope_check(form, row, frame, frame + form->header_bytes, length, trailer);
         if (icdgen_envelope_get(field, field->in_trailer ? trailer : frame) != sum) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, id);
+            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, true, id);
             return ICDGEN_DOUBTFUL;
         }
     }
     if (row == NULL) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
+        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
         return ICDGEN_PROVEN;
     }
     if (length < row->least || length > row->most) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, id);
+        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, true, id);
         return ICDGEN_PROVEN;
     }
     icdgen_stream_message(decoder, row, frame, length, listener);

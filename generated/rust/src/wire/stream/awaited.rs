@@ -23,34 +23,9 @@ impl Needed {
         ack: false,
         reply: false,
     };
-}
 
-/// Numbers of responses that may still arrive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Owed {
-    ack: u16,
-    reply: u16,
-}
-
-impl Owed {
-    pub(super) const NONE: Self = Self { ack: 0, reply: 0 };
-
-    /// Add the responses to a transmission.
-    pub(super) fn add(&mut self, needed: Needed) {
-        self.ack = self.ack.saturating_add(u16::from(needed.ack));
-        self.reply = self.reply.saturating_add(u16::from(needed.reply));
-    }
-
-    /// Remove the responses that one with this verdict is or replaces.
-    pub(super) fn remove(&mut self, verdict: Verdict) {
-        let (ack, reply) = match verdict {
-            Verdict::Progress => (0, 0),
-            Verdict::Ack => (1, 0),
-            Verdict::Reply => (0, 1),
-            Verdict::Nak | Verdict::Busy => (1, 1),
-        };
-        self.ack = self.ack.saturating_sub(ack);
-        self.reply = self.reply.saturating_sub(reply);
+    pub(super) fn count(self) -> u16 {
+        u16::from(self.ack) + u16::from(self.reply)
     }
 }
 
@@ -58,7 +33,7 @@ impl Owed {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Awaited {
     exchange: &'static Exchange,
-    reply: Option<u32>, // id of the telemetry that replaces the replies of the exchange
+    reply: Option<u32>, // id of the telemetry that the caller names instead
     sources: [u32; Exchange::SOURCES],
 }
 
@@ -69,11 +44,10 @@ impl Awaited {
         sources: [0; Exchange::SOURCES],
     };
 
-    /// Return the responses to a telecommand with this id and data. `named` is the id of the
-    /// telemetry that the caller names as the reply.
+    /// Return the responses to a telecommand with this id and data.
     pub(super) fn new(
         exchange: Option<&'static Exchange>,
-        named: Option<u32>,
+        reply: Option<u32>,
         id: u32,
         data: &[u8],
     ) -> Self {
@@ -82,13 +56,9 @@ impl Awaited {
         for (number, place) in sources.iter_mut().zip(exchange.sources) {
             *number = place.get(&id.to_be_bytes(), data);
         }
-        let mut replies = exchange.responses.iter();
-        // A reply of the exchange stays as it is, with its echo and status.
-        let is_described =
-            replies.any(|reply| Some(reply.telemetry) == named && reply.can_be(Verdict::Reply));
         Self {
             exchange,
-            reply: named.filter(|_| !is_described),
+            reply,
             sources,
         }
     }
@@ -104,7 +74,7 @@ impl Awaited {
         });
         let others = self.exchange.responses.iter().copied();
         others
-            .filter(move |response| named.is_none() || !response.can_be(Verdict::Reply))
+            .filter(move |response| named.is_none() || response.verdict != Verdict::Reply)
             .chain(named)
     }
 
@@ -113,7 +83,12 @@ impl Awaited {
     }
 
     pub(super) fn needed(&self) -> Needed {
-        let needs = |verdict| self.responses().any(|response| response.can_be(verdict));
+        let needs = |verdict| {
+            self.responses().any(|response| {
+                let mut meanings = response.meanings.iter();
+                response.verdict == verdict || meanings.any(|(_, meaning)| *meaning == verdict)
+            })
+        };
         Needed {
             ack: needs(Verdict::Ack),
             reply: needs(Verdict::Reply),
@@ -151,14 +126,18 @@ impl Awaited {
             })
         })
     }
+
+    /// Return the number of awaited responses that one with this verdict replaces.
+    pub(super) fn answered(&self, verdict: Verdict) -> u16 {
+        match verdict {
+            Verdict::Progress => 0,
+            Verdict::Ack | Verdict::Reply => 1,
+            Verdict::Nak | Verdict::Busy => self.needed().count(),
+        }
+    }
 }
 
 impl Response {
-    fn can_be(&self, verdict: Verdict) -> bool {
-        let mut meanings = self.meanings.iter();
-        self.verdict == verdict || meanings.any(|(_, meaning)| *meaning == verdict)
-    }
-
     /// Return what the response says.
     pub(super) fn verdict_of(&self, data: &[u8]) -> Verdict {
         let status = self.status.map(|place| place.get(data, &[]));
