@@ -11,7 +11,12 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from icdgen import shipped
+
 ROOT = Path(__file__).parent.parent
+
+# Tests import `icdgen_runtime`, also if they run alone.
+shipped.provide_runtime()
 
 # What cargo builds here is run once: neither its debugger nor its next build would be
 # quicker for these.

@@ -19,6 +19,9 @@ import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
+from typing import Any
+
+from icdgen_runtime.wire.link import Link
 
 from icdgen.icd.model import Icd
 from icdgen.icd.responses import BUSY, NAK
@@ -26,6 +29,7 @@ from icdgen.protocol import facts
 from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.exchange import Exchange, Response
 from icdgen.runtime_objects import reference
+from icdgen.runtime_objects.links import link_of
 from icdgen.vectors.wire.asking import Sample, wire_place
 from tests.conformance.build import BuildError, build
 from tests.conformance.compare import difference
@@ -76,9 +80,9 @@ Row = dict[str, object]
 class Script:
     """Builder of a script for a node."""
 
-    def __init__(self, form: Stream, source: random.Random) -> None:
+    def __init__(self, link: Link[Any], form: Stream, source: random.Random) -> None:
         self.form, self.source = form, source
-        self.sample = Sample(form, source)
+        self.sample = Sample(link, form, source)
         self.begun: list[tuple[StreamRow, Row]] = []
         self.now = source.choice((0, 0, 1000, HALF - 300))
 
@@ -209,23 +213,25 @@ class Script:
 def requests(icd: Icd, source: random.Random) -> Iterator[dict]:
     """Yield scripts of all nodes with framing, without end."""
     forms = [
-        (node.name, form)
+        (node.name, link_of(icd, facts.of(icd, node)), form)
         for node in icd.nodes
         if icd.protocol_of(node)
         and (form := facts.of(icd, node).stream)
         and form.telecommands
     ]
     # The nodes whose telecommands have responses come first more often.
-    weights = [1 + 9 * min(2, len(form.exchanges)) for _, form in forms]
+    weights = [1 + 9 * min(2, len(form.exchanges)) for _, _, form in forms]
     while forms:
-        ((name, form),) = source.choices(forms, weights)
+        ((name, link, form),) = source.choices(forms, weights)
         keys = source.sample(sorted(TIMES), source.randrange(len(TIMES) + 1))
         yield {
             "op": "stream_client",
             "node": name,
             "requests": source.choice((1, 2, 3, 3)),
             "settings": {key: source.choice(TIMES[key]) for key in keys},
-            "script": list(Script(form, source).rows(source.choice((4, 10, 30, 80)))),
+            "script": list(
+                Script(link, form, source).rows(source.choice((4, 10, 30, 80)))
+            ),
         }
 
 

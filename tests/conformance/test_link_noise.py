@@ -9,8 +9,9 @@ import random
 from functools import cache
 
 import pytest
+from icdgen_runtime.wire.stream import StreamDecoder, stream_encode
 
-from icdgen.protocol import facts, stream
+from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from tests.conformance.build import build
 from tests.conformance.driver import Testee
@@ -36,6 +37,11 @@ def form_of(node: str):
     return facts.of(ICD, ICD.node(node)).stream
 
 
+@cache
+def link_to(node: str):
+    return link_of(ICD, facts.of(ICD, ICD.node(node)))
+
+
 def messages(
     node: str, source: random.Random, count: int
 ) -> tuple[bytes, list[tuple[int, str]]]:
@@ -44,13 +50,8 @@ def messages(
     for number in range(count):
         row = source.choice(form.rows("telemetry"))
         data = source.randbytes(row.most - 1) + b"\1"
-        line += stream.encode(
-            form,
-            "telemetry",
-            row.id,
-            data,
-            {"sequence": number} if form.of("sequence") else None,
-        )
+        values = {"sequence": number} if form.of("sequence") else {}
+        line += stream_encode(link_to(node), row.id, data, "telemetry", **values)
         sent.append((row.id, data.hex()))
     return line, sent
 
@@ -77,11 +78,7 @@ def found(node: str, line: bytes) -> tuple[list[tuple[int, str]], int, int]:
     """What the decoder of the Python runtime makes of it: messages, bytes discarded and
     pending.
     """
-    from icdgen_runtime.wire.stream import (
-        StreamDecoder,
-    )  # which `icdgen` makes importable
-
-    decoder = StreamDecoder(link_of(ICD, facts.of(ICD, ICD.node(node))))
+    decoder = StreamDecoder(link_to(node))
     events = [event for event in decoder.feed(line) if event.event == "message"]
     return (
         [(event.id or 0, event.data.hex()) for event in events],
@@ -116,7 +113,7 @@ def test_every_place_at_which_a_stream_can_be_cut(testee, node):
     source = random.Random(f"{node} cut")
     short = min(form_of(node).rows("telemetry"), key=lambda row: row.most)
     data = source.randbytes(short.most - 1) + b"\1"
-    one = stream.encode(form_of(node), "telemetry", short.id, data)
+    one = stream_encode(link_to(node), short.id, data, "telemetry")
     line = bytes(source.choices(MARKERS, k=6)) + one + one[:-1] + one + one
     whole, *cut = asked(
         testee, node, [line], *([line[:at], line[at:]] for at in range(len(line) + 1))

@@ -7,10 +7,12 @@ from __future__ import annotations
 import re
 
 import pytest
+from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import facts, stream
+from icdgen.protocol import facts
 from icdgen.recognize import recognize
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import Ambiguous
 from tests.features.outputs import icd_of
 
@@ -50,9 +52,8 @@ def icd(tmp_path_factory) -> Icd:
 
 
 def sent(icd: Icd, direction: str, id: int, data: bytes) -> str:
-    return stream.encode(
-        facts.of(icd, icd.node("pack")).stream, direction, id, data
-    ).hex()
+    link = link_of(icd, facts.of(icd, icd.node("pack")))
+    return stream_encode(link, id, data, direction).hex()
 
 
 @pytest.mark.parametrize(

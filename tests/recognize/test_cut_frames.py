@@ -8,12 +8,14 @@ import random
 import sys
 
 import pytest
+from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd
 from icdgen.loading import load
-from icdgen.protocol import facts, stream, uart
+from icdgen.protocol import facts, uart
 from icdgen.recognize import recognize
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from icdgen.vectors.make import make as golden
 from tests.conftest import ROOT
@@ -97,7 +99,9 @@ def packets(icd: Icd) -> list[tuple[str, bytes]]:
                         found.append(
                             (
                                 message.message.name,
-                                stream.encode(known.stream, direction, id, row.frame),
+                                stream_encode(
+                                    link_of(icd, known), id, row.frame, direction
+                                ),
                             )
                         )
                     elif known.framing:

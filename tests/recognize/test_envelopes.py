@@ -5,9 +5,11 @@ with it is said.
 from __future__ import annotations
 
 import pytest
+from icdgen_runtime.wire.stream import stream_encode
 
-from icdgen.protocol import facts, stream
+from icdgen.protocol import facts
 from icdgen.recognize import recognize
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import BadLength
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT
@@ -16,8 +18,8 @@ ICD = icd_of([ROOT / "examples" / "links"])
 
 
 def sent(node: str, direction: str, id: int, data: bytes, **values: int) -> bytes:
-    form = facts.of(ICD, ICD.node(node)).stream
-    return stream.encode(form, direction, id, data, values)
+    link = link_of(ICD, facts.of(ICD, ICD.node(node)))
+    return stream_encode(link, id, data, direction, **values)
 
 
 CASES = [

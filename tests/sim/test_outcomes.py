@@ -14,6 +14,7 @@ from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen.commands.common import load_or_exit
 from icdgen.errors import UserError
+from icdgen.link.outcomes import failure_text
 from icdgen.sim import run
 from tests.conftest import ROOT
 from tests.sim.device import simulator
@@ -92,6 +93,13 @@ def test_send_reports_the_outcome_and_its_exit_status(options, words, status, te
     assert not other or "foreign=100%" in options
 
 
+def test_the_option_timeout_replaces_the_time_out_of_the_telecommand_itself():
+    chosen = ("--tcp", "0", "--every", "0", "--fault", "late=1:800@acknowledge")
+    with simulator(*chosen, "--icd", str(WHEEL)) as (place, _):
+        assert send(place, "Save").returncode == 0  # `timeout_ms: 3000`
+        assert send(place, "Save", "--timeout", "200").returncode == 3
+
+
 @pytest.mark.pty
 def test_the_acknowledge_of_another_telecommand_is_counted_and_confirms_nothing():
     chosen = ("--pty", "--every", "0", "--fault", "foreign=100%", "--icd", str(WHEEL))
@@ -154,6 +162,33 @@ def test_a_response_with_further_fields_is_shown(tmp_path):
         sent = icdgen("send", "wheel", *words, folder=file)
     assert sent.returncode == 1
     assert "Position" in sent.stderr and " 9" in sent.stderr
+
+
+@pytest.mark.parametrize(
+    ("outcome", "text"),
+    [
+        (Busy(SAVE, 3, 0, "Nothing"), "busy"),
+        (Busy(SAVE, 3, 0), "busy"),
+        (Busy(SAVE, 3, 4, "Wrong mode"), "busy: Wrong mode (code 4)"),
+        (Refused(SAVE, 1, 0, "Nothing"), "refused: Nothing (code 0)"),
+    ],
+)
+def test_a_busy_device_without_a_reason_is_only_busy(outcome, text):
+    assert failure_text(ICD, ICD.node("wheel"), outcome) == text
+
+
+def test_each_value_of_a_range_of_reasons_has_its_name(tmp_path):
+    last = "{value: 5, name: Bad CRC}"
+    text = WHEEL.read_text().replace(
+        last, f"{last}\n      - {{value: 16, to: 31, name: Device specific}}"
+    )
+    file = tmp_path / "wheel.yaml"
+    file.write_text(text)
+    for reason, code in (("Device specific", 16), ("31", 31)):
+        chosen = ("--tcp", "0", "--every", "0", "--fault", f"nak=1:{reason}")
+        with simulator(*chosen, "--icd", str(file)) as (place, _):
+            sent = icdgen("send", "wheel", "Save", "--port", place, folder=file)
+        assert sent.stderr.strip() == f"Save: refused: Device specific (code {code})"
 
 
 def test_monitor_shows_why_a_request_was_refused():

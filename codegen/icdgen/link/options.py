@@ -49,7 +49,7 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             "--timeout",
             type=click.IntRange(1),
             metavar="MS",
-            help="Time-out of a response in milliseconds.",
+            help="Time-out of every response in milliseconds (default: the ICD's).",
         ),
         click.option(
             "--retries",
@@ -95,6 +95,10 @@ def open_session(
             f"{facts.can.parts['source'].bits} bits hold it",
         )
     link = link_of(icd, facts)
+    if timeout is not None and link.stream:
+        # The option also replaces the time-outs that telecommands have of their own.
+        exchanges = tuple(row._replace(timeout=0) for row in link.stream.exchanges)
+        link = link._replace(stream=link.stream._replace(exchanges=exchanges))
     options = {"reply_timeout": timeout, "retries": retries}
     settings = link.settings._replace(
         **{key: value for key, value in options.items() if value is not None}

@@ -26,8 +26,10 @@ def failure_text(icd: Icd, node: Node, outcome: Refused | Busy) -> str:
     """Return a refusal or a busy device with its reason, such as ``refused: Bad length
     (code 2)``.
     """
-    word = "refused" if isinstance(outcome, Refused) else "busy"
-    if outcome.code is None:
+    is_refusal = isinstance(outcome, Refused)
+    word = "refused" if is_refusal else "busy"
+    # A busy device often has no reason: its field is 0 then, such as `Nothing`.
+    if outcome.code is None or not (is_refusal or outcome.code):
         return word
     name = reason_name(icd, node, outcome) or "unknown error"
     return f"{word}: {name} (code {outcome.code})"

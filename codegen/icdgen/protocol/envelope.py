@@ -7,6 +7,8 @@ range of bytes in a byte order, a shift and a width.
 
 from __future__ import annotations
 
+from typing import Literal
+
 from icdgen.frozen import dataclass
 from icdgen.icd import checksum
 from icdgen.protocol.exchange import Exchange
@@ -28,7 +30,8 @@ ROLES = ("constant", "id", "length", "checksum", *GIVEN)
 """Roles as code knows them: a `sync` is a constant."""
 
 CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = checksum.KINDS
-DIRECTIONS = ("telecommand", "telemetry")
+Direction = Literal["telecommand", "telemetry"]
+DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 DATA = "data"  # in `covers`: the data between header and trailer
 WORD = 32  # bits of the decoder's arithmetic
 

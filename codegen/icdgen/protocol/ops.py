@@ -2,7 +2,7 @@
 conformance tests.
 
 ``tests/conformance/README.md`` describes them. `answer` is the reference implementation
-of all but the client of framed links, whose reference is the runtime
+of all but framed links, whose reference is the runtime
 (`icdgen.runtime_objects.reference`).
 """
 
@@ -21,11 +21,9 @@ from icdgen.protocol import (
     i2c,
     logs,
     scripts,
-    stream,
     times,
     uart,
 )
-from icdgen.protocol.envelope import DIRECTIONS, GIVEN, Stream
 from icdgen.protocol.facts import Facts, Unsupported, need, of
 from icdgen.protocol.request_keys import (
     Refusal,
@@ -59,13 +57,10 @@ def answer(
     except errors.Refused as refusal:
         return refusal.answer
     except errors.RangeError as error:
-        names_field = error.field in (
-            GIVEN if request["op"] == stream_encode.__name__ else times.PARTS
-        )
-        # Only these two operations define which field a range error names; elsewhere it
-        # would be an implementation detail.
+        # Only the operation with a time defines which field a range error names;
+        # elsewhere it would be an implementation detail.
         return {"ok": False, "error": "range"} | (
-            {"field": error.field} if names_field else {}
+            {"field": error.field} if error.field in times.PARTS else {}
         )
     except OverflowError:
         return {"ok": False, "error": "range"}
@@ -324,60 +319,11 @@ def link_data(facts: Facts, request: Request) -> dict[str, Any]:
     }
 
 
-def stream_encode(facts: Facts, request: Request) -> dict[str, Any]:
-    form, direction = _envelope(facts, request)
-    id, data, values = number(request, "id"), octets(request), request.get("values", {})
-    if not isinstance(values, dict) or not set(values) <= set(GIVEN):
-        raise Refusal(
-            "request", detail="`values` has the fields that the sender chooses, by role"
-        )
-    chosen = {role: number(values, role) for role in values}
-    return {"bytes": stream.encode(form, direction, id, data, chosen).hex()}
-
-
-def stream_events(facts: Facts, request: Request) -> dict[str, Any]:
-    form, direction = _envelope(facts, request)
-    limit = number(
-        request,
-        "limit",
-        form.header_bytes + form.trailer_bytes,
-        form.longest,
-        form.longest,
-    )
-    chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
-    decoder = stream.Decoder(form, direction, limit)
-    events = [_stream_event(event) for chunk in chunks for event in decoder.feed(chunk)]
-    return {
-        "events": events,
-        "discarded": decoder.discarded,
-        "pending": decoder.pending,
-    }
-
-
-def _stream_event(event: stream.Event) -> dict[str, Any]:
-    row: dict[str, Any] = {"event": event.event}
-    if event.id is not None:
-        row["id"] = event.id
-    if event.event == stream.MESSAGE:
-        row |= {"bytes": event.data.hex(), **dict(event.values)}
-    if event.event == stream.GAP:
-        row["missing"] = event.missing
-    return row
-
-
-def _envelope(facts: Facts, request: Request) -> tuple[Stream, str]:
-    direction = text(request, "direction")
-    if direction not in DIRECTIONS:
-        raise Refusal("request", detail="there is no such direction")
-    return need(facts.stream, "stream"), direction
-
-
 OPS: dict[str, Operation] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
         link_data, scripts.client, scripts.file,
-        stream_encode, stream_events,
     )
 }  # fmt: skip

@@ -93,7 +93,11 @@ def _names(field: NodePlace | None) -> tuple[tuple[int, str], ...]:
     if field is None or field.scalar.enum is None:
         return ()
     mask = (1 << field.bits) - 1  # clients compare numbers without sign
-    return tuple((each.value & mask, each.name) for each in field.scalar.enum.members)
+    return tuple(
+        (value & mask, member.name)
+        for member in field.scalar.enum.members
+        for value in range(member.value, member.last + 1)
+    )
 
 
 def _meanings(kind: str, row: Section, message: Message) -> Iterator[tuple[int, str]]:

@@ -1,14 +1,17 @@
-"""Reference of the wire layer: `icdgen.protocol.ops`, and the client of framed links,
-which is the Python runtime itself.
+"""Reference of the wire layer: `icdgen.protocol.ops`, and for framed links the Python
+runtime itself.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from icdgen_runtime._errors import LengthError as RuntimeLengthError
+from icdgen_runtime._errors import RangeError as RuntimeRangeError
 from icdgen_runtime._errors import UnknownIdError as RuntimeUnknownIdError
-from icdgen_runtime.wire import events
+from icdgen_runtime.wire import events, stream
 from icdgen_runtime.wire.client import Request
 from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.envelope_client import EnvelopeClient
@@ -18,14 +21,24 @@ from icdgen_runtime.wire.link import Link, Settings
 
 from icdgen.icd.model import Icd
 from icdgen.protocol import errors, ops
+from icdgen.protocol.envelope import DIRECTIONS, GIVEN
 from icdgen.protocol.facts import Facts, Unsupported, need
-from icdgen.protocol.request_keys import flag, hex_bytes, mappings, number, octets
+from icdgen.protocol.request_keys import (
+    Refusal,
+    flag,
+    hex_bytes,
+    mappings,
+    number,
+    octets,
+    rows,
+    text,
+)
 from icdgen.protocol.scripts import settings_of, step
 from icdgen.runtime_objects.links import link_of
 
 MOST_REQUESTS = 3  # requests that are in progress or waiting
-DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 Row = dict[str, Any]
+FramedOperation = Callable[[Link[Any], Facts, Row], dict[str, Any]]
 
 
 def answer(icd: Icd, request: Row) -> dict[str, Any]:
@@ -34,17 +47,81 @@ def answer(icd: Icd, request: Row) -> dict[str, Any]:
     ``op`` must be one of `OPS`.
     """
 
-    def stream_client(facts: Facts, request: Row) -> dict[str, Any]:
-        need(facts.stream, "stream")
-        return _stream_client(link_of(icd, facts), facts, request)
+    def framed(operation: FramedOperation) -> ops.Operation:
+        def answer_of(facts: Facts, request: Row) -> dict[str, Any]:
+            need(facts.stream, "stream")
+            return operation(link_of(icd, facts), facts, request)
 
-    return ops.answer(icd, request, {**ops.OPS, "stream_client": stream_client})
+        return answer_of
+
+    own = {operation.__name__: framed(operation) for operation in FRAMED_OPERATIONS}
+    return ops.answer(icd, request, {**ops.OPS, **own})
 
 
-OPS = frozenset((*ops.OPS, "stream_client"))
+def stream_encode(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any]:
+    id, data, values = number(request, "id"), octets(request), request.get("values", {})
+    if not isinstance(values, dict) or not set(values) <= set(GIVEN):
+        raise Refusal(
+            "request", detail="`values` has the fields that the sender chooses, by role"
+        )
+    chosen = {role: number(values, role) for role in values}
+    with _errors_of_reference():
+        line = stream.stream_encode(link, id, data, _direction(request), **chosen)
+    return {"bytes": line.hex()}
 
 
-def _stream_client(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any]:
+def stream_events(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any]:
+    direction, form = _direction(request), need(link.stream, "stream")
+    least = form.header_bytes + form.trailer_bytes
+    limit = number(request, "limit", least, link.longest, link.longest)
+    decoder = stream.StreamDecoder(link, direction, limit)
+    chunks = [hex_bytes(chunk) for chunk in rows(request, "chunks")]
+    return {
+        "events": [
+            _stream_row(each) for chunk in chunks for each in decoder.feed(chunk)
+        ],
+        "discarded": decoder.discarded,
+        "pending": decoder.pending,
+    }
+
+
+def _direction(request: Row) -> Direction:
+    direction = text(request, "direction")
+    for known in DIRECTIONS:
+        if direction == known:
+            return known
+    raise Refusal("request", detail="there is no such direction")
+
+
+def _stream_row(event: stream.StreamEvent) -> Row:
+    row: Row = {"event": event.event}
+    if event.id is not None:
+        row["id"] = event.id
+    if event.event == "message":
+        row |= {"bytes": event.data.hex(), **event.values}
+    if event.event == "gap":
+        row["missing"] = event.missing
+    return row
+
+
+@contextmanager
+def _errors_of_reference() -> Iterator[None]:
+    """Raise errors of the runtime as those of the reference implementation."""
+    try:
+        yield
+    except RuntimeBusyError:
+        raise errors.BusyError from None
+    except UnsupportedError:
+        raise Unsupported from None
+    except RuntimeUnknownIdError:
+        raise errors.UnknownIdError from None
+    except RuntimeLengthError as error:
+        raise errors.LengthError(error.expected, error.actual) from None
+    except RuntimeRangeError as error:
+        raise Refusal("range", field=error.field) from None
+
+
+def stream_client(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any]:
     """Return what a client does in a script."""
     requests = number(request, "requests", 1, MOST_REQUESTS, 1)
     values = settings_of(facts, request)
@@ -89,20 +166,8 @@ def _events(client: EnvelopeClient[Any], now: int, row: Row) -> list[Row]:
 def _start(
     client: EnvelopeClient[Any], now: int, request: Request, reply: int | None
 ) -> None:
-    """Start a request.
-
-    Raises the errors of the reference implementation.
-    """
-    try:
+    with _errors_of_reference():
         client.start(now, request, reply)
-    except RuntimeBusyError:
-        raise errors.BusyError from None
-    except UnsupportedError:
-        raise Unsupported from None
-    except RuntimeUnknownIdError:
-        raise errors.UnknownIdError from None
-    except RuntimeLengthError as error:
-        raise errors.LengthError(error.expected, error.actual) from None
 
 
 def _output(client: EnvelopeClient[Any], row: Row) -> list[object]:
@@ -141,3 +206,7 @@ def _event_row(event: events.Event) -> Row:
         case _:
             raise TypeError(f"no event of a framed link: {event}")
     return {"event": type(event).__name__.lower(), **row}
+
+
+FRAMED_OPERATIONS = (stream_encode, stream_events, stream_client)
+OPS = frozenset((*ops.OPS, *(each.__name__ for each in FRAMED_OPERATIONS)))

@@ -245,7 +245,8 @@ def _reason(response: Response, text: str) -> int | None:
     """Return the number of a reason, given as a name or a number; None if the response
     cannot have it.
     """
-    named = {name: value for value, name in response.reasons}
+    # Of a range, the first value counts.
+    named = {name: value for value, name in reversed(response.reasons)}
     number = named.get(text, numbers.integer(text))
     is_possible = number is not None and _refuses_with(response, number)
     return number if is_possible else None

@@ -14,6 +14,7 @@ from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
 from icdgen.runtime_objects import reference
+from icdgen.runtime_objects.links import link_of
 from icdgen.vectors.wire import (
     asking,
     clients,
@@ -55,7 +56,7 @@ def cases(icd: Icd, node: Node) -> list[Case]:
     """Return all cases of a node. The result is deterministic."""
     node_facts = facts.of(icd, node)
     cases = []
-    for why, request in _requests(node_facts):
+    for why, request in _requests(icd, node_facts):
         complete_request = {"op": request["op"], "node": node.name, **request}
         cases.append(
             Case(why, complete_request, reference.answer(icd, complete_request))
@@ -79,12 +80,13 @@ def text(icd: Icd) -> str | None:
     return "{\n" + head + ",\n".join(parts) + "\n]\n}\n"
 
 
-def _requests(node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
+def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     source = random.Random(node_facts.node.name)
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
     if node_facts.stream:
-        yield from envelopes.requests(node_facts, source)
-        yield from asking.scripts(node_facts)
+        link = link_of(icd, node_facts)
+        yield from envelopes.requests(link, node_facts.stream, source)
+        yield from asking.scripts(link, node_facts)
         return
     yield from streams.checksums(node_facts, source)
     if node_facts.framing:

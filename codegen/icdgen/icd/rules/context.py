@@ -166,6 +166,14 @@ class Context:
             self._scopes[id(node)] = scope
         return scope
 
+    def users(self, node: Node) -> list[Node]:
+        """Return the nodes that include a node, and the node itself."""
+        return [
+            user
+            for user in self.icd.nodes
+            if any(each is node for each in self.scope(user))
+        ]
+
     def written(self, owner: Map, key: str) -> str:
         """Return a number in the spelling of its file, such as ``0x82``, and a list of
         bytes as ``0x01 0x05``.

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.layout import integer_range
+from icdgen.icd.layout import Array, Overlay, integer_range
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.places import NodePlace
@@ -32,7 +32,16 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
+from icdgen.icd.trees import at_path
 from icdgen.wording import count, quote
+
+WHOLE_NUMBERS = ("uint", "int", "bool", "enum")
+"""Types of fields with a number that a wider field can repeat, unless it is signed."""
+
+MOST_VALUES = 256  # of a range of reasons, since a client stores the name of each value
+
+OTHER_LINKS = (("uart", "framing"), ("i2c",), ("can",))
+"""Paths in a protocol section that describe a link other than a framed one."""
 
 STREAM_SETTINGS = ("late_ms", "busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
 """Keys of `client` that only framed links use."""
@@ -162,18 +171,41 @@ def _number(
     its remedy.
     """
     field = field_of(message, name)
+    obstacle = _obstacle(message, node, name, field)
+    if obstacle:
+        return None, f"{quote(name)} {obstacle}", f"let `{role}` name another field"
     if field is None:
         names = [place.name for place in message.fields]
         remedy = suggestion(name, names, "correct the name")
         return None, f"{quote(message.name)} has no field {quote(name)}", remedy[0]
-    is_fixed = field.steps[0].node in message.layout.fixed
-    if not is_fixed or field.conditions or field.node is not field.scalar:
-        what = "is not in every message at the same place"
-    elif number_run(field, node) is None:
-        what = "is not a number of at most 32 bits in at most 4 bytes"
-    else:
-        return field, "", ""
-    return None, f"{quote(name)} {what}", f"let `{role}` name another field"
+    return field, "", ""
+
+
+def _obstacle(message: Message, node: Node, name: str, field: NodePlace | None) -> str:
+    """Return why a client cannot compare a field with a number; empty if it can, and for
+    a name that the message does not have.
+    """
+    if field is None:
+        nodes = (each for each in message.layout.nodes if each.name == name)
+        return "is an array" if any(isinstance(each, Array) for each in nodes) else ""
+    if isinstance(field.node, Overlay):
+        return "is an overlay field, which has no bits of its own"
+    if field.is_read_only or field.is_count:
+        return "is computed and not transmitted"
+    if field.index is not None:
+        return "is an element of an array"
+    if any(step.node.present_if for step in field.steps):
+        return "is an optional field, which not every message has"
+    if field.steps[0].node not in message.layout.fixed:
+        is_variable = field.scalar.length is not None
+        return (
+            "has a variable length"
+            if is_variable
+            else "follows a part of variable length, so its place differs between messages"
+        )
+    if number_run(field, node) is None:
+        return "is not a number of at most 32 bits in at most 4 bytes"
+    return ""
 
 
 def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
@@ -189,28 +221,49 @@ def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
         if field is None:
             yield Fault.at_key(owner, key, text, help)
             continue
+        for other in ("status", "reason"):
+            if row.get(other) == name:
+                text = f"{quote(name)} repeats a part of the telecommand, so it cannot be the {other}"
+                help = f"let `echo` or `{other}` name another field"
+                yield Fault.at(row, other, text, help)
         for message in declared.telecommands:
-            bits, text, help = _repeated(node, message, repeated)
-            if not text and bits > field.bits:
-                text = f"{quote(name)} of {count(field.bits, 'bit')} cannot repeat {count(bits, 'bit')} of {quote(message.name)}"
-                help = "correct the width of the field, or name another field"
+            text, help = _misfit(node, field, message, repeated)
             if text:
                 yield Fault.at(owner, key, text, help)
                 break
 
 
-def _repeated(node: Node, message: Message, name: str) -> tuple[int, str, str]:
-    """Return the bits of a part of a telecommand; otherwise what is wrong, and its
-    remedy.
+def _misfit(
+    node: Node, field: NodePlace, message: Message, repeated: str
+) -> tuple[str, str]:
+    """Return why a field cannot repeat a part of a telecommand, and the remedy; two
+    empty texts if it can.
     """
-    if name == ID:
-        return (message.telecommand_id or 0).bit_length(), "", ""
-    if id_byte_of(node, name) is not None:
-        return 8, "", ""
-    field, text, help = _number(message, node, name, "echo")
-    if field is None:
-        return 0, text, f"{help}, or write `id`" if "correct" in help else help
-    return field.bits, "", ""
+    source: NodePlace | None = None
+    if repeated == ID:
+        bits = (message.telecommand_id or 0).bit_length()
+    elif id_byte_of(node, repeated) is not None:
+        bits = 8
+    else:
+        source, text, help = _number(message, node, repeated, "echo")
+        if source is None:
+            return text, f"{help}, or write `id`" if "correct" in help else help
+        bits = source.bits
+    name = quote(field.name)
+    if bits > field.bits:
+        text = f"{name} of {count(field.bits, 'bit')} cannot repeat {count(bits, 'bit')} of {quote(message.name)}"
+        return text, "correct the width of the field, or name another field"
+    # Clients compare bits. A device that writes a signed number into a wider field
+    # extends its sign; for a float or bytes, the bits of the wider field are unknown.
+    if source is None or bits == field.bits:
+        return "", ""
+    is_number = source.scalar.type in WHOLE_NUMBERS
+    if is_number and not source.scalar.is_signed:
+        return "", ""
+    why = "may be negative" if is_number else "is not a whole number"
+    part = f"{quote(repeated)} of {quote(message.name)}"
+    text = f"{name} of {count(field.bits, 'bit')} cannot repeat {part}, which has {bits} and {why}"
+    return text, "give both the same width, or name another field"
 
 
 def _status(declared: Declared, response: Message) -> Iterator[Fault]:
@@ -237,8 +290,14 @@ def _status(declared: Declared, response: Message) -> Iterator[Fault]:
         values = row.get(key)
         for value, place in values.placed() if isinstance(values, Seq) else ():
             raw, number = raw_status(field, value), status_value(field, value)
-            if raw is None or number is None:
-                members = field.scalar.enum.members if field.scalar.enum else ()
+            members = field.scalar.enum.members if field.scalar.enum else ()
+            ranges = [member for member in members if member.to is not None]
+            member = next((each for each in ranges if each.name == value), None)
+            if member is not None:
+                text = f"{quote(member.name)} is a range of values ({member.values})"
+                help = f"list the values that mean `{key}` as numbers, such as {member.value}"
+                yield Fault(row, place, text, help)
+            elif raw is None or number is None:
                 names = [member.name for member in members]
                 text = f"{quote(name)} has no value {quote(str(value))}"
                 remedy = suggestion(str(value), names, "correct it, or write a number")
@@ -265,7 +324,8 @@ def _fits(field: NodePlace, number: int) -> bool:
 
 def _reason(declared: Declared, response: Message) -> Iterator[Fault]:
     """Yield the faults of the field with the reason of a refusal."""
-    row = declared.row
+    row, node = declared.row, declared.link.node
+    yield from _ranges_of_reasons(declared, response)
     name = row.get("reason")
     if name is None:
         return
@@ -273,13 +333,25 @@ def _reason(declared: Declared, response: Message) -> Iterator[Fault]:
         text = f"a response `{declared.kind}` without a status refuses nothing, so it has no reason"
         yield Fault.at_key(row, "reason", text, "add `status`, or remove `reason`")
         return
-    field, text, help = _number(response, declared.link.node, name, "reason")
+    field, text, help = _number(response, node, name, "reason")
     if field is None:
         yield Fault.at(row, "reason", text, help)
     elif field.scalar.enum is None:
         text = f"{quote(name)} has no enumeration, so a refusal would be a bare number"
         help = "give the field `type: enum` with the reasons of the manual"
         yield Fault.at(row, "reason", text, help)
+
+
+def _ranges_of_reasons(declared: Declared, response: Message) -> Iterator[Fault]:
+    """Yield the faults of reasons that are too many values."""
+    field = field_of(response, reason_of(declared.row))
+    for member in field.scalar.enum.members if field and field.scalar.enum else ():
+        values = member.last - member.value + 1
+        if values > MOST_VALUES:
+            text = f"the reason {quote(member.name)} is a range of {values} values, more than {MOST_VALUES}"
+            help = "shorten the range to the values that the device uses"
+            key = "reason" if "reason" in declared.row else "status"
+            yield Fault.at(declared.row, key, text, help)
 
 
 def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
@@ -377,9 +449,6 @@ def _contradictions(rows: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 @rule("ICD183")
 def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
-    framed: set[int] = set()  # id() of nodes on a framed link
-    for link in links(ctx):
-        framed.update(id(node) for node in ctx.scope(link.node))
     for message, node in ctx.messages:
         for key in ("response", "repeat"):
             if key not in message.source:
@@ -387,14 +456,27 @@ def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
             if message.telecommand_id is None:
                 text = f"`{key}` applies to a telecommand, not to telemetry"
                 yield Fault.at_key(message.source, key, text, "remove it")
-            elif id(node) not in framed and ctx.complete:
+            elif _is_on_other_links(ctx, node) and ctx.complete:
                 text = f"`{key}` has an effect on framed links (`stream`) only"
                 yield Fault.at_key(message.source, key, text, "remove it")
     for node in ctx.icd.nodes:
         protocol = node.source.get("protocol")
         client = protocol.get("client") if isinstance(protocol, Map) else None
-        if isinstance(client, Map) and "stream" not in ctx.protocol_of(node):
+        if isinstance(client, Map) and _is_on_other_links(ctx, node):
             for key in STREAM_SETTINGS:
                 if key in client:
                     text = f"`{key}` has an effect on framed links (`stream`) only"
                     yield Fault.at_key(client, key, text, "remove it")
+
+
+def _is_on_other_links(ctx: Context, node: Node) -> bool:
+    """Return whether the messages of a node are transmitted, and never on a framed link.
+
+    A file that other files include often describes no link.
+    """
+    protocols = [ctx.protocol_of(user) for user in ctx.users(node)]
+    return not any("stream" in protocol for protocol in protocols) and any(
+        at_path(protocol, path) is not None
+        for protocol in protocols
+        for path in OTHER_LINKS
+    )

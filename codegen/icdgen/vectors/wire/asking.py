@@ -9,9 +9,10 @@ from random import Random
 from typing import Any
 
 from icdgen_runtime.wire.envelope import NumberPlace as WirePlace
+from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.stream import stream_encode
 
 from icdgen.icd.responses import ID_BYTES, NEEDED, PROGRESS
-from icdgen.protocol import stream
 from icdgen.protocol.envelope import Stream, StreamRow
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.facts import Facts, need
@@ -31,8 +32,8 @@ def wire_place(place: NumberPlace) -> WirePlace:
 class Sample:
     """Rows of scripts with messages of the node."""
 
-    def __init__(self, form: Stream, source: Random) -> None:
-        self.form, self.source = form, source
+    def __init__(self, link: Link[Any], form: Stream, source: Random) -> None:
+        self.link, self.form, self.source = link, form, source
         self._numbers = 0
 
     def ask(self, at: int, row: StreamRow, **more: object) -> dict[str, Any]:
@@ -55,7 +56,7 @@ class Sample:
         field = self.form.of("sequence")
         self._numbers += lost + 1
         values = {"sequence": self._numbers & field.mask} if field else {}
-        line = stream.encode(self.form, "telemetry", row.id, data, values)
+        line = stream_encode(self.link, row.id, data, "telemetry", **values)
         return {"at": at, "receive": line.hex()}
 
     def respond(
@@ -84,10 +85,10 @@ class Sample:
         return self.come(at, row, data=bytes(data))
 
 
-def scripts(facts: Facts) -> Requests:
+def scripts(link: Link[Any], facts: Facts) -> Requests:
     """Yield the scripts of the client over a packet format."""
     form = need(facts.stream, "stream")
-    sample = Sample(form, Random(f"{facts.node.name} client"))
+    sample = Sample(link, form, Random(f"{facts.node.name} client"))
     if not form.telecommands:
         return
     for why, rows in _single_requests(form, sample):

@@ -5,13 +5,17 @@ truncated and nested.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from random import Random
+from typing import Any
 
-from icdgen.protocol import stream
+from icdgen_runtime._errors import RangeError
+from icdgen_runtime.wire.envelope import Direction
+from icdgen_runtime.wire.envelope import StreamRow as WireRow
+from icdgen_runtime.wire.errors import need
+from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.stream import stream_encode
+
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN, PACKET, Stream, StreamRow
-from icdgen.protocol.errors import RangeError
-from icdgen.protocol.facts import Facts, need
 from icdgen.vectors.wire import Requests, pieces
 
 _SPLITS = 40  # maximum number of split positions of a message
@@ -19,13 +23,12 @@ _SPLITS = 40  # maximum number of split positions of a message
 _MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))
 
 
-def requests(facts: Facts, source: Random) -> Requests:
+def requests(link: Link[Any], form: Stream, source: Random) -> Requests:
     """Yield the requests of a packet format."""
-    form = need(facts.stream, "stream")
     for direction in DIRECTIONS:
-        yield from _encoded(form, direction, source)
+        yield from _encoded(link, form, direction, source)
         if form.rows(direction):
-            yield from _streams(form, direction, source)
+            yield from _streams(link, form, direction, source)
     yield "no such message", _encode(DIRECTIONS[0], _unknown(form, DIRECTIONS[0]), b"")
 
 
@@ -59,12 +62,14 @@ def _data(row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
         yield "one byte, then zeros", b"\x01" + bytes(row.most - 1)
 
 
-def _encoded(form: Stream, direction: str, source: Random) -> Requests:
+def _encoded(
+    link: Link[Any], form: Stream, direction: Direction, source: Random
+) -> Requests:
     """Yield requests that encode messages, and such as must be refused."""
     for row in form.rows(direction):
         for why, data in _data(row, source):
             yield f"{row.name}: {why}", _encode(direction, row.id, data)
-            line = stream.encode(form, direction, row.id, data)
+            line = stream_encode(link, row.id, data, direction)
             yield f"{row.name}: {why}, and back", _events(direction, [line])
         for size in {row.least - 1, row.most + 1} - {-1}:
             yield f"{row.name}: a length that it does not have", _encode(
@@ -78,8 +83,8 @@ def _encoded(form: Stream, direction: str, source: Random) -> Requests:
                     yield f"{field.role} {value}", _encode(
                         direction, row.id, data, **{field.role: value}
                     )
-                    line = stream.encode(
-                        form, direction, row.id, data, {field.role: value}
+                    line = stream_encode(
+                        link, row.id, data, direction, **{field.role: value}
                     )
                     yield f"{field.role} {value}, and back", _events(direction, [line])
                 if field.bits < 32:
@@ -103,15 +108,17 @@ def _events(direction: str, chunks: list[bytes], **more: int) -> dict[str, objec
     }
 
 
-def _streams(form: Stream, direction: str, source: Random) -> Requests:
+def _streams(
+    link: Link[Any], form: Stream, direction: Direction, source: Random
+) -> Requests:
     """Yield streams that are cut, noisy, damaged or truncated."""
     rows = form.rows(direction)
     short = min(rows, key=lambda row: row.most)
     lines = [
-        _line(form, direction, row, source, number)
+        _line(link, direction, row, source, number)
         for number, row in enumerate(rows[:6])
     ]
-    good = _line(form, direction, short, source, 0)
+    good = _line(link, direction, short, source, 0)
     if form.delimited_by == PACKET:
         yield "packets, one after the other", _events(direction, lines)
         yield "a packet of nothing", _events(direction, [b"", good])
@@ -137,9 +144,9 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
         ("a message that is cut off, then whole ones", good[:-1] + good + good + good),
         ("a message that has only begun", good + good[: len(good) // 2]),
         *((why, damaged + good + good) for why, damaged in _damaged(good, source)),
-        *_nested(form, direction, rows, good),
-        *_undefined_messages(form, direction, short, good),
-        *_gaps(form, direction, short, source),
+        *_nested(link, direction, rows, good),
+        *_undefined_messages(link, form, direction, short, good),
+        *_gaps(link, form, direction, short, source),
         ("nothing", b""),
     ]
     for why, line in streams:
@@ -162,11 +169,12 @@ def _streams(form: Stream, direction: str, source: Random) -> Requests:
 
 
 def _line(
-    form: Stream, direction: str, row: StreamRow, source: Random, number: int
+    link: Link[Any], direction: Direction, row: StreamRow, source: Random, number: int
 ) -> bytes:
     """Return the transmitted bytes of a message with a sequence number."""
-    values = {"sequence": number} if form.of("sequence") else {}
-    return stream.encode(form, direction, row.id, source.randbytes(row.most), values)
+    values = {"sequence": number} if link.stream and link.stream.of("sequence") else {}
+    data = source.randbytes(row.most)
+    return stream_encode(link, row.id, data, direction, **values)
 
 
 def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
@@ -184,7 +192,7 @@ def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
 
 
 def _nested(
-    form: Stream, direction: str, rows: tuple[StreamRow, ...], good: bytes
+    link: Link[Any], direction: Direction, rows: tuple[StreamRow, ...], good: bytes
 ) -> Iterator[tuple[str, bytes]]:
     """Yield a message within the data of another message, which is complete, damaged or
     truncated.
@@ -192,7 +200,7 @@ def _nested(
     outer = max(rows, key=lambda row: row.most)
     if outer.most < len(good):
         return
-    line = stream.encode(form, direction, outer.id, (good * outer.most)[: outer.most])
+    line = stream_encode(link, outer.id, (good * outer.most)[: outer.most], direction)
     yield "a message within another one", line + good
     yield "a message within a damaged one", line[:-1] + bytes(
         [line[-1] ^ 0x10]
@@ -201,7 +209,7 @@ def _nested(
 
 
 def _undefined_messages(
-    form: Stream, direction: str, row: StreamRow, good: bytes
+    link: Link[Any], form: Stream, direction: Direction, row: StreamRow, good: bytes
 ) -> Iterator[tuple[str, bytes]]:
     """Yield messages with an unknown id or length, encoded with a packet format that
     defines them.
@@ -223,17 +231,19 @@ def _undefined_messages(
     if row.most:
         variants.append(("that is too short by one", row.id, row.most - 1, row.seed))
     for why, id, size, seed in variants:
-        row_ = StreamRow(id, 0, size, False, seed, "")
-        strange = replace(form, telecommands=(row_,), telemetry=(row_,))
+        only = (WireRow(id, 0, size, False, seed),)
+        stream = need(link.stream, "stream")._replace(telecommands=only, telemetry=only)
         try:
-            line = stream.encode(strange, direction, id, b"\x2a" * size)
+            line = stream_encode(
+                link._replace(stream=stream), id, b"\x2a" * size, direction
+            )
         except RangeError:  # the length field cannot represent this length
             continue
         yield f"a message {why}", good + line + good
 
 
 def _gaps(
-    form: Stream, direction: str, row: StreamRow, source: Random
+    link: Link[Any], form: Stream, direction: Direction, row: StreamRow, source: Random
 ) -> Iterator[tuple[str, bytes]]:
     place = form.of("sequence")
     if place is None:
@@ -246,11 +256,11 @@ def _gaps(
     ):
         fitting = [number & place.mask for number in numbers]
         yield why, b"".join(
-            _line(form, direction, row, source, number) for number in fitting
+            _line(link, direction, row, source, number) for number in fitting
         )
     sequence_rows = form.rows(direction)[:2]
     turns = [
-        _line(form, direction, row_, source, number)
+        _line(link, direction, row_, source, number)
         for number in (1, 2, 3)
         for row_ in sequence_rows
     ]

@@ -2,7 +2,7 @@
 
 //! The requests of a client, and the responses that may still arrive after their end.
 
-use super::awaited::{Awaited, Needed};
+use super::awaited::{Awaited, Needed, Owed};
 use super::encoder::Values;
 use super::judge::Event;
 use super::Request;
@@ -40,11 +40,11 @@ struct Slot<const N: usize> {
     awaited: Awaited,
     timeout: u32,
     attempts: u16,
-    until: u32, // end of the state
-    limit: u32, // until when progress extends it
-    sent_at: u32,
+    until: u32,  // end of the state
+    latest: u32, // until when a response is in time
+    limit: u32,  // until when progress extends `latest`
     missing: Needed,
-    owed: u16, // responses that may still arrive
+    owed: Owed,
 }
 
 impl<const N: usize> Slot<N> {
@@ -61,10 +61,10 @@ impl<const N: usize> Slot<N> {
         timeout: 0,
         attempts: 0,
         until: 0,
+        latest: 0,
         limit: 0,
-        sent_at: 0,
         missing: Needed::NONE,
-        owed: 0,
+        owed: Owed::NONE,
     };
 
     /// Whether its state ends by itself.
@@ -74,7 +74,7 @@ impl<const N: usize> Slot<N> {
 
     /// Whether a response may arrive, also to an earlier attempt.
     fn is_awaited(&self) -> bool {
-        self.state == State::Wait || self.owed > 0
+        self.state == State::Wait || self.owed != Owed::NONE
     }
 
     /// Whether the device handles it.
@@ -87,7 +87,7 @@ impl<const N: usize> Slot<N> {
 #[derive(Clone, Copy, Debug)]
 struct Late {
     awaited: Awaited,
-    owed: u16,
+    owed: Owed,
     until: u32,
 }
 
@@ -223,16 +223,13 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         let size = put(slot.sent_id, head(&slot.data, slot.length))?;
         let now = self.now;
         slot.attempts = slot.attempts.saturating_add(1);
-        slot.sent_at = now;
         slot.missing = slot.awaited.needed();
-        slot.owed = slot.owed.saturating_add(slot.missing.count());
-        if slot.missing == Needed::NONE {
-            slot.state = State::Sent;
-            slot.until = now;
-        } else {
-            slot.state = State::Wait;
-            slot.until = now.wrapping_add(slot.timeout);
-        }
+        slot.owed.add(slot.missing);
+        slot.latest = now.wrapping_add(slot.timeout);
+        (slot.state, slot.until) = match slot.missing {
+            Needed::NONE => (State::Sent, now),
+            _ => (State::Wait, slot.latest),
+        };
         slot.limit = now.wrapping_add(self.settings.progress_for_ms);
         self.gap_end = Some(now.wrapping_add(self.settings.gap_ms));
         Ok(Some(size))
@@ -310,9 +307,8 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         for entry in &mut self.late {
             let response = entry.as_ref().and_then(|late| matches(&late.awaited));
             if let (Some(late), Some(response)) = (entry.as_mut(), response) {
-                let answered = late.awaited.answered(response.verdict_of(data));
-                late.owed = late.owed.saturating_sub(answered);
-                *entry = entry.filter(|late| late.owed > 0);
+                late.owed.remove(response.verdict_of(data));
+                *entry = entry.filter(|late| late.owed != Owed::NONE);
                 return Event::Late { id, data };
             }
         }
@@ -336,11 +332,14 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         let verdict = response.verdict_of(data);
         let code = response.reason.map(|reason| reason.get(data, &[]));
         let (direction, id, attempts) = (slot.direction, slot.id, slot.attempts);
-        slot.owed = slot.owed.saturating_sub(slot.awaited.answered(verdict));
+        slot.owed.remove(verdict);
         match verdict {
             Verdict::Progress => {
                 let extended = earlier(now.wrapping_add(slot.timeout), slot.limit);
-                slot.until = later(slot.until, extended);
+                slot.latest = later(slot.latest, extended);
+                if slot.state == State::Wait {
+                    slot.until = slot.latest;
+                }
             }
             Verdict::Busy if slot.attempts <= u16::from(settings.retries) => {
                 slot.state = State::Pause;
@@ -398,11 +397,10 @@ impl<const N: usize, const R: usize> Slots<N, R> {
     /// End a request, and remember the responses that may still arrive.
     fn end(&mut self, place: usize) {
         if let Some(slot) = self.requests.get_mut(place) {
-            // A response counts from the transmission, not from the end of the request.
-            let until = slot.sent_at.wrapping_add(slot.timeout);
-            let until = until.wrapping_add(self.settings.late_ms);
+            // A response counts from the transmission or from progress, not from the end.
+            let until = slot.latest.wrapping_add(self.settings.late_ms);
             let mut entries = self.late.iter_mut();
-            if slot.owed > 0 && !reached(self.now, until) {
+            if slot.owed != Owed::NONE && !reached(self.now, until) {
                 if let Some(free) = entries.find(|late| late.is_none()) {
                     *free = Some(Late {
                         awaited: slot.awaited,
@@ -413,7 +411,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
             }
             slot.state = State::Idle;
             slot.missing = Needed::NONE;
-            slot.owed = 0;
+            slot.owed = Owed::NONE;
         }
     }
 

@@ -21,9 +21,34 @@ impl Needed {
         ack: false,
         reply: false,
     };
+}
 
-    pub(super) fn count(self) -> u16 {
-        u16::from(self.ack) + u16::from(self.reply)
+/// Numbers of responses that may still arrive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Owed {
+    ack: u16,
+    reply: u16,
+}
+
+impl Owed {
+    pub(super) const NONE: Self = Self { ack: 0, reply: 0 };
+
+    /// Add the responses to a transmission.
+    pub(super) fn add(&mut self, needed: Needed) {
+        self.ack = self.ack.saturating_add(u16::from(needed.ack));
+        self.reply = self.reply.saturating_add(u16::from(needed.reply));
+    }
+
+    /// Remove the responses that one with this verdict is or replaces.
+    pub(super) fn remove(&mut self, verdict: Verdict) {
+        let (ack, reply) = match verdict {
+            Verdict::Progress => (0, 0),
+            Verdict::Ack => (1, 0),
+            Verdict::Reply => (0, 1),
+            Verdict::Nak | Verdict::Busy => (1, 1),
+        };
+        self.ack = self.ack.saturating_sub(ack);
+        self.reply = self.reply.saturating_sub(reply);
     }
 }
 
@@ -31,7 +56,7 @@ impl Needed {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Awaited {
     exchange: &'static Exchange,
-    reply: Option<u32>, // id of the telemetry that the caller names instead
+    reply: Option<u32>, // id of the telemetry that replaces the replies of the exchange
     sources: [u32; Exchange::SOURCES],
 }
 
@@ -42,10 +67,11 @@ impl Awaited {
         sources: [0; Exchange::SOURCES],
     };
 
-    /// Return the responses to a telecommand with this id and data.
+    /// Return the responses to a telecommand with this id and data. `named` is the id of the
+    /// telemetry that the caller names as the reply.
     pub(super) fn new(
         exchange: Option<&'static Exchange>,
-        reply: Option<u32>,
+        named: Option<u32>,
         id: u32,
         data: &[u8],
     ) -> Self {
@@ -54,9 +80,13 @@ impl Awaited {
         for (number, place) in sources.iter_mut().zip(exchange.sources) {
             *number = place.get(&id.to_be_bytes(), data);
         }
+        let mut replies = exchange.responses.iter();
+        // A reply of the exchange stays as it is, with its echo and status.
+        let is_described =
+            replies.any(|reply| Some(reply.telemetry) == named && reply.can_be(Verdict::Reply));
         Self {
             exchange,
-            reply,
+            reply: named.filter(|_| !is_described),
             sources,
         }
     }
@@ -72,7 +102,7 @@ impl Awaited {
         });
         let others = self.exchange.responses.iter().copied();
         others
-            .filter(move |response| named.is_none() || response.verdict != Verdict::Reply)
+            .filter(move |response| named.is_none() || !response.can_be(Verdict::Reply))
             .chain(named)
     }
 
@@ -81,12 +111,7 @@ impl Awaited {
     }
 
     pub(super) fn needed(&self) -> Needed {
-        let needs = |verdict| {
-            self.responses().any(|response| {
-                let mut meanings = response.meanings.iter();
-                response.verdict == verdict || meanings.any(|(_, meaning)| *meaning == verdict)
-            })
-        };
+        let needs = |verdict| self.responses().any(|response| response.can_be(verdict));
         Needed {
             ack: needs(Verdict::Ack),
             reply: needs(Verdict::Reply),
@@ -124,18 +149,14 @@ impl Awaited {
             })
         })
     }
-
-    /// Return the number of awaited responses that one with this verdict replaces.
-    pub(super) fn answered(&self, verdict: Verdict) -> u16 {
-        match verdict {
-            Verdict::Progress => 0,
-            Verdict::Ack | Verdict::Reply => 1,
-            Verdict::Nak | Verdict::Busy => self.needed().count(),
-        }
-    }
 }
 
 impl Response {
+    fn can_be(&self, verdict: Verdict) -> bool {
+        let mut meanings = self.meanings.iter();
+        self.verdict == verdict || meanings.any(|(_, meaning)| *meaning == verdict)
+    }
+
     /// Return what the response says.
     pub(super) fn verdict_of(&self, data: &[u8]) -> Verdict {
         let status = self.status.map(|place| place.get(data, &[]));
