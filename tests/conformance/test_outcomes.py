@@ -251,11 +251,12 @@ RARE = {
 @pytest.fixture(scope="module")
 def rare_cases(icd):
     """Return requests and answers of the rare cases."""
-    form = facts.of(icd, icd.node("arm")).stream
-    rows = {row.id: row for row in form.telemetry}
+    of_node = facts.of(icd, icd.node("arm"))
+    rows = {row.id: row for row in of_node.stream.telemetry}
     cases = []
     for settings, steps, _ in RARE.values():
-        sample = outcomes.Sample(form, random.Random(1))
+        link = link_of(icd, of_node)
+        sample = outcomes.Sample(link, of_node.stream, random.Random(1))
         script = [
             (
                 step
