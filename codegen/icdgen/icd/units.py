@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.suggest import close_to
@@ -117,38 +118,62 @@ _SIGN_NAMES = str.maketrans(
     {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
 )
 _PREFIXES = frozenset("fpnu\u00b5\u03bcmcdhkMGT")
+# Signs of products and powers that are not ASCII.
+_OPERATORS = {ord("²"): "^2", ord("³"): "^3", ord("·"): ".", ord("\u22c5"): "."}
+# Units that are not built in, but whose symbols are similar to those of other units.
+_OTHER_UNITS = frozenset("""
+    a As atm Ah bps Bq BTU cal cd dBc dBi dBV dBW degF eV F ft G gal Gy H hp in kat kph
+    l L lb lbf lm lx mil mol mph Nm Ns Oe oz ppb ppt psi rev rps S Sv t ton var VA Vs Wb
+    Ws
+    """.split())
 
 
 def similar_unit(symbol: str, declared: Iterable[str]) -> str:
     """Return the standard or declared unit that an unknown symbol probably means.
 
-    Returns an empty string for a symbol without a similar unit, and for ``kV``, which
-    is not a misspelt ``V``.
+    Returns an empty string if no unit is similar, or if the similar one measures
+    something else or has another size: ``kV`` is no misspelt ``V``, and ``ml/s`` no
+    misspelt ``m/s``.
     """
     symbols = {*STANDARD, *declared}
     if symbol in SPELLINGS:
         return SPELLINGS[symbol]
-    if any(_differ_in_prefix(symbol, other, symbols) for other in symbols):
-        return ""
-    return close_to(symbol, sorted(symbols))
+    parts = _parts(symbol)
+    plain = "".join(parts)
+    # `Nm` and `N.m` are the same product.
+    products = {each.replace(".", ""): each for each in symbols if "." in each}
+    if plain in symbols or plain in products:
+        return products.get(plain, plain)
+    known = {part for other in symbols for part in _parts(other)} | _OTHER_UNITS
+    wrong = [part for part in parts if not _is_unit(part, known)]
+    similar = {
+        "".join(candidate): other
+        for other in sorted(symbols)
+        if len(candidate := _parts(other)) == len(parts)
+        # A part that is a unit is not misspelt.
+        and all(
+            part == right or (part in wrong and close_to(part, [right]))
+            for part, right in zip(parts, candidate, strict=True)
+        )
+    }
+    return similar.get(close_to(plain, similar), "")
 
 
-def _differ_in_prefix(first: str, second: str, symbols: set[str]) -> bool:
-    """Return whether two symbols differ only in prefixes of their parts, such as
-    ``mm/s`` and ``km/s``.
+@lru_cache(4096)  # an ICD can have thousands of unknown units
+def _parts(symbol: str) -> tuple[str, ...]:
+    """Return the parts of a symbol: units, operators and exponents, as `STANDARD` writes
+    them.
     """
-    first_parts, second_parts = (
-        re.findall(r"\w+|\W", symbol) for symbol in (first, second)
-    )
-    if len(first_parts) != len(second_parts):
-        return False
-    pairs = zip(first_parts, second_parts, strict=True)
-    return all(a == b or _bases(a, symbols) & _bases(b, symbols) for a, b in pairs)
+    text = re.sub(r"\s*([./*^-])\s*", r"\1", symbol.strip().translate(_OPERATORS))
+    text = re.sub(r"(?<=[A-Za-z])(?=\d+$|\d+[./*])", "^", text.replace("**", "^"))
+    text = re.sub(r"[*\s]+", ".", text)
+    words = re.findall(r"[^\W\d_]+|\d+|_|\W", text)
+    return tuple(SPELLINGS.get(word, word) for word in words)
 
 
-def _bases(part: str, symbols: set[str]) -> set[str]:
-    """Return the units that a part of a symbol can mean, with and without a prefix."""
-    return {part, part[1:] if part[0] in _PREFIXES else part} & symbols
+def _is_unit(part: str, known: set[str]) -> bool:
+    """Return whether a part of a symbol is a unit, with or without a prefix."""
+    return part in known or (part[:1] in _PREFIXES and part[1:] in known)
 
 
 def declared(symbols: Iterable[str]) -> list[dict[str, str]]:
