@@ -5,6 +5,7 @@ with its user.
 from __future__ import annotations
 
 import os
+import tempfile
 from functools import cache
 from pathlib import Path
 
@@ -75,10 +76,17 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         pytest.skip("this machine has no pseudo-terminals: /dev/pts is not mounted")
 
 
+@pytest.fixture(scope="session")
+def caches(tmp_path_factory) -> Path:
+    """Folder of the cache folders of all tests."""
+    return tmp_path_factory.mktemp("caches")
+
+
 @pytest.fixture(autouse=True)
-def own_cache(tmp_path_factory, monkeypatch):
+def own_cache(caches, monkeypatch):
     """Every test starts without anything remembered."""
-    monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path_factory.mktemp("cache")))
+    # `mktemp` of pytest reads the names of all folders of earlier tests each time.
+    monkeypatch.setenv("ICDGEN_CACHE", tempfile.mkdtemp(dir=caches))
 
 
 @pytest.fixture

@@ -25,7 +25,9 @@ def links():
     return icd, wire.vectors_of(icd)
 
 
-@pytest.mark.parametrize("name", ["reference", "python", "c-sanitizers", "rust-debug"])
+@pytest.mark.parametrize(
+    "name", ["reference", "python", "c", "c-sanitizers", "rust-debug"]
+)
 def test_a_language_agrees_with_the_reference_on_links_of_all_kinds(links, name):
     icd, files = links
     (result,) = wire.run([all_languages()[name]], icd, files)

@@ -47,7 +47,9 @@ def build(
     return [*start, str(program)]
 
 
-CHECKED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+# With sanitizers, optimising takes longer than the tests: 22 s instead of 6 s for the
+# shipped ICDs. `c` is the optimised build.
+CHECKED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 LANGUAGES = [
     Language("c", BACKENDS, ("gcc",), partial(build, compiler="gcc", flags=("-O2",))),
@@ -56,6 +58,6 @@ LANGUAGES = [
     Language("c-portable", BACKENDS, ("gcc",), partial(build, compiler="gcc", flags=("-Os", "-DICDGEN_PORTABLE"))),
     Language(
         "c-s390x", BACKENDS, ("s390x-linux-gnu-gcc", "qemu-s390x"),
-        partial(build, compiler="s390x-linux-gnu-gcc", flags=("-O2", "-static"), start=("qemu-s390x",)),
+        partial(build, compiler="s390x-linux-gnu-gcc", flags=("-O1", "-static"), start=("qemu-s390x",)),
     ),
 ]  # fmt: skip
