@@ -5,6 +5,7 @@ what `icdgen send`, `icdgen monitor` and a session report about it.
 from __future__ import annotations
 
 import json
+import re
 from random import Random
 
 import pytest
@@ -16,6 +17,7 @@ from icdgen.commands.common import load_or_exit
 from icdgen.errors import UserError
 from icdgen.link.outcomes import failure_text
 from icdgen.sim import run
+from tests.conformance.icds import LINKS
 from tests.conftest import ROOT
 from tests.sim.device import simulator
 from tests.sim.test_envelopes import ICD, Port, icdgen, talking
@@ -310,3 +312,76 @@ def test_a_fault_that_the_link_cannot_have_is_an_error(node, fault, text):
     with pytest.raises(UserError) as error:
         run.build(ICD, node, run.Options(faults=[fault]))
     assert text in str(error.value) and error.value.help
+
+
+STATUS_OF_ONE_BIT = """\
+icdgen: 1
+node: {name: valve, title: Valve, byte_order: big, bit_order: msb0}
+protocol:
+  stream:
+    delimited_by: slip
+    header: [{at: 0, bits: 8, role: id}]
+    commands:
+      ack: {message: Result, status: Has Time, success: [1], busy: [0]}
+messages:
+  - {name: Result, id: 128, kind: telemetry, length: 1, fields: [{at: 7, bits: 1, name: Has Time, type: uint}]}
+  - {name: Open, id: 1, kind: telecommand, length: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("sets", "fault", "lacks"),
+    [
+        (", busy: [0]", "nak=1", "needs `nak` in `stream: commands`, or values of a"),
+        ("", "busy=1", "needs `busy` in `stream: commands`, in the values of a"),
+    ],
+)
+def test_a_fault_that_no_response_can_express_names_what_the_icd_lacks(
+    tmp_path, sets, fault, lacks
+):
+    file = tmp_path / "valve.yaml"
+    file.write_text(STATUS_OF_ONE_BIT.replace(", busy: [0]", sets))
+    icd = load_or_exit((file,)).icd
+    with pytest.raises(UserError, match="describes no response") as error:
+        run.build(icd, None, run.Options(faults=[fault]))
+    assert lacks in str(error.value)
+
+
+def test_a_device_without_acknowledges_cannot_refuse(tmp_path):
+    text = (LINKS / "battery.yaml").read_text()
+    file = tmp_path / "battery.yaml"
+    file.write_text(re.sub(r"\n    acknowledge:\n(      .*\n)*", "\n", text))
+    with pytest.raises(UserError, match="it needs `uart: acknowledge`"):
+        run.build(load_or_exit((file,)).icd, None, run.Options(faults=["nak=1"]))
+
+
+def test_a_reason_that_some_refusals_cannot_have_is_a_warning(tmp_path):
+    file = tmp_path / "wheel.yaml"
+    file.write_text(
+        WHEEL.read_text().replace(
+            "response: {timeout_ms: 3000}",
+            "response: {nak: {message: Busy}, busy: none}",
+        )
+    )
+    chosen = ("--tcp", "0", "--every", "0", "--icd", str(file))
+    with simulator(*chosen, "--fault", "nak=1:Wrong mode", "--orders") as (
+        place,
+        child,
+    ):
+        sent = icdgen("send", "wheel", "Save", "--port", place, folder=file)
+        output, warnings = child.communicate("fault nak=50%:4\n", timeout=20)
+    assert (sent.returncode, sent.stderr.splitlines()[0]) == (1, "Save: refused")
+    assert output == "ok\n"
+    assert warnings.splitlines() == [
+        f"icdgen: `{fault}`: refusals of `Save` do not have this reason, as their "
+        "response has no field for it"
+        for fault in ("nak=1:Wrong mode", "nak=50%:4")
+    ]
+
+
+def test_a_telecommand_that_nothing_can_refuse_is_executed():
+    port = Port("wheel", every=0, faults=["nak=1"])
+    link = port.line.computer.program.link
+    port.write(stream_encode(link, RESET, b""))
+    assert port.line.computer.program.counts["telecommands"] == 1
+    assert "refused" not in port.line.computer.program.counts

@@ -193,7 +193,8 @@ def sim(
     loss = options.pop("loss")
     if loss is not None:
         options["faults"] = (*options["faults"], f"drop={loss}@packet,upload")
-    run.run(load_or_exit(icds).icd, name, ways, run.Options(**options), _print)
+    icd, settings = load_or_exit(icds).icd, run.Options(**options)
+    run.run(icd, name, ways, settings, _print, _warn)
 
 
 def _place(text: str) -> tuple[str, str, int]:
@@ -216,3 +217,7 @@ def _print(text: str) -> None:
     say(text)
     if sys.stdout is not None:
         sys.stdout.flush()  # a parent process may wait for this line
+
+
+def _warn(text: str) -> None:
+    say(f"icdgen: {text}", err=True)

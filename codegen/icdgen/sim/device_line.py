@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 
 from icdgen.errors import UserError
 from icdgen.sim.computer import Computer
 from icdgen.sim.faults import Fault, Faults, parse
+from icdgen.wording import listing, quote
+
+MOST_NAMES = 3  # of telecommands in a warning
 
 
 class DeviceLine:
     """A line with a queue of pieces to send. Times are in milliseconds."""
 
     keeps_packets = False  # whether each piece is a packet
-    can_refuse = True  # whether a response can refuse a telecommand
-    can_be_busy = False  # whether a response can say that the device is busy
+    # What the ICD lacks for a response that refuses a telecommand, or that says that the
+    # device is busy; empty if it has one.
+    no_refusal = ""
+    no_busy_response = ""
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
         self.computer, self.faults = computer, faults
+        self.warn: Callable[[str], object] = lambda text: None
         self._due: list[tuple[int, int, bytes]] = (
             []
         )  # heap of time, order of creation and bytes
@@ -26,17 +33,18 @@ class DeviceLine:
     def fault(self, text: str) -> Fault:
         """Return the fault of a text; see `icdgen.sim.faults.parse`.
 
-        Raise `icdgen.errors.UserError`, also for a fault that the link cannot have.
+        Call `warn` if some telecommands cannot have the reason. Raise
+        `icdgen.errors.UserError`, also for a fault that the link cannot have.
         """
         fault = parse(text)
-        if fault.kind == "busy" and not self.can_be_busy:
+        if fault.kind == "busy" and self.no_busy_response:
             raise UserError(
-                f"`{text}`: the ICD describes no response of a busy device",
+                f"`{text}`: the ICD describes no response of a busy device; {self.no_busy_response}",
                 "drop=SHARE@telecommand loses the telecommand instead",
             )
-        if fault.kind == "nak" and not self.can_refuse:
+        if fault.kind == "nak" and self.no_refusal:
             raise UserError(
-                f"`{text}`: the ICD describes no response that refuses a telecommand",
+                f"`{text}`: the ICD describes no response that refuses a telecommand; {self.no_refusal}",
                 "silence=SHARE sends no response instead",
             )
         if fault.reason is not None and not self.is_reason(fault.reason):
@@ -44,6 +52,13 @@ class DeviceLine:
             raise UserError(
                 f"`{text}`: `{fault.reason}` is no reason of a refusal",
                 f"reasons: {names}" if names else "a refusal has no reason here",
+            )
+        if fault.reason is not None and (names_without := self.without(fault.reason)):
+            shown = [quote(name) for name in names_without[:MOST_NAMES]]
+            if len(names_without) > MOST_NAMES:
+                shown.append(f"{len(names_without) - MOST_NAMES} more")
+            self.warn(
+                f"`{text}`: refusals of {listing(shown)} do not have this reason, as their response has no field for it"
             )
         return fault
 
@@ -55,6 +70,12 @@ class DeviceLine:
     def is_reason(self, text: str) -> bool:
         """Return whether a refusal can have this reason: a name or a number."""
         raise NotImplementedError
+
+    def without(self, reason: str) -> list[str]:
+        """Return the names of telecommands that can be refused, but not with this
+        reason.
+        """
+        return []
 
     def received(self, now: int, data: bytes) -> None:
         """Process bytes from the client, or a packet."""

@@ -4,7 +4,7 @@ telecommands.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, Literal
 
 from icdgen_runtime.wire.device import response_of, response_to
@@ -55,12 +55,25 @@ class EnvelopeLine(DeviceLine):
         responses = [
             row for exchange in self.form.exchanges for row in exchange.responses
         ]
-        verdicts = {verdict for row in responses for verdict in _verdicts(row)}
-        self._refusals = [row for row in responses if "nak" in _verdicts(row)]
-        self.can_refuse = "nak" in verdicts
-        self.can_be_busy = "busy" in verdicts or (
-            self.can_refuse and "busy" in self._names_of_causes
-        )
+        # Response that refuses a telecommand, by its id.
+        self._refusals = {
+            row.id: response
+            for row in self.form.telecommands
+            if (response := response_of(self.form, row.id, "nak")) is not None
+        }
+        if not self._refusals:
+            self.no_refusal = (
+                "it needs `nak` in `stream: commands`, or values of a `status` that do "
+                "not confirm"
+            )
+        is_busy_a_reason = bool(self._refusals) and "busy" in self._names_of_causes
+        if not is_busy_a_reason and not any(
+            response_of(self.form, row.id, "busy") for row in self.form.telecommands
+        ):
+            self.no_busy_response = (
+                "it needs `busy` in `stream: commands`, in the values of a `status`, or "
+                "in the `reasons` of refusals"
+            )
         responding = {response.telemetry for response in responses}
         self.unsolicited = [
             variant.message
@@ -75,14 +88,24 @@ class EnvelopeLine(DeviceLine):
     def reasons(self) -> tuple[str, ...]:
         names = (
             name
-            for response in self._refusals
+            for response in self._refusals.values()
             for value, name in response.reasons
             if _refuses_with(response, value)
         )
         return tuple(dict.fromkeys(names))
 
     def is_reason(self, text: str) -> bool:
-        return any(_reason(response, text) is not None for response in self._refusals)
+        return any(
+            _reason(response, text) is not None for response in self._refusals.values()
+        )
+
+    def without(self, reason: str) -> list[str]:
+        return [
+            variant.message.name
+            for id, response in self._refusals.items()
+            if _reason(response, reason) is None
+            for variant in self.ids.telecommand[id]
+        ]
 
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
@@ -121,7 +144,7 @@ class EnvelopeLine(DeviceLine):
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
         program, settings = self.computer.program, self.computer.settings
         fault = self.faults.fault("nak", "telecommand")
-        if fault is not None:
+        if fault is not None and id in self._refusals:
             self._refuse(now, id, data, "value", fault.reason)
             return
         is_busy = now < program.free_at or self.faults.hits("busy", "telecommand")
@@ -224,12 +247,6 @@ class EnvelopeLine(DeviceLine):
 
     def _send(self, now: int, on: str, id: int, data: bytes) -> None:
         self.queue(now, on, self.sender.encode(id, data))
-
-
-def _verdicts(response: Response) -> Iterator[Verdict]:
-    """Yield everything that a response can say."""
-    yield response.verdict
-    yield from (verdict for _, verdict in response.meanings)
 
 
 def _refuses_with(response: Response, number: int) -> bool:

@@ -31,6 +31,14 @@ class Line(DeviceLine):
             self.link, computer.program.facts.longest_telecommand
         )
         program = computer.program
+        is_acknowledged = program.facts.acknowledge is not None and any(
+            each.acknowledge for each in program.facts.telecommands.values()
+        )
+        if not is_acknowledged and program.facts.polled is None:
+            self.no_refusal = (
+                "it needs `uart: acknowledge`, and telecommands that are acknowledged"
+            )
+        self.no_busy_response = "only a framed link (`stream`) can have one"
         self._no_error = program.facts.errors.get("none", 0)
         enum = error_enum(program.icd, program.node)
         self._codes = {

@@ -94,11 +94,15 @@ def has_protocol(icd: Icd, node: Node) -> bool:
 
 
 def build(
-    icd: Icd, name: str | None, options: Options
+    icd: Icd,
+    name: str | None,
+    options: Options,
+    warn: Callable[[str], object] = lambda text: None,
 ) -> tuple[DeviceLine, control.Control]:
     """Return the device on its line, and its control.
 
-    Raise `icdgen.errors.UserError`.
+    ``warn`` is called for faults that apply in part only. Raise
+    `icdgen.errors.UserError`.
     """
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
@@ -118,6 +122,7 @@ def build(
         if computer.program.facts.stream
         else Line(computer, line_faults)
     )
+    line.warn = warn
     line_faults.faults = [line.fault(text) for text in options.faults]
     steps = control.read(options.script, icd, node, line) if options.script else []
     controller = control.Control(icd, node, line, steps)
@@ -132,9 +137,13 @@ def run(
     transports: list[Transport],
     options: Options,
     report: Callable[[str], None],
+    warn: Callable[[str], object] = lambda text: None,
 ) -> None:
-    """Run the device until interrupted. Raise `icdgen.errors.UserError`."""
-    line, controller = build(icd, name, options)
+    """Run the device until interrupted. Raise `icdgen.errors.UserError`.
+
+    ``report`` and ``warn`` are called with lines for the user.
+    """
+    line, controller = build(icd, name, options, warn)
     if line.keeps_packets and any(
         "udp" not in transport[:2] for transport in transports
     ):
