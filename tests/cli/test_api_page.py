@@ -12,7 +12,7 @@ import pytest
 
 from scripts import api_page
 from tests.c import harness
-from tests.rust.tools import Toolchain
+from tests.rust.tools import USED, Toolchain
 
 
 @pytest.fixture(scope="module")
@@ -74,9 +74,7 @@ def test_its_python_does_what_it_says_and_is_typed(made, tmp_path):
 
 def test_its_rust_does_what_it_says(made, tmp_path):
     tools = Toolchain("default")
-    library = tools.library(
-        made / "rust" / "src" / "lib.rs", "0", "--cfg", 'feature="std"'
-    )
+    library = tools.library(made / "rust" / "src" / "lib.rs", *USED)
     program = tools.program(api_page.FOLDER / "imu.rs", library, tmp_path / "imu")
     done = subprocess.run([program], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -18,7 +18,7 @@ from tests.c import harness as c
 from tests.conftest import ROOT
 from tests.python import packages
 from tests.rust import harness as rust
-from tests.rust.tools import STD, Toolchain
+from tests.rust.tools import USED, Toolchain
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SUITE = "scripts/test"  # this test is a part of it
@@ -167,6 +167,6 @@ def test_the_rust_shown_reads_the_message(battery, tmp_path):
     source = tmp_path / "program.rs"
     source.write_text(RUST % snippet("rust").replace("use battery::", "use icd::"))
     program = toolchain.program(
-        source, toolchain.library(library, "0", *STD), tmp_path / "program"
+        source, toolchain.library(library, *USED), tmp_path / "program"
     )
     assert subprocess.run([program], capture_output=True, text=True).stdout == "21.5\n"

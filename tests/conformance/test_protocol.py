@@ -18,7 +18,7 @@ from tests.conformance.driver import InProcess, Testee
 from tests.conformance.icds import icd_of, vectors_of
 from tests.conformance.languages import REFERENCE, Language, all_languages
 from tests.conformance.reference import Reference
-from tests.conformance.run import Result, batches, drive, run, table
+from tests.conformance.run import Batch, Result, batches, drive, run, table
 
 
 @pytest.fixture(scope="module")
@@ -31,26 +31,31 @@ def files(icd):
     return vectors_of(icd)
 
 
-def score(answer, icd, files) -> Result:
+@pytest.fixture(scope="module")
+def asked(icd, files) -> list[Batch]:
+    return list(batches(icd, files, 2, 1))
+
+
+def score(answer, asked) -> Result:
     """What the run finds in a testee that answers like this."""
     result = Result("any")
-    for batch in batches(icd, files, 2, 1):
+    for batch in asked:
         drive(InProcess(answer), batch, result)
     return result
 
 
-def is_found_out(answer, icd, files) -> bool:
+def is_found_out(answer, asked) -> bool:
     """Whether the run finds something; it goes no further then."""
     result = Result("any")
-    for batch in batches(icd, files, 2, 1):
+    for batch in asked:
         drive(InProcess(answer), batch, result)
         if result.differences:
             return True
     return False
 
 
-def test_the_reference_answers_every_request_as_it_must(icd, files):
-    result = score(Reference(icd).answer, icd, files)
+def test_the_reference_answers_every_request_as_it_must(icd, asked):
+    result = score(Reference(icd).answer, asked)
     assert result.differences == 0, result.shown
     assert result.messages >= sum(len(node.messages) for node in icd.nodes)
     assert result.vectors > 100 and result.requests > 3000
@@ -84,7 +89,7 @@ def test_the_reference_answers_every_request_as_it_must(icd, files):
         lambda a: a.update(node_type=4) if a.get("node_type") == 3 else None,
     ],
 )
-def test_a_testee_that_is_wrong_in_one_point_is_found_out(icd, files, change):
+def test_a_testee_that_is_wrong_in_one_point_is_found_out(icd, asked, change):
     reference = Reference(icd)
 
     def answer(line: bytes) -> dict:
@@ -92,10 +97,10 @@ def test_a_testee_that_is_wrong_in_one_point_is_found_out(icd, files, change):
         change(made)
         return made
 
-    assert is_found_out(answer, icd, files)
+    assert is_found_out(answer, asked)
 
 
-def test_a_setter_that_truncates_is_found_out(icd, files, monkeypatch):
+def test_a_setter_that_truncates_is_found_out(icd, asked, monkeypatch):
     nearest = codec.raw_from_physical
 
     def truncating(field, value):
@@ -106,7 +111,7 @@ def test_a_setter_that_truncates_is_found_out(icd, files, monkeypatch):
         )
 
     monkeypatch.setattr(codec, "raw_from_physical", truncating)
-    assert is_found_out(Reference(icd).answer, icd, files)
+    assert is_found_out(Reference(icd).answer, asked)
 
 
 def test_a_physical_value_computed_by_multiplication_is_found_out(

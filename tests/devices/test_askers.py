@@ -12,7 +12,7 @@ from tests.c import harness as c
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT
 from tests.rust import harness as rust
-from tests.rust.tools import Toolchain, run
+from tests.rust.tools import USED, Toolchain, run
 
 ICD = icd_of([ROOT / "examples" / "links" / "ubx.yaml"])
 SHOWN = documents.text("reference/wire-framing").split("## Client\n")[1]
@@ -187,6 +187,6 @@ def test_rust_asks_and_is_answered(tmp_path):
         RUST % shown("rust", "let mut client", "client.send(")
     )
     program = tools.program(
-        tmp_path / "ask.rs", tools.library(crate, "0"), tmp_path / "ask"
+        tmp_path / "ask.rs", tools.library(crate, *USED), tmp_path / "ask"
     )
     assert run(program).splitlines() == EXPECTED

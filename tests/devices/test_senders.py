@@ -14,7 +14,7 @@ from tests.c import harness as c
 from tests.conformance.icds import icd_of
 from tests.conftest import ROOT
 from tests.rust import harness as rust
-from tests.rust.tools import Toolchain, run
+from tests.rust.tools import USED, Toolchain, run
 
 ICD = icd_of([ROOT / "examples" / "links"])
 C = """
@@ -139,6 +139,6 @@ def test_rust_counts_what_it_sends(expected, tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
     (tmp_path / "send.rs").write_text(RUST)
     program = tools.program(
-        tmp_path / "send.rs", tools.library(crate, "0"), tmp_path / "send"
+        tmp_path / "send.rs", tools.library(crate, *USED), tmp_path / "send"
     )
     assert run(program).split() == expected

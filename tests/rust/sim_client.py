@@ -19,7 +19,7 @@ from icdgen.icd.places import NodePlace
 from icdgen.protocol import facts
 from icdgen.sim.values import allowed_values
 from tests.rust import harness
-from tests.rust.tools import STD, Toolchain
+from tests.rust.tools import USED, Toolchain
 
 HERE = Path(__file__).parent
 NODE = "cubeacp"
@@ -105,7 +105,7 @@ def build(folder: Path) -> list[str]:
     icd, tools = harness.shipped(), Toolchain("default")
     shutil.rmtree(folder / "rust", ignore_errors=True)  # of an earlier build
     library = tools.library(
-        harness.generate(icd, folder), "0", *STD
+        harness.generate(icd, folder), *USED
     )  # with checks of arithmetic
     main = folder / "sim_client.rs"
     main.write_text(source(icd), encoding="utf-8")

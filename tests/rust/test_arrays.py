@@ -9,7 +9,7 @@ import pytest
 from tests.rust import harness
 from tests.rust.conftest import Subject
 from tests.rust.test_panics import suspicious, symbols
-from tests.rust.tools import Toolchain, run, toolchains
+from tests.rust.tools import USED, Toolchain, run, toolchains
 
 ICD = """\
 icdgen: 1
@@ -95,7 +95,7 @@ def test_elements_are_values_and_an_index_is_held_to_the_count(
     (tmp_path / "user.rs").write_text(USER)
     run(
         tools.program(
-            tmp_path / "user.rs", tools.library(arrays.crate, "0"), tmp_path / "user"
+            tmp_path / "user.rs", tools.library(arrays.crate, *USED), tmp_path / "user"
         )
     )
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.rust import harness
-from tests.rust.tools import STD, Toolchain
+from tests.rust.tools import USED, Toolchain
 
 DECLARED = re.compile(r"^pub (?:struct|enum|trait) (\w+)", re.MULTILINE)
 EXAMPLE = re.compile(r"^ *//[/!] ```$", re.MULTILINE)
@@ -21,16 +21,13 @@ def examples(crate: Path, only: str = "") -> int:
     return sum(len(EXAMPLE.findall(file.read_text())) for file in files) // 2
 
 
-UNWINDS = ("-C", "panic=unwind")  # as examples do
-
-
 def test_each_of_them_runs(subject):
     """All; where each is a program of its own, those of the node with the fewest
     messages.
     """
-    library, tools = Toolchain("default").library(
-        subject.crate, "0", *UNWINDS, *STD
-    ), Toolchain("default")
+    library, tools = Toolchain("default").library(subject.crate, *USED), Toolchain(
+        "default"
+    )
     least = min(subject.icd.nodes, key=lambda node: len(node.messages))
     only = "" if tools.merges else f"/{least.name}/"
     said = tools.tested(subject.crate, library, only)
@@ -57,7 +54,7 @@ def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
 
 
 def test_one_that_says_otherwise_fails(shipped, tmp_path):
-    library = Toolchain("default").library(shipped.crate, "0", *UNWINDS, *STD)
+    library = Toolchain("default").library(shipped.crate, *USED)
     text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
     start = text.index("/// ```")
     example = text[start : text.index("#[derive", start)]

@@ -12,7 +12,7 @@ from tests.conformance import composites
 from tests.rust import harness
 from tests.rust.conftest import Subject
 from tests.rust.test_panics import suspicious, symbols
-from tests.rust.tools import Toolchain, run, toolchains
+from tests.rust.tools import USED, Toolchain, run, toolchains
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_parts_are_what_the_reference_reads_there(request, which, toolchain, tmp
     run(
         tools.program(
             tmp_path / "user.rs",
-            Toolchain(toolchain).library(subject.crate, "0"),
+            Toolchain(toolchain).library(subject.crate, *USED),
             tmp_path / "user",
         )
     )

@@ -9,7 +9,7 @@ import pytest
 from tests.conformance.icds import LINKS
 from tests.conftest import ROOT
 from tests.rust import harness
-from tests.rust.tools import Toolchain, run, toolchains
+from tests.rust.tools import USED, Toolchain, run, toolchains
 
 PROGRAM = """
 use icd::datagram::{self, LevelOfAnother, LevelOfTheFirst, ShortLevel, LINK};
@@ -156,7 +156,7 @@ def test_each_outcome_is_an_event_with_its_response(toolchain, tmp_path):
     run(
         Toolchain(toolchain).program(
             tmp_path / "user.rs",
-            Toolchain(toolchain).library(crate, "0"),
+            Toolchain(toolchain).library(crate, *USED),
             tmp_path / "user",
         )
     )
@@ -171,7 +171,7 @@ def test_an_event_is_read_as_the_message_that_it_brings_and_as_no_other(
     run(
         Toolchain(toolchain).program(
             tmp_path / "user.rs",
-            Toolchain(toolchain).library(crate, "0"),
+            Toolchain(toolchain).library(crate, *USED),
             tmp_path / "user",
         )
     )

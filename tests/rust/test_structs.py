@@ -10,7 +10,7 @@ from tests.c.test_structs import ICD
 from tests.rust import harness
 from tests.rust.conftest import Subject
 from tests.rust.test_panics import suspicious, symbols
-from tests.rust.tools import Toolchain, run, toolchains
+from tests.rust.tools import USED, Toolchain, run, toolchains
 
 USER = """\
 use icd::demo::enums::System;
@@ -58,7 +58,7 @@ def test_a_struct_is_a_value_of_its_own_wherever_it_stands(
     (tmp_path / "user.rs").write_text(USER)
     run(
         tools.program(
-            tmp_path / "user.rs", tools.library(structs.crate, "0"), tmp_path / "user"
+            tmp_path / "user.rs", tools.library(structs.crate, *USED), tmp_path / "user"
         )
     )
 

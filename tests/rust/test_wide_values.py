@@ -12,7 +12,7 @@ from icdgen.backends.rust.text import string
 from icdgen.backends.rust.types import integer_type
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
-from tests.rust.tools import Toolchain, run
+from tests.rust.tools import USED, Toolchain, run
 
 CASE = """\
     let mut message = icd::{node}::{type}::from_array(&[0; {length}]);
@@ -65,5 +65,5 @@ def test_what_does_not_fit_is_refused_by_name(subject, tmp_path):
     source.write_text(
         f"#![allow(unused_imports)]\nuse icd::Coded;\n{functions}fn main() {{\n{calls}}}\n"
     )
-    library = Toolchain("default").library(subject.crate, "0")
+    library = Toolchain("default").library(subject.crate, *USED)
     run(tools.program(source, library, tmp_path / "main"))

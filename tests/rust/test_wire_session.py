@@ -13,7 +13,7 @@ import pytest
 from tests import documents
 from tests.conftest import ROOT
 from tests.rust import harness
-from tests.rust.tools import STD, Toolchain, run, toolchains
+from tests.rust.tools import USED, Toolchain, run, toolchains
 
 PROGRAM = Path(__file__).with_name("session.rs")
 WHOLE = """\
@@ -39,7 +39,7 @@ OTHERS = {
 
 def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path):
     tools = Toolchain("default")
-    library = Toolchain("default").library(shipped.crate, "0", *STD)
+    library = Toolchain("default").library(shipped.crate, *USED)
     run(tools.program(PROGRAM, library, tmp_path / "program"))
 
 
@@ -54,7 +54,7 @@ def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(
     run(
         tools.program(
             PROGRAM.with_name("stream_session.rs"),
-            tools.library(crate, "0", *STD),
+            tools.library(crate, *USED),
             tmp_path / "program",
         )
     )
@@ -86,7 +86,7 @@ def test_the_documented_handling_of_a_reason_compiles(tmp_path):
         harness.read(ROOT / "examples" / "links" / "wheel.yaml"), tmp_path
     )
     (tmp_path / "user.rs").write_text(DOCUMENTED % shown[1])
-    library = tools.library(crate, "0", *STD)
+    library = tools.library(crate, *USED)
     tools.program(tmp_path / "user.rs", library, tmp_path / "program")
 
 
@@ -101,7 +101,7 @@ def test_sessions_return_the_outcome_of_each_telecommand_with_its_reason(
     run(
         tools.program(
             PROGRAM.with_name("outcome_session.rs"),
-            tools.library(crate, "0", *STD),
+            tools.library(crate, *USED),
             tmp_path / "program",
         )
     )
@@ -113,7 +113,7 @@ def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
     where it is taken from an event.
     """
     tools = Toolchain(name)
-    library = Toolchain(name).library(shipped.crate, "0")
+    library = Toolchain(name).library(shipped.crate, *USED)
 
     def compiled(text: str) -> str:
         source = tmp_path / "main.rs"

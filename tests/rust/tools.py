@@ -17,6 +17,9 @@ OLDEST = "1.63"
 MERGING = "2024"
 MERGES = (1, 85)  # the oldest that knows that edition
 STD = ("--cfg", 'feature="std"')  # the crate with the feature
+# How a crate is compiled for programs of tests, the same for all, so that it is
+# compiled once. Examples in documentation need a crate that can unwind.
+USED = ("0", "-C", "panic=unwind", *STD)
 
 
 def run(

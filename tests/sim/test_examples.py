@@ -17,7 +17,7 @@ from tests.c import harness as c
 from tests.conftest import ROOT
 from tests.python import packages
 from tests.rust import harness as rust
-from tests.rust.tools import STD, Toolchain
+from tests.rust.tools import USED, Toolchain
 from tests.sim.device import simulator
 
 EXAMPLES = {
@@ -37,9 +37,7 @@ def headers(tmp_path_factory) -> Path:
 def crate(tmp_path_factory) -> Path:
     """The compiled crate, with std."""
     folder = tmp_path_factory.mktemp("crate")
-    return Toolchain("default").library(
-        rust.generate(rust.shipped(), folder), "0", *STD
-    )
+    return Toolchain("default").library(rust.generate(rust.shipped(), folder), *USED)
 
 
 @pytest.fixture(scope="module")
