@@ -207,6 +207,63 @@ def test_monitor_shows_why_a_request_was_refused():
         assert text in row and "nothing came" not in shown.stdout
 
 
+def only_asked(folder):
+    """The ICD of a wheel that sends no telemetry without a request."""
+    text = WHEEL.read_text()
+    begin, end = text.index("  - name: Status\n"), text.index("  - name: Events\n")
+    file = folder / "wheel.yaml"
+    file.write_text(text[:begin] + text[end:])
+    return file
+
+
+def test_monitor_says_at_once_which_telemetry_must_be_requested(tmp_path):
+    file = only_asked(tmp_path)
+    with simulator("--tcp", "0", "--icd", str(file)) as (place, _):
+        words = ("--port", place, "--once", "--every", "0.2")
+        shown = icdgen("monitor", "wheel", *words, folder=file)
+        asked = icdgen("monitor", "wheel", "Events", *words, folder=file)
+    assert (shown.returncode, shown.stdout) == (1, "nothing came\n")
+    assert shown.stderr == (
+        "icdgen: wheel sends telemetry only in response to telecommands; name messages "
+        "to request them, such as `icdgen monitor wheel Events`; they can be: Events\n"
+    )
+    assert (asked.returncode, asked.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("fault", "event", "message", "response"),
+    [
+        ("nak=1:Wrong mode", "refused", "Events", "Nak"),
+        ("busy=1", "busy", "Events", None),
+        ("late=1:250@reply", "late", "Events", "Events"),
+        ("late=1:450@acknowledge", "stray", "Ack", "Ack"),
+    ],
+)
+def test_monitor_prints_responses_that_are_no_telemetry_as_json(
+    tmp_path, fault, event, message, response
+):
+    file = only_asked(tmp_path)
+    text = file.read_text()
+    if event == "stray":  # later than `late_ms` after the time-out
+        file.write_text(text.replace("{ack: none, reply", "{reply"))
+    elif event == "late":
+        file.write_text(text.replace("late_ms: 200", "late_ms: 5000"))
+    chosen = ("--tcp", "0", "--every", "0", "--fault", fault, "--icd", str(file))
+    with simulator(*chosen) as (place, _):
+        words = ("--once", "--every", "1", "--timeout", "100", "--retries", "0")
+        shown = icdgen(
+            *("monitor", "wheel", "Events", "--port", place, "--format", "json"),
+            *words,
+            folder=file,
+        )
+    events = [json.loads(line) for line in shown.stdout.splitlines()]
+    (report,) = (each for each in events if each.get("event") == event)
+    assert report["message"] == message and report["time"].endswith("Z")
+    assert report.get("response", {}).get("message") == response
+    if event == "refused":
+        assert (report["reason"], report["code"]) == ("Wrong mode", 4)
+
+
 def test_the_acknowledge_of_a_telecommand_that_has_ended_does_not_confirm_the_next():
     session, port, heard = talking("wheel", every=0, faults=["late=1:250@acknowledge"])
     assert session.start(Request("telecommand", SET_SPEED, SPEED)) == Timeout(

@@ -56,7 +56,8 @@ def monitor(
     given MESSAGEs are shown, and only responses to telecommands are requested. A
     message without a response keeps its last values and shows their age. On a terminal
     the table stays in place and scrolls if it is longer (arrows, PgUp, PgDn, Home,
-    End). In a pipe each round is printed; --format json prints an object per frame. A
+    End). In a pipe each round is printed; --format json prints an object per frame,
+    and one with the key `event` per refusal, busy device, and late or stray response. A
     lost connection is opened again when possible. Exit status: 1 if a frame had no
     response in the last round.
     """
@@ -68,6 +69,8 @@ def monitor(
     icd = load_or_exit(icds).icd
     node, messages = find_named(icd, words)
     watched = Monitor(icd, node.name, messages)
+    if watched.hint:
+        say(f"icdgen: {watched.hint}", err=True)
     rounds = _Rounds(watched, 1 if once else count, every, form)
     live = (
         form == "text"
@@ -150,16 +153,18 @@ class _Rounds:
 
     def _print(self, screen: Screen) -> None:
         self.number += 1
+        reports = self.watched.take_reports()
         if self.form == "json":
-            _print_json(self.watched)
+            frames = [frame.to_json() for frame in self.watched.frames()]
+            _print_json([*frames, *reports])
         elif not screen.live:
             say("\n" * (self.number > 1) + self.watched.text())
             sys.stdout.flush()
 
 
-def _print_json(watched: Monitor) -> None:
+def _print_json(objects: list[dict[str, Any]]) -> None:
     # RFC 3339 with Z instead of +00:00.
     now = datetime.now(UTC).isoformat(timespec="milliseconds")[:-6] + "Z"
-    for frame in watched.frames():
-        click.echo(json.dumps({"time": now, **frame.to_json()}))
+    for each in objects:
+        click.echo(json.dumps({"time": now, **each}))
     sys.stdout.flush()

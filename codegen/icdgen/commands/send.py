@@ -59,7 +59,7 @@ def send(
 
     from icdgen import tables
     from icdgen.link.line_statistics import LineStatistics
-    from icdgen.link.outcomes import has_further_fields
+    from icdgen.link.outcomes import has_further_fields, outcome_report
     from icdgen.values.encode import encode
     from icdgen.values.find import find_frame
     from icdgen.values.text import to_text
@@ -82,7 +82,8 @@ def send(
     response = _response(icd, node, outcome)
     status = _STATUSES[type(outcome).__name__]
     if form == "json":
-        click.echo(json.dumps(_report(frame, outcome, response)))
+        report = outcome_report(frame.message.name, outcome, response)
+        click.echo(json.dumps(report))
     else:
         text = _outcome_text(icd, node, protocol_facts, frame, outcome, response)
         say(f"{_sent(frame)}: {text}", err=status != 0)
@@ -145,21 +146,6 @@ def _response(icd: Icd, node: Node, outcome: Outcome) -> Frame | None:
     name = outcome.type.NAME
     message = next(each for each in icd.messages_of(node) if each.name == name)
     return frame(icd, node, message, outcome.data)
-
-
-def _report(frame: Frame, outcome: Outcome, response: Frame | None) -> dict[str, Any]:
-    """Return the outcome as JSON, without the keys that this kind of outcome does not
-    have.
-    """
-    report = {
-        "message": frame.message.name,
-        "event": type(outcome).__name__.lower(),
-        "reason": getattr(outcome, "reason", None),
-        "code": getattr(outcome, "code", None),
-        "attempts": outcome.attempts,
-        "response": response.to_json() if response else None,
-    }
-    return {key: value for key, value in report.items() if value is not None}
 
 
 def _outcome_text(

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen_runtime.wire.events import (
     Arrived,
     Busy,
     Done,
+    Late,
     LineError,
     Log,
     Malformed,
     Outcome,
     Refused,
+    Stray,
 )
 
 from icdgen import tables
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
 from icdgen.link.line_statistics import FAULTS, LineStatistics
-from icdgen.link.outcomes import failure_text
+from icdgen.link.outcomes import failure_text, outcome_report
 from icdgen.protocol import facts
 from icdgen.tables import Column
 from icdgen.values.find import find_message, find_node
@@ -62,6 +65,7 @@ class Monitor:
         self.silent: set[str] = set()  # messages not received in the last round
         self.faults: dict[int, str] = {}  # last error of a message, by id
         self.failures: dict[str, str] = {}  # refusal of the last request, by message
+        self._reports: list[dict[str, Any]] = []  # see `take_reports`
 
     @property
     def listens(self) -> bool:
@@ -70,6 +74,33 @@ class Monitor:
         A round then ends after its time.
         """
         return self.facts.stream is not None
+
+    @property
+    def hint(self) -> str:
+        """What to do if all telemetry must be requested and no message is named; empty
+        otherwise.
+        """
+        form = self.facts.stream
+        if form is None or self.messages:
+            return ""
+        responses = [row for exchange in form.exchanges for row in exchange.responses]
+        responding = {response.telemetry for response in responses}
+        if any(row.id not in responding for row in form.telemetry):
+            return ""
+        asked = {row.requests for row in form.telecommands}
+        names = [
+            message.name
+            for message in self.icd.messages_of(self.node)
+            if message.telemetry_id is not None and message.telemetry_id in asked
+        ]
+        what = f"{self.node.name} sends telemetry only in response to telecommands"
+        if not names:
+            return f"{what}, and none can be requested; `icdgen send` shows responses"
+        words = shlex.join(["icdgen", "monitor", self.node.name, names[0]])
+        return (
+            f"{what}; name messages to request them, such as `{words}`; they can be: "
+            f"{', '.join(names)}"
+        )
 
     @property
     def failed(self) -> bool:
@@ -108,6 +139,10 @@ class Monitor:
         if isinstance(outcome, Refused | Busy):
             text = failure_text(self.icd, self.node, outcome)
             self.failures[message.name] = text
+            refusal = None
+            if isinstance(outcome, Refused) and outcome.type:
+                refusal = self._frame(outcome.type.NAME, outcome.data)
+            self._reports.append(outcome_report(message.name, outcome, refusal))
 
     def _received(self, message: Message, id: int, data: bytes) -> None:
         self.awaited.discard(message.name)
@@ -128,7 +163,9 @@ class Monitor:
     def event(self, event: Event) -> None:
         """Record unsolicited telemetry and errors."""
         self.statistics.event(event)
-        if isinstance(event, Malformed):
+        if isinstance(event, Late | Stray):
+            self._reports.append(self._response_report(event))
+        elif isinstance(event, Malformed):
             self.faults[event.id] = "wrong length"
         elif (
             isinstance(event, LineError)
@@ -150,17 +187,36 @@ class Monitor:
                 if message and message.length == len(log_frame.data):
                     self._keep(message, log_frame.data)
 
+    def _response_report(self, event: Late | Stray) -> dict[str, Any]:
+        """Return a response without a request as JSON."""
+        kind = type(event).__name__.lower()
+        message = None
+        if event.id is not None:
+            message = self.statistics.message_of(event.id, event.data)
+        if message is None:
+            ids = {} if event.id is None else {"id": event.id}
+            return {"event": kind, **ids, "bytes": event.data.hex()}
+        response = self._frame(message.name, event.data).to_json()
+        return {"message": message.name, "event": kind, "response": response}
+
+    def take_reports(self) -> list[dict[str, Any]]:
+        """Return refusals and busy devices, and responses without a request, since the
+        previous call, as JSON.
+        """
+        reports, self._reports = self._reports, []
+        return reports
+
     def frames(self) -> Iterator[Frame]:
         """Return the received frames of messages that are not silent."""
         yield from (
-            self._frame(name)
+            self._frame(name, self.last[name])
             for name in self._names()
             if name in self.last and name not in self.silent
         )
 
-    def _frame(self, name: str) -> Frame:
+    def _frame(self, name: str, data: bytes) -> Frame:
         message = next(m for m in self.icd.messages_of(self.node) if m.name == name)
-        return frame(self.icd, self.node, message, self.last[name])
+        return frame(self.icd, self.node, message, data)
 
     def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
         """Return message, field, value, unit and remarks of each row.
@@ -181,7 +237,7 @@ class Monitor:
             age = time.monotonic() - self.received_at[name]
             if name in self.silent or age >= OLD_SECONDS:
                 remarks.append(f"last value, {_age_text(age)} old")
-            for number, row in enumerate(self._frame(name).rows):
+            for number, row in enumerate(self._frame(name, self.last[name]).rows):
                 of_row = "; ".join(
                     [*remarks, *row.remarks] if number == 0 else row.remarks
                 )
@@ -196,9 +252,10 @@ class Monitor:
     def text(self) -> str:
         """Return the table for a pipe, or for a single round."""
         columns = [Column(title, right=title == "value") for title in COLUMNS]
-        table = tables.render(
-            columns, list(self.rows()), tables.width_of(sys.stdout)
-        ).rstrip("\n")
+        rows = list(self.rows())
+        table = tables.render(columns, rows, tables.width_of(sys.stdout)).rstrip("\n")
+        if not rows:
+            table = "nothing came"
         return "\n".join(filter(None, (table, self.statistics.text())))
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen_runtime.wire.events import Busy, Outcome, Refused, Timeout
 
 from icdgen.icd.error_codes import error_enum
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.responses import declared_responses, echoes_of, reason_of
+from icdgen.values.frame import Frame
 
 
 def reason_name(icd: Icd, node: Node, outcome: Outcome) -> str | None:
@@ -33,6 +36,23 @@ def failure_text(icd: Icd, node: Node, outcome: Refused | Busy) -> str:
         return word
     name = reason_name(icd, node, outcome) or "unknown error"
     return f"{word}: {name} (code {outcome.code})"
+
+
+def outcome_report(
+    message: str, outcome: Outcome, response: Frame | None
+) -> dict[str, Any]:
+    """Return the outcome of a request of ``message`` as JSON, without the keys that this
+    kind of outcome does not have.
+    """
+    report = {
+        "message": message,
+        "event": type(outcome).__name__.lower(),
+        "reason": getattr(outcome, "reason", None),
+        "code": getattr(outcome, "code", None),
+        "attempts": outcome.attempts,
+        "response": response.to_json() if response else None,
+    }
+    return {key: value for key, value in report.items() if value is not None}
 
 
 def attempts_text(outcome: Busy | Timeout) -> str:
