@@ -16,12 +16,14 @@ import yaml
 from icdgen.loading import load
 from icdgen.recognize import recognize
 from tests.conftest import ROOT
+from tests.sim.device import simulator
 
 
+@pytest.mark.parametrize("link", ["uart", "framed"])
 def test_the_first_icd_is_clean_formatted_and_generates_every_language(
-    icdgen, tmp_path
+    icdgen, tmp_path, link
 ):
-    result = icdgen("init", "battery")
+    result = icdgen("init", "battery", "--link", link)
     assert result.status == 0 and "icd/battery.yaml written" in result.out
     checked = icdgen("check")
     assert checked.status == 0 and "no findings" in checked.out, checked.out
@@ -84,6 +86,44 @@ def test_the_first_device_answers_in_the_simulator(icdgen, tmp_path):
         simulator.terminate()
         simulator.wait()
         simulator.stdout.close()
+
+
+def test_a_first_device_with_frames_accepts_refuses_and_answers(icdgen, tmp_path):
+    icdgen("init", "pump", "--link", "framed")
+    with simulator("--tcp", "0", "--strict", "--icd", str(tmp_path / "icd")) as (
+        place,
+        _,
+    ):
+        outcomes = {
+            words: icdgen("send", *words, "--port", place)
+            for words in (
+                ("Set Mode", "mode=Normal"),
+                ("Set Mode", "mode=9", "--raw"),
+                ("Get Identification",),
+                ("Reset", "--yes"),
+            )
+        }
+        shown = icdgen("monitor", "--port", place, "--once")
+    results = [
+        (each.status, (each.out or each.err).splitlines()[0])
+        for each in outcomes.values()
+    ]
+    assert results == [
+        (0, "Set Mode: acknowledged with Ack"),
+        (1, "Set Mode: refused: Out of range (code 3)"),
+        (0, "Get Identification: answered with Identification"),
+        (
+            0,
+            "Reset with Magic number 90 (0x5A): sent; the ICD describes no response to it",
+        ),
+    ]
+    assert shown.status == 0 and "Temperature" in shown.out
+
+
+def test_the_link_of_a_first_device_is_named_or_copied(icdgen, tmp_path):
+    result = icdgen("init", "pump", "--link", "framed", "--from", "cubeacp")
+    assert result.status == 2 and "leave out one of the two" in result.err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_its_frames_are_recognized(icdgen, tmp_path):
@@ -276,6 +316,8 @@ def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path
         "commands"
     }
     assert pump.protocol["stream"]["header"] == origin.protocol["stream"]["header"]
+    has_responses = "commands" in origin.protocol["stream"]
+    assert ("`commands` is not copied" in result.out) == has_responses
 
 
 def test_editors_find_the_schema_that_is_written_beside_the_first_device(

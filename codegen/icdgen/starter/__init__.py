@@ -19,6 +19,9 @@ from icdgen.naming import latin
 if TYPE_CHECKING:
     from icdgen.starter.style import Style
 
+# Link of the device -> template of its first ICD.
+TEMPLATES = {"uart": "device.yaml", "framed": "framed.yaml"}
+
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 _CONFIG = """\
 name = "{name}"  # of the project, and of what is installed: the Python package, the Rust crate
@@ -37,13 +40,17 @@ crate = "{package}"  # the name in `use {package}::{name}`
 
 
 def write(
-    folder: Path, name: str, style: Style | None = None, origin: str = ""
+    folder: Path,
+    name: str,
+    style: Style | None = None,
+    origin: str = "",
+    link: str = "uart",
 ) -> list[Path]:
     """Write ``icd/NAME.yaml``, its errata file and, if they do not exist, the schema
     and ``icdgen.toml``.
 
     Returns the paths of the written files, relative to ``folder``. With a ``style``,
-    the ICD has the style of the node ``origin``. Raises `UserError`, before anything is
+    the ICD has the style of the node ``origin``. ``link`` is a key of `TEMPLATES`. Raises `UserError`, before anything is
     written, if the name is invalid or a file of this name exists.
     """
     if not _NAME.fullmatch(name):
@@ -57,7 +64,7 @@ def write(
             f"`{name}` cannot name a node: lower-case letters, digits and _, a letter first",
             help,
         )
-    device = _filled("device.yaml", name)
+    device = _filled(TEMPLATES[link], name)
     if style is not None:
         from icdgen.starter.style import in_style
 

@@ -55,6 +55,7 @@ class Style:
     units: list[Tree]
     enums: list[Tree]
     messages: list[Tree]
+    lacks_responses: bool  # whether the responses to telecommands are not copied
 
 
 def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
@@ -75,6 +76,7 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
             f"{node.name} does not say how its messages travel",
             "take the style of another node",
         )
+    lacks_responses = "commands" in (sections.get("stream") or {})
     for key, omitted in _KEYS_ABOUT_MESSAGES.items():
         if key in protocol:
             protocol[key] = {
@@ -114,6 +116,7 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
         list(map(spelled.plain, units)),
         list(map(spelled.plain, enums)),
         list(map(spelled.plain, messages)),
+        lacks_responses,
     )
 
 
