@@ -21,10 +21,10 @@ from tests.conftest import ROOT
 
 RUNTIME = ROOT / "runtime" / "c"
 RECORD = RUNTIME / "misra.yaml"
+# The checks of cppcheck itself, of which nothing is used here, stay off.
 COMMAND = (
     "cppcheck",
     "--addon=misra",
-    "--enable=style",
     "--std=c99",
     "--platform=unix64",
     "--quiet",

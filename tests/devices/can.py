@@ -17,12 +17,14 @@ from icdgen.diagnostics import Findings
 from tests.devices.definition import Definition, Definitions, Values
 
 
-def databases() -> Iterator[Definitions]:
-    """Every DBC file of the package. cantools judges what is left without the faults
-    for which it would refuse all of it.
+def databases(words: str = "") -> Iterator[Definitions]:
+    """Every DBC file of the package whose name contains these words. cantools judges
+    what is left without the faults for which it would refuse all of it.
     """
     reader = can.Dbc()
     for number, path in enumerate(files()):
+        if words not in path.name:
+            continue
         try:
             read = run.read(path, reader)
         except Findings:

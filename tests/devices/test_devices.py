@@ -14,7 +14,7 @@ import pytest
 from tests.conformance.build import build
 from tests.conformance.driver import Testee
 from tests.conformance.languages import all_languages
-from tests.devices import sunspec
+from tests.devices import can, sunspec
 from tests.devices.__main__ import measure
 from tests.devices.agree import Agreement, compare
 from tests.devices.definition import Definitions
@@ -138,11 +138,7 @@ def test_a_wrong_constant_of_messages_that_share_an_id_is_noticed(
 
 
 def test_a_wrong_condition_is_noticed(tmp_path: Path) -> None:
-    definitions = next(
-        one
-        for one in PROTOCOLS["can"].load()
-        if "high_voltage" in str(one.node["title"])
-    )
+    (definitions,) = can.databases("high_voltage")
     definitions.messages = [
         one for one in definitions.messages if one.name == "Battery_Module_1"
     ]
