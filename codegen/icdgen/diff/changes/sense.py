@@ -12,8 +12,15 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair
 from icdgen.diff.rule import CheckResult, rule
 from icdgen.diff.similar import extends, same_sense
 from icdgen.icd.model import Message
-from icdgen.icd.responses import ACK, KINDS
+from icdgen.icd.responses import ACK, BUSY, KINDS, NAK, PROGRESS
 from icdgen.wording import quote
+
+# What a program does not learn from a response that it does not know.
+_NOT_LEARNT = {
+    NAK: "that the telecommand was refused",
+    BUSY: "that the device is busy",
+    PROGRESS: "that the telecommand is still being executed",
+}
 
 
 @rule("DIF212", "message")
@@ -47,14 +54,22 @@ def general_responses_changed(pair: NodePair, ctx: Context) -> Iterator[CheckRes
     for fact in facts(pair.old, pair.new):
         if fact.is_word or not RESPONSES.fullmatch(fact.path):
             continue
+        # The keys below `commands`; none if the whole section is new or gone.
+        keys = fact.path.split(".")[3:]
+        if len(keys) == 1 and _response(fact.old) == _response(fact.new):
+            continue  # another spelling
         was, now = shown(fact.old), shown(fact.new)
-        steps = fact.path.split(".")
-        # The key after `commands`; the whole section may be new.
-        kind = steps[3] if len(steps) > 3 else ""
-        effect = _effect_of_response(kind, fact.old, fact.new)
+        what = _response_words(keys)
+        if fact.old is None:
+            text = f"{what} is new: {now}"
+        elif fact.new is None:
+            text = f"{what} is gone; it was {was}"
+        else:
+            text = f"{what} is {now}, was {was}"
+        effect = _effect_of_response(keys, fact.old, fact.new)
         yield CheckResult(
-            f"`{fact.path}` is {now or 'not stated'}, was {was or 'not stated'}",
-            (steps[-1],),
+            text,
+            (fact.path.rsplit(".", 1)[-1],),
             was,
             now,
             (effect,) if effect else (),
@@ -62,6 +77,22 @@ def general_responses_changed(pair: NodePair, ctx: Context) -> Iterator[CheckRes
             where=pair.where()._replace(section=fact.path),
             places=fact.places,
         )
+
+
+def _response(value: object) -> object:
+    """Return a response with the key ``message`` if it is only a name."""
+    return {"message": value} if isinstance(value, str) else value
+
+
+def _response_words(keys: list[str]) -> str:
+    """Return the words for a value below `commands`."""
+    if not keys:
+        return "the section `commands` with responses to telecommands"
+    kind, *inner = keys
+    if kind not in KINDS:
+        return f"`{'.'.join(keys)}` in `commands`"
+    response = f"the response `{kind}` to telecommands"
+    return f"`{'.'.join(inner)}` of {response}" if inner else response
 
 
 @rule("DIF217", "message")
@@ -92,20 +123,27 @@ def _responses(message: Message) -> str:
     return "those of all telecommands" if own is None else shown(own)
 
 
-def _effect_of_response(kind: str, old: object, new: object) -> str:
-    """Return what a client of the old ICD does with a response to all telecommands;
+def _effect_of_response(keys: list[str], old: object, new: object) -> str:
+    """Return what a program with the old ICD does with a response to all telecommands;
     empty if it is not affected.
     """
-    if kind not in KINDS or (new is None and kind != ACK):
+    kind = keys[0] if keys else ""
+    if (kind and kind not in KINDS) or "reason" in keys:
         return ""
-    if new is None:
-        return "A client of the old ICD waits for this response, which does not come."
-    if old is not None:
+    if len(keys) > 1 or (kind and old is not None and new is not None):
         return (
-            "A client of the old ICD may take it for a response to another telecommand."
+            "A program with the old ICD may not recognize this response, or take it for "
+            "the response to another telecommand."
         )
-    end = "" if kind == ACK else ", and the telecommand ends with a time-out"
-    return f"A client of the old ICD reports this response as telemetry{end}."
+    if new is None:
+        return (
+            "A program with the old ICD waits until its time-out, because this response "
+            "does not come."
+            if kind in ("", ACK)
+            else ""
+        )
+    end = f" and does not learn {_NOT_LEARNT[kind]}" if kind in _NOT_LEARNT else ""
+    return f"A program with the old ICD reports this response as other telemetry{end}."
 
 
 @rule("DIF213", "field", "message", severity="warning")
