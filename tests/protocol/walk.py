@@ -295,7 +295,7 @@ def _differs(source: Source, changed: Icd, other: Facts) -> bool:
 
 def cases(icd: Icd, known: Facts) -> Iterator[str]:
     """The vectors of a node, one by one."""
-    for _, request in vectors._requests(known):
+    for _, request in vectors._requests(icd, known):
         asked = {"op": request["op"], "node": known.node.name, **request}
         yield json.dumps([asked, reference.answer(icd, asked)])
 
