@@ -349,7 +349,7 @@ def _ranges_of_reasons(declared: Declared, response: Message) -> Iterator[Fault]
         values = member.last - member.value + 1
         if values > MOST_VALUES:
             text = f"the reason {quote(member.name)} is a range of {values} values, more than {MOST_VALUES}"
-            help = "shorten the range to the values that the device uses"
+            help = "shorten the range to the values that the device uses, or remove it"
             key = "reason" if "reason" in declared.row else "status"
             yield Fault.at(declared.row, key, text, help)
 
