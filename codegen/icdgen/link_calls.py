@@ -14,7 +14,14 @@ from typing import Any
 
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.envelope import Check, Stream, StreamRow
+from icdgen.protocol.envelope import (
+    MESSAGE,
+    EnvelopeField,
+    PacketFormat,
+    Stream,
+    StreamRow,
+    TelemetryRequest,
+)
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.sections import (
     Crc,
@@ -73,7 +80,7 @@ def link_call(link: LinkDescription) -> Call:
     return _LinkBuilder(link).link()
 
 
-def _call(name: str, **keywords: object) -> Call:
+def _call(name: str, /, **keywords: object) -> Call:
     """Return the call of a type of the module ``link``."""
     return Call(f"link.{name}", (), keywords)
 
@@ -310,24 +317,50 @@ def _commented(value: object, reasons: list[tuple[str, str]]) -> object:
 def _stream(form: Stream) -> Call:
     """Return the framing of sync, header, payload and checksum."""
     parts = _members(form)
-    parts["fields"] = tuple(
-        _row("EnvelopeField", *_members(field).values()) for field in form.fields
-    )
+    parts["packets"] = tuple(map(_packet, form.packets))
     parts["telecommands"] = _stream_rows(form.telecommands, form.exchanges)
     parts["telemetry"] = _stream_rows(form.telemetry, ())
+    request = parts.pop("request")
+    if isinstance(request, TelemetryRequest):
+        exchange = form.exchanges.index(request.exchange)
+        parts["request"] = _row(
+            "TelemetryRequest", request.packet, exchange, request.reserved
+        )
     if form.exchanges:
         parts["exchanges"] = tuple(map(_exchange, form.exchanges))
         parts["confirming"] = form.confirming
-    check = parts.pop("check")
-    if isinstance(check, Check):
-        crc = {fact.name: getattr(check.crc, fact.name) for fact in facts_of(check.crc)}
-        crc_call = _row(
-            "CrcForm", **{key: value for key, value in crc.items() if value is not None}
-        )
-        parts["check"] = _row(
-            "CheckForm", *{**_members(check), "crc": crc_call}.values()
-        )
     return _call("Stream", **parts)
+
+
+def _packet(packet: PacketFormat) -> Call:
+    """Return the call for a packet format."""
+    parts: dict[str, object] = {
+        "header_bytes": packet.header_bytes,
+        "trailer_bytes": packet.trailer_bytes,
+        "length_plus": packet.length_plus,
+        "fields": tuple(map(_envelope_field, packet.fields)),
+    }
+    if packet.check:
+        crc = packet.check.crc
+        declared = {fact.name: getattr(crc, fact.name) for fact in facts_of(crc)}
+        crc_call = _row(
+            "CrcForm",
+            **{key: value for key, value in declared.items() if value is not None},
+        )
+        check = {**_members(packet.check), "crc": crc_call}
+        parts["check"] = _row("CheckForm", *check.values())
+    if packet.name:
+        parts |= {"name": packet.name, "directions": packet.directions}
+    if packet.content != MESSAGE:
+        parts |= {"content": packet.content, "reserved": packet.reserved}
+    return _call("PacketForm", **parts)
+
+
+def _envelope_field(field: EnvelopeField) -> Call:
+    parts = _members(field)
+    if not field.id_shift:
+        del parts["id_shift"]
+    return _row("EnvelopeField", *parts.values())
 
 
 def _stream_rows(
@@ -343,6 +376,10 @@ def _stream_rows(
             more["repeats"] = True
         if row.requests is not None:
             more["requests"] = row.requests
+        if row.packet:
+            more["packet"] = row.packet
+        if row.is_requested:
+            more["is_requested"] = True
         calls.append(
             _row(
                 "StreamRow",
@@ -384,6 +421,7 @@ def _response(response: Response) -> Call:
         telemetry=response.telemetry,
         verdict=response.verdict,
         **{key: value for key, value in optional.items() if value},
+        **({} if response.packet is None else {"packet": response.packet}),
     )
 
 

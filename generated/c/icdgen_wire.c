@@ -163,13 +163,6 @@ static inline bool icdgen_reached(uint32_t now, uint32_t time)
     return now - time < UINT32_C(0x80000000);
 }
 
-ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form)
-{
-    crc->form = form;
-    crc->value = form->init;
-    crc->fed = false;
-}
-
 static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
 {
     uint32_t reflected = 0;
@@ -179,44 +172,51 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
     return reflected;
 }
 
-/* Reverse the bits of a byte: swap halves, then quarters, then bits. */
-static inline uint32_t icdgen_reflected_byte(uint32_t byte)
+/*
+ * The register of a CRC is left-aligned in 32 bits. If bytes enter least significant bit first, it is reflected and
+ * right-aligned instead: otherwise each byte would have to be reflected.
+ */
+static inline uint32_t icdgen_crc_aligned(const icd_crc_form_t *form, uint32_t value)
 {
-    const uint32_t halves = ((byte & 0x0Fu) << 4) | (byte >> 4);
-    const uint32_t quarters = ((halves & 0x33u) << 2) | ((halves >> 2) & 0x33u);
-    return ((quarters & 0x55u) << 1) | ((quarters >> 1) & 0x55u);
+    return form->reflect_in ? icdgen_reflected(value, ICDGEN_CAST(unsigned, form->width))
+                            : value << (32u - form->width);
+}
+
+ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form)
+{
+    crc->form = form;
+    crc->value = icdgen_crc_aligned(form, form->init);
+    crc->fed = false;
 }
 
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
 {
     const icd_crc_form_t *const form = crc->form;
-    const unsigned width = ICDGEN_CAST(unsigned, form->width);
-    const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
-    const uint32_t top = UINT32_C(1) << (width - 1u);
+    const bool reflect = form->reflect_in;
+    const uint32_t polynomial = icdgen_crc_aligned(form, form->polynomial);
 #ifndef ICDGEN_NO_TABLES
-    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below the byte */
-    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of the byte below the register */
+    const uint32_t shift = reflect ? 0u : 32u - form->width;
 #endif
     uint32_t value = crc->value;
     for (size_t i = 0; i < length; ++i) {
-        const uint32_t byte = form->reflect_in ? icdgen_reflected_byte(bytes[i]) : bytes[i];
+        const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
+        value = reflect ? value >> 8 : value << 8;
 #ifndef ICDGEN_NO_TABLES
-        if ((form->table8 != NULL) || (form->table16 != NULL)) {
-            const uint32_t row = (((value >> beyond) << missing) ^ byte) & 0xFFu;
-            uint32_t entry;
-            if (form->table8 != NULL) {
-                entry = form->table8[row];
-            } else {
-                entry = form->table16[row];
-            }
-            value = ((value << 8) ^ entry) & mask;
+        if (form->table16 != NULL) {
+            value ^= ICDGEN_U32(form->table16[row]) << shift;
+            continue;
+        }
+        if (form->table8 != NULL) {
+            value ^= ICDGEN_U32(form->table8[row]) << shift;
             continue;
         }
 #endif
+        uint32_t entry = reflect ? row : row << 24;
         for (unsigned bit = 0; bit < 8u; ++bit) {
-            const bool out = ((value & top) != 0u) != (((byte >> (7u - bit)) & 1u) != 0u);
-            value = ((value << 1) & mask) ^ (out ? form->polynomial : 0u);
+            const bool out = (reflect ? entry & 1u : entry >> 31) != 0u;
+            entry = (reflect ? entry >> 1 : entry << 1) ^ (out ? polynomial : 0u);
         }
+        value ^= entry;
     }
     crc->value = value;
     crc->fed = crc->fed || length != 0u;
@@ -228,7 +228,9 @@ ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc)
     if (!crc->fed && form->has_empty) {
         return form->empty;
     }
-    return (form->reflect_out ? icdgen_reflected(crc->value, ICDGEN_CAST(unsigned, form->width)) : crc->value) ^
+    const uint32_t value = form->reflect_in ? crc->value : crc->value >> (32u - form->width);
+    return (form->reflect_in != form->reflect_out ? icdgen_reflected(value, ICDGEN_CAST(unsigned, form->width))
+                                                  : value) ^
         form->xor_out;
 }
 
@@ -475,12 +477,19 @@ static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
     return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
 }
 
-/* Return the field with this role; NULL if there is none. */
-static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
+/* Return the number of bytes of header and trailer. */
+static inline size_t icdgen_packet_around(const icd_packet_form_t *packet)
 {
-    for (size_t i = 0; i < form->field_count; ++i) {
-        if (form->fields[i].role == role) {
-            return &form->fields[i];
+    return ICDGEN_SIZE(packet->header_bytes) + packet->trailer_bytes;
+}
+
+/* Return the field with this role; NULL if there is none. */
+static inline const icd_envelope_field_t *icdgen_envelope_field(
+    const icd_packet_form_t *packet, icd_envelope_role_t role)
+{
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        if (packet->fields[i].role == role) {
+            return &packet->fields[i];
         }
     }
     return NULL;
@@ -494,6 +503,20 @@ static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, co
         number = (number << 8) | bytes[field->at + (field->little ? field->size - 1u - i : i)];
     }
     return (number >> field->shift) & icdgen_envelope_mask(field);
+}
+
+/* Return the id of a packet whose id is in the header. */
+static inline uint32_t icdgen_envelope_id(
+    const icd_packet_form_t *packet, icd_direction_t direction, const uint8_t *header)
+{
+    uint32_t id = packet->ids[direction];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
+        if (field->role == ICD_ENVELOPE_ID && !field->in_trailer) {
+            id |= icdgen_envelope_get(field, header) << field->values[0];
+        }
+    }
+    return id;
 }
 
 static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
@@ -559,19 +582,19 @@ static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
     }
 }
 
-/* Return the checksum of header, data and trailer. `row` may be NULL if the checksum has no seed. */
+/* Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed. */
 static inline uint32_t icdgen_envelope_check(
-    const icd_stream_form_t *form,
+    const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
     const uint8_t *header,
     const uint8_t *data,
     size_t length,
     const uint8_t *trailer)
 {
-    const icd_check_form_t *const given = form->check;
+    const icd_check_form_t *const given = packet->check;
     icdgen_check_t check;
     icdgen_check_begin(&check, given);
-    icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(form->header_bytes) - given->covered_from);
+    icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(packet->header_bytes) - given->covered_from);
     icdgen_check_feed(&check, data, length);
     icdgen_check_feed(&check, trailer, given->covered_trailer);
     if (given->is_seeded && row != NULL) {
@@ -700,22 +723,40 @@ static inline void icdgen_line_write(icdgen_line_t *line, const uint8_t *bytes, 
 
 ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction)
 {
+    const icd_stream_form_t *const form = link->stream;
     icd_envelope_values_t values;
+    uint32_t seen = 0; /* roles, as a mask */
     (void)memset(&values, 0, sizeof values);
-    if (link->stream != NULL) {
-        for (size_t i = 0; i < link->stream->field_count; ++i) {
-            const icd_envelope_field_t *const field = &link->stream->fields[i];
+    for (size_t i = 0; form != NULL && i < form->packet_count; ++i) {
+        const icd_packet_form_t *const packet = &form->packets[i];
+        for (size_t j = 0; packet->is_sent[direction] && j < packet->field_count; ++j) {
+            const icd_envelope_field_t *const field = &packet->fields[j];
             if (field->role < ICD_ENVELOPE_CONSTANT) {
-                values.of[field->role] = field->values[direction];
+                const uint32_t role = UINT32_C(1) << ICDGEN_U32(field->role);
+                uint32_t *const value = &values.of[field->role];
+                if ((seen & role) == 0u) {
+                    *value = field->values[direction];
+                } else if (*value != field->values[direction] && field->bits < 32u) {
+                    *value = ICD_ENVELOPE_DEFAULT;
+                } else {
+                    /* the packets have the same default */
+                }
+                seen |= role;
             }
         }
     }
     return values;
 }
 
+/* Return whether the sender chose the value of a field. Otherwise, the field has the default of its packet. */
+static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, const icd_envelope_values_t *values)
+{
+    return values != NULL && (values->of[field->role] != ICD_ENVELOPE_DEFAULT || field->bits == 32u);
+}
+
 /* Write all fields except the checksum. Return false if a value does not fit. */
 static inline bool icdgen_envelope_fill(
-    const icd_stream_form_t *form,
+    const icd_packet_form_t *packet,
     icd_direction_t direction,
     uint32_t id,
     size_t length,
@@ -723,20 +764,20 @@ static inline bool icdgen_envelope_fill(
     uint8_t *header,
     uint8_t *trailer)
 {
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
         uint32_t value = field->values[direction];
         if (field->role == ICD_ENVELOPE_CHECKSUM) {
             continue;
         }
         if (field->role == ICD_ENVELOPE_ID) {
-            value = id;
+            value = (id >> value) & icdgen_envelope_mask(field);
         } else if (field->role == ICD_ENVELOPE_LENGTH) {
-            value = ICDGEN_U32(ICDGEN_I64(length) + form->length_plus);
-        } else if (field->role < ICD_ENVELOPE_CONSTANT) {
+            value = ICDGEN_U32(ICDGEN_I64(length) + packet->length_plus);
+        } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
-            /* a constant */
+            /* the value of the ICD */
         }
         if (value > icdgen_envelope_mask(field)) {
             return false;
@@ -756,6 +797,87 @@ static inline size_t icdgen_without_zeros(const uint8_t *data, size_t length)
     return left;
 }
 
+/* A packet that is to be encoded. */
+typedef struct {
+    const icd_stream_form_t *form;
+    icd_direction_t direction;
+    const icd_stream_row_t *row; /* the message; as a telecommand also telemetry, for the packet that requests it */
+    const uint8_t *data;
+    size_t length;
+} icdgen_outgoing_t;
+
+static inline bool icdgen_outgoing_requests(const icdgen_outgoing_t *outgoing)
+{
+    return outgoing->direction == ICD_TELECOMMAND && (outgoing->row->flags & ICD_STREAM_REQUESTED) != 0u;
+}
+
+static inline const icd_packet_form_t *icdgen_outgoing_packet(const icdgen_outgoing_t *outgoing)
+{
+    const icd_stream_form_t *const form = outgoing->form;
+    return &form->packets[icdgen_outgoing_requests(outgoing) ? form->request->packet : outgoing->row->packet];
+}
+
+/* Find the message with this id. */
+static inline icd_status_t icdgen_outgoing_message(icdgen_outgoing_t *outgoing, const icd_link_t *link, uint32_t id)
+{
+    outgoing->form = link->stream;
+    if (outgoing->form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    outgoing->row = icdgen_stream_row(outgoing->form, outgoing->direction, id);
+    if (outgoing->row == NULL) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    const bool fits = outgoing->length >= outgoing->row->least && outgoing->length <= outgoing->row->most;
+    return fits ? ICD_OK : ICD_ERROR_LENGTH;
+}
+
+/* Find the telemetry with this id that a packet requests. */
+static inline icd_status_t icdgen_outgoing_request(icdgen_outgoing_t *outgoing, const icd_link_t *link, uint32_t id)
+{
+    const icd_stream_form_t *const form = link->stream;
+    if (form == NULL || form->request == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    outgoing->form = form;
+    outgoing->row = icdgen_stream_row(form, ICD_TELEMETRY, id);
+    outgoing->data = form->request->data;
+    outgoing->length = form->packets[form->request->packet].reserved;
+    return outgoing->row != NULL && icdgen_outgoing_requests(outgoing) ? ICD_OK : ICD_ERROR_UNKNOWN_ID;
+}
+
+static inline icd_status_t icdgen_outgoing_encode(
+    const icdgen_outgoing_t *outgoing,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    const icd_packet_form_t *const packet = icdgen_outgoing_packet(outgoing);
+    const icd_stream_row_t *const row = outgoing->row;
+    const uint8_t *const data = outgoing->data;
+    const bool cuts_zeros = (row->flags & ICD_STREAM_CUTS_ZEROS) != 0u && !icdgen_outgoing_requests(outgoing);
+    const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
+    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
+    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
+    if (!icdgen_envelope_fill(packet, outgoing->direction, row->id, length, values, header, trailer)) {
+        return ICD_ERROR_RANGE;
+    }
+    const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);
+    if (check != NULL && packet->check != NULL) {
+        const uint32_t sum = icdgen_envelope_check(packet, row, header, data, length, trailer);
+        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
+    }
+    icdgen_line_t line = {outgoing->form->delimited_by, buffer, capacity, 0, 0, false, false};
+    icdgen_line_delimiter(&line, true);
+    icdgen_line_write(&line, header, packet->header_bytes);
+    icdgen_line_write(&line, data, length);
+    icdgen_line_write(&line, trailer, packet->trailer_bytes);
+    icdgen_line_delimiter(&line, false);
+    *written = line.count;
+    return line.full ? ICD_ERROR_LENGTH : ICD_OK;
+}
+
 ICDGEN_API icd_status_t icd_stream_encode(
     const icd_link_t *link,
     icd_direction_t direction,
@@ -767,37 +889,22 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written)
 {
-    const icd_stream_form_t *const form = link->stream;
-    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
-    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    const icd_stream_row_t *const row = icdgen_stream_row(form, direction, id);
-    if (row == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (length < row->least || length > row->most) {
-        return ICD_ERROR_LENGTH;
-    }
-    const size_t sent = row->cuts_zeros ? icdgen_without_zeros(data, length) : length;
-    const icd_envelope_values_t chosen = values != NULL ? *values : icd_envelope_values(link, direction);
-    if (!icdgen_envelope_fill(form, direction, id, sent, &chosen, header, trailer)) {
-        return ICD_ERROR_RANGE;
-    }
-    const icd_envelope_field_t *const check = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
-    if (check != NULL && form->check != NULL) {
-        const uint32_t sum = icdgen_envelope_check(form, row, header, data, sent, trailer);
-        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
-    }
-    icdgen_line_t line = {form->delimited_by, buffer, capacity, 0, 0, false, false};
-    icdgen_line_delimiter(&line, true);
-    icdgen_line_write(&line, header, form->header_bytes);
-    icdgen_line_write(&line, data, sent);
-    icdgen_line_write(&line, trailer, form->trailer_bytes);
-    icdgen_line_delimiter(&line, false);
-    *written = line.count;
-    return line.full ? ICD_ERROR_LENGTH : ICD_OK;
+    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length};
+    const icd_status_t status = icdgen_outgoing_message(&outgoing, link, id);
+    return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
+}
+
+ICDGEN_API icd_status_t icd_stream_encode_request(
+    const icd_link_t *link,
+    uint32_t telemetry,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    const icd_status_t status = icdgen_outgoing_request(&outgoing, link, telemetry);
+    return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
 
 ICDGEN_API icd_status_t icd_stream_sender_init(
@@ -819,6 +926,32 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     return link->stream != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }
 
+/* Encode a packet with the next sequence number. */
+static inline icd_status_t icdgen_outgoing_send(
+    const icdgen_outgoing_t *outgoing, icd_stream_sender_t *sender, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    const icd_stream_form_t *const form = outgoing->form;
+    const icd_envelope_field_t *const field =
+        icdgen_envelope_field(icdgen_outgoing_packet(outgoing), ICD_ENVELOPE_SEQUENCE);
+    const size_t counter = form->per_id ? ICDGEN_SIZE(outgoing->row - form->rows[outgoing->direction]) : 0u;
+    /* With a sequence for each id, packets that request telemetry have no counter. */
+    const bool is_counted =
+        field != NULL && counter < sender->sequence_count && !(form->per_id && icdgen_outgoing_requests(outgoing));
+    icd_envelope_values_t values = sender->values;
+    if (is_counted && sender->sequences[counter] != ICDGEN_NO_SEQUENCE) {
+        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[counter] + 1u) & icdgen_envelope_mask(field);
+    } else if (is_counted && values.of[ICD_ENVELOPE_SEQUENCE] == ICD_ENVELOPE_DEFAULT) {
+        values.of[ICD_ENVELOPE_SEQUENCE] = field->values[sender->direction];
+    } else {
+        /* the value that the sender chose */
+    }
+    const icd_status_t status = icdgen_outgoing_encode(outgoing, &values, buffer, capacity, written);
+    if (status == ICD_OK && is_counted) {
+        sender->sequences[counter] = values.of[ICD_ENVELOPE_SEQUENCE];
+    }
+    return status;
+}
+
 ICDGEN_API icd_status_t icd_stream_send(
     icd_stream_sender_t *sender,
     uint32_t id,
@@ -828,26 +961,17 @@ ICDGEN_API icd_status_t icd_stream_send(
     size_t capacity,
     size_t *written)
 {
-    const icd_stream_form_t *const form = sender->link->stream;
-    icd_envelope_values_t values = sender->values;
-    size_t place = 0;
-    icd_status_t status;
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    const icd_stream_row_t *const row = icdgen_stream_row(form, sender->direction, id);
-    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
-    if (row != NULL && form->per_id) {
-        place = ICDGEN_SIZE(row - form->rows[sender->direction]);
-    }
-    if (field != NULL && place < sender->sequence_count && sender->sequences[place] != ICDGEN_NO_SEQUENCE) {
-        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[place] + 1u) & icdgen_envelope_mask(field);
-    }
-    status = icd_stream_encode(sender->link, sender->direction, id, data, length, &values, buffer, capacity, written);
-    if (status == ICD_OK && place < sender->sequence_count) {
-        sender->sequences[place] = values.of[ICD_ENVELOPE_SEQUENCE];
-    }
-    return status;
+    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length};
+    const icd_status_t status = icdgen_outgoing_message(&outgoing, sender->link, id);
+    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
+}
+
+ICDGEN_API icd_status_t icd_stream_send_request(
+    icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    const icd_status_t status = icdgen_outgoing_request(&outgoing, sender->link, telemetry);
+    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
 }
 
 /* Result of checking a frame: accepted; certainly a frame, but not usable; possibly not a frame. */
@@ -900,14 +1024,15 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     size_t sequence_count)
 {
     (void)memset(decoder, 0, sizeof *decoder);
-    if (link->stream == NULL) {
+    const icd_stream_form_t *const form = link->stream;
+    if (form == NULL || form->around[direction] < 0) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (capacity < ICDGEN_SIZE(link->stream->header_bytes) + link->stream->trailer_bytes) {
+    if (capacity < ICDGEN_SIZE(form->around[direction])) {
         return ICD_ERROR_LENGTH;
     }
     decoder->link = link;
-    decoder->form = link->stream;
+    decoder->form = form;
     decoder->direction = direction;
     decoder->buffer = buffer;
     decoder->capacity = capacity < link->longest ? capacity : ICDGEN_SIZE(link->longest);
@@ -919,74 +1044,122 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     return ICD_OK;
 }
 
-/* Report missing sequence numbers. */
-static inline void icdgen_stream_count(
-    icd_stream_decoder_t *decoder, const icd_stream_row_t *row, uint32_t number, const icdgen_listener_t *listener)
+/* What a packet contains. */
+typedef struct {
+    icd_stream_kind_t kind;      /* of its event; ICD_STREAM_UNKNOWN_ID if there is no message with its id */
+    const icd_stream_row_t *row; /* the message, or the requested telemetry; otherwise NULL */
+    size_t least;                /* bounds of the number of data bytes */
+    size_t most;
+} icdgen_incoming_t;
+
+/* Return what a packet with this id contains. */
+static inline icdgen_incoming_t icdgen_incoming(
+    const icd_stream_decoder_t *decoder, const icd_packet_form_t *packet, uint32_t id)
 {
     const icd_stream_form_t *const form = decoder->form;
-    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
-    const size_t key = form->per_id ? ICDGEN_SIZE(row - form->rows[decoder->direction]) : 0u;
-    if (field == NULL || key >= decoder->sequence_count) {
+    const size_t index = ICDGEN_SIZE(packet - form->packets);
+    icdgen_incoming_t incoming = {ICD_STREAM_PACKET, NULL, packet->reserved, packet->reserved};
+    if (packet->content == ICD_PACKET_NOTHING) {
+        return incoming;
+    }
+    const icd_stream_row_t *row = icdgen_stream_row(form, decoder->direction, id);
+    if (row != NULL && row->packet == index) {
+        incoming.kind = ICD_STREAM_MESSAGE;
+        incoming.row = row;
+        incoming.least = row->least;
+        incoming.most = row->most;
+        return incoming;
+    }
+    incoming.kind = ICD_STREAM_UNKNOWN_ID;
+    if (decoder->direction == ICD_TELECOMMAND && form->request != NULL && form->request->packet == index) {
+        row = icdgen_stream_row(form, ICD_TELEMETRY, id);
+        if (row != NULL && (row->flags & ICD_STREAM_REQUESTED) != 0u) {
+            incoming.kind = ICD_STREAM_REQUEST;
+            incoming.row = row;
+        }
+    }
+    return incoming;
+}
+
+/* Report missing sequence numbers. `field`: field of the sequence number; NULL if the packet has none. */
+static inline void icdgen_stream_count(
+    icd_stream_decoder_t *decoder,
+    const icdgen_incoming_t *incoming,
+    const icd_envelope_field_t *field,
+    const icd_stream_event_t *message,
+    const icdgen_listener_t *listener)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    /* With a sequence for each id, other packets than messages have no counter. */
+    if (field == NULL || (form->per_id && incoming->kind != ICD_STREAM_MESSAGE)) {
         return;
     }
+    const size_t key = form->per_id ? ICDGEN_SIZE(incoming->row - form->rows[decoder->direction]) : 0u;
+    if (key >= decoder->sequence_count) {
+        return;
+    }
+    const uint32_t number = message->values.of[ICD_ENVELOPE_SEQUENCE];
     const uint32_t last = decoder->sequences[key];
     const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
         icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_GAP);
         event.has_id = true;
-        event.id = row->id;
+        event.id = message->id;
         event.missing = number == last ? 0u : missing;
         listener->on_event(listener->context, &event);
     }
 }
 
-static inline void icdgen_stream_message(
-    icd_stream_decoder_t *decoder,
-    const icd_stream_row_t *row,
-    const uint8_t *frame,
-    size_t length,
-    const icdgen_listener_t *listener)
-{
-    const icd_stream_form_t *const form = decoder->form;
-    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
-    event.has_id = true;
-    event.id = row->id;
-    event.data = frame + form->header_bytes;
-    event.length = length;
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
-        if (field->role < ICD_ENVELOPE_CONSTANT) {
-            event.values.of[field->role] = icdgen_envelope_get(field, field->in_trailer ? event.data + length : frame);
-        }
-    }
-    icdgen_stream_count(decoder, row, event.values.of[ICD_ENVELOPE_SEQUENCE], listener);
-    listener->on_event(listener->context, &event);
-}
-
 /* Return whether the constants are correct in the received part of the header and, unless NULL, in the trailer. */
 static inline bool icdgen_stream_constants(
-    const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const uint8_t *trailer)
+    const icd_packet_form_t *packet,
+    icd_direction_t direction,
+    const uint8_t *frame,
+    size_t count,
+    const uint8_t *trailer)
 {
-    const icd_stream_form_t *const form = decoder->form;
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
         const uint8_t *const bytes = field->in_trailer ? trailer : frame;
         const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
         if (field->role == ICD_ENVELOPE_CONSTANT && came &&
-            icdgen_envelope_get(field, bytes) != field->values[decoder->direction]) {
+            icdgen_envelope_get(field, bytes) != field->values[direction]) {
             return false;
         }
     }
     return true;
 }
 
-/* Return the number of header bytes needed for the next check after `left` bytes: up to the next constant, or all. */
-static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t left)
+/*
+ * Return the first packet format that fits. `is_whole`: whether the bytes are a whole frame; if no format fits it,
+ * return the first one, which tells the fault. Otherwise, constants that have not arrived may still be correct; return
+ * NULL if no format fits.
+ */
+static inline const icd_packet_form_t *icdgen_stream_format(
+    const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, bool is_whole)
 {
-    size_t next = form->header_bytes;
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
+    const icd_packet_form_t *first = NULL;
+    for (size_t i = 0; i < decoder->form->packet_count; ++i) {
+        const icd_packet_form_t *const packet = &decoder->form->packets[i];
+        if (packet->is_sent[decoder->direction]) {
+            const bool fits = !is_whole || count >= icdgen_packet_around(packet);
+            const uint8_t *const trailer = is_whole && fits ? frame + count - packet->trailer_bytes : NULL;
+            if (fits && icdgen_stream_constants(packet, decoder->direction, frame, count, trailer)) {
+                return packet;
+            }
+            first = is_whole && first == NULL ? packet : first;
+        }
+    }
+    return first;
+}
+
+/* Return the number of header bytes needed for the next check after `left` bytes: up to the next constant, or all. */
+static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t left)
+{
+    size_t next = packet->header_bytes;
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
         const size_t end = ICDGEN_SIZE(field->at) + field->size;
         if (field->role == ICD_ENVELOPE_CONSTANT && !field->in_trailer && end > left && end < next) {
             next = end;
@@ -995,103 +1168,152 @@ static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t le
     return next;
 }
 
-/* Return the data length according to the length field; negative if it is invalid. */
-static inline int64_t icdgen_stream_length(
-    const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
-{
-    return ICDGEN_I64(icdgen_envelope_get(field, field->in_trailer ? trailer : frame)) - form->length_plus;
-}
-
 /* Report a frame. */
 static inline icdgen_verdict_t icdgen_stream_judge(
-    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
+    icd_stream_decoder_t *decoder,
+    const icd_packet_form_t *packet,
+    const uint8_t *frame,
+    size_t count,
+    const icdgen_listener_t *listener)
 {
-    const icd_stream_form_t *const form = decoder->form;
-    const size_t around = ICDGEN_SIZE(form->header_bytes) + form->trailer_bytes;
+    const size_t around = icdgen_packet_around(packet);
     if (count < around) {
         icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
         return ICDGEN_DOUBTFUL;
     }
     const size_t length = count - around;
-    const uint8_t *const trailer = frame + form->header_bytes + length;
-    if (!icdgen_stream_constants(decoder, frame, count, trailer)) {
-        icdgen_stream_tell(listener, ICD_STREAM_FRAMING);
+    const uint8_t *const data = frame + packet->header_bytes;
+    const uint8_t *const trailer = data + length;
+    const icd_envelope_field_t *sequence = NULL;
+    int64_t stated = ICDGEN_I64(length);
+    uint32_t sum = 0;
+    bool is_framed = true;
+    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
+    event.id = packet->ids[decoder->direction];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
+        const uint32_t value = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
+        switch (field->role) {
+        case ICD_ENVELOPE_CONSTANT:
+            is_framed = is_framed && value == field->values[decoder->direction];
+            break;
+        case ICD_ENVELOPE_ID:
+            event.id |= value << field->values[0];
+            break;
+        case ICD_ENVELOPE_LENGTH:
+            stated = ICDGEN_I64(value) - packet->length_plus;
+            break;
+        case ICD_ENVELOPE_CHECKSUM:
+            sum = value;
+            break;
+        case ICD_ENVELOPE_SEQUENCE:
+        case ICD_ENVELOPE_SOURCE:
+        case ICD_ENVELOPE_DESTINATION:
+        case ICD_ENVELOPE_TYPE:
+        case ICD_ENVELOPE_FLAGS:
+        case ICD_ENVELOPE_TIME:
+        case ICD_ENVELOPE_STATUS:
+        case ICD_ENVELOPE_REASON:
+        default:
+            sequence = field->role == ICD_ENVELOPE_SEQUENCE ? field : sequence;
+            event.values.of[field->role] = value;
+            break;
+        }
+    }
+    if (!is_framed || stated != ICDGEN_I64(length)) {
+        icdgen_stream_tell(listener, is_framed ? ICD_STREAM_LENGTH : ICD_STREAM_FRAMING);
         return ICDGEN_DOUBTFUL;
     }
-    const icd_envelope_field_t *field = icdgen_envelope_field(form, ICD_ENVELOPE_LENGTH);
-    if (field != NULL && icdgen_stream_length(form, field, frame, trailer) != ICDGEN_I64(length)) {
-        icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
-        return ICDGEN_DOUBTFUL;
-    }
-    field = icdgen_envelope_field(form, ICD_ENVELOPE_ID);
-    uint32_t id = 0;
-    if (field != NULL) {
-        id = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
-    } else if (form->row_counts[decoder->direction] != 0u) {
-        id = form->rows[decoder->direction][0].id;
-    } else {
-        /* there is no message in this direction */
-    }
-    const icd_stream_row_t *const row = icdgen_stream_row(form, decoder->direction, id);
-    field = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
-    if (field != NULL && form->check != NULL) {
-        if (form->check->is_seeded && row == NULL) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
-            return ICDGEN_DOUBTFUL;
-        }
-        const uint32_t sum = icdgen_envelope_check(form, row, frame, frame + form->header_bytes, length, trailer);
-        if (icdgen_envelope_get(field, field->in_trailer ? trailer : frame) != sum) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, true, id);
-            return ICDGEN_DOUBTFUL;
+    const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, event.id);
+    icdgen_verdict_t verdict = ICDGEN_PROVEN;
+    event.kind = incoming.kind;
+    if (packet->check != NULL) {
+        if (packet->check->is_seeded && incoming.kind == ICD_STREAM_UNKNOWN_ID) {
+            verdict = ICDGEN_DOUBTFUL;
+        } else if (icdgen_envelope_check(packet, incoming.row, frame, data, length, trailer) != sum) {
+            event.kind = ICD_STREAM_CHECKSUM;
+            verdict = ICDGEN_DOUBTFUL;
+        } else {
+            /* the checksum is correct */
         }
     }
-    if (row == NULL) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
-        return ICDGEN_PROVEN;
+    if (verdict == ICDGEN_PROVEN && event.kind != ICD_STREAM_UNKNOWN_ID &&
+        (length < incoming.least || length > incoming.most)) {
+        event.kind = ICD_STREAM_LENGTH;
     }
-    if (length < row->least || length > row->most) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, true, id);
-        return ICDGEN_PROVEN;
+    if (event.kind != incoming.kind || event.kind == ICD_STREAM_UNKNOWN_ID) {
+        icdgen_stream_tell_of(listener, event.kind, true, event.id);
+        return verdict;
     }
-    icdgen_stream_message(decoder, row, frame, length, listener);
+    event.has_id = true;
+    event.packet = ICDGEN_U8(packet - decoder->form->packets);
+    event.is_packet = incoming.kind == ICD_STREAM_PACKET;
+    event.data = event.is_packet ? frame : data;
+    event.length = event.is_packet ? count : length;
+    icdgen_stream_count(decoder, &incoming, sequence, &event, listener);
+    listener->on_event(listener->context, &event);
     return ICDGEN_TAKEN;
+}
+
+/* Report a frame that is delimited on both sides. Return whether it is correct. */
+static inline bool icdgen_stream_frame(
+    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
+{
+    const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, count, true);
+    return icdgen_stream_judge(decoder, packet, frame, count, listener) == ICDGEN_TAKEN;
+}
+
+/* Drop the first byte. Return the number of bytes to advance. */
+static inline size_t icdgen_stream_skip(icd_stream_decoder_t *decoder)
+{
+    decoder->discarded++;
+    return 1;
 }
 
 /* Check the buffer from `at` on. Return the number of bytes to advance; 0 if more bytes are needed. */
 static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
 {
-    const icd_stream_form_t *const form = decoder->form;
     const size_t left = decoder->length - at;
     const uint8_t *const frame = decoder->buffer + at;
-    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_LENGTH);
-    if (left != 0u && !icdgen_stream_constants(decoder, frame, left, NULL)) {
-        decoder->discarded++;
-        return 1;
+    const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, left, false);
+    if (packet == NULL) {
+        return icdgen_stream_skip(decoder);
     }
-    if (left < form->header_bytes || field == NULL) {
-        decoder->needed = icdgen_stream_next(form, left);
+    if (left < packet->header_bytes) {
+        decoder->needed = icdgen_stream_next(packet, left);
         return 0;
     }
-    const int64_t length = icdgen_stream_length(form, field, frame, frame);
-    const int64_t size = length + form->header_bytes + form->trailer_bytes;
+    const icd_envelope_field_t *const field = icdgen_envelope_field(packet, ICD_ENVELOPE_LENGTH);
+    int64_t length;
+    if (field != NULL) {
+        length = ICDGEN_I64(icdgen_envelope_get(field, frame)) - packet->length_plus;
+    } else {
+        const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
+        const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
+        if (incoming.kind == ICD_STREAM_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
+            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
+            return icdgen_stream_skip(decoder);
+        }
+        length = ICDGEN_I64(incoming.most);
+    }
+    const int64_t size = length + ICDGEN_I64(icdgen_packet_around(packet));
     if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
         const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
         icdgen_stream_tell(listener, fits ? ICD_STREAM_OVERRUN : ICD_STREAM_LENGTH);
-        decoder->discarded++;
-        return 1;
+        return icdgen_stream_skip(decoder);
     }
     const size_t whole = ICDGEN_SIZE(size);
     if (left < whole) {
         decoder->needed = whole;
         return 0;
     }
-    const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, frame, whole, listener);
+    const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, packet, frame, whole, listener);
     const size_t taken = verdict == ICDGEN_DOUBTFUL ? 1u : whole;
     decoder->discarded += verdict == ICDGEN_TAKEN ? 0u : taken;
     return taken;
 }
 
-/* Process bytes of a stream with a length field. There is always room: a full buffer can always be decided. */
+/* Process bytes of a stream without delimiters. There is always room: a full buffer can always be decided. */
 static inline void icdgen_stream_append(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
@@ -1180,7 +1402,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     if (decoder->faulty) {
         icdgen_stream_tell(listener, decoder->fault);
     } else if (decoder->length != 0u) {
-        taken = icdgen_stream_judge(decoder, decoder->buffer, decoder->length, listener) == ICDGEN_TAKEN;
+        taken = icdgen_stream_frame(decoder, decoder->buffer, decoder->length, listener);
     } else {
         taken = true; /* empty frame between two delimiters */
     }
@@ -1198,7 +1420,7 @@ ICDGEN_API void icd_stream_feed(
         if (count > decoder->capacity) {
             icdgen_stream_tell(&listener, ICD_STREAM_OVERRUN);
             decoder->discarded += count;
-        } else if (icdgen_stream_judge(decoder, bytes, count, &listener) != ICDGEN_TAKEN) {
+        } else if (!icdgen_stream_frame(decoder, bytes, count, &listener)) {
             decoder->discarded += count;
         } else {
             /* the frame was a message */
@@ -2657,10 +2879,10 @@ ICDGEN_API void icd_client_transferred(
     }
 }
 
-/* Return the largest number of data bytes of a telecommand. */
+/* Return the largest number of data bytes of a request. */
 static inline size_t icdgen_request_bytes(const icd_stream_form_t *form)
 {
-    size_t most = 0;
+    size_t most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
         const size_t bytes = form->rows[ICD_TELECOMMAND][i].most;
         most = bytes > most ? bytes : most;
@@ -2687,7 +2909,6 @@ ICDGEN_API icd_status_t icd_stream_client_init(
     const size_t half = sequence_count / 2u;
     icd_status_t status;
     (void)memset(client, 0, sizeof *client);
-    client->link = link;
     client->settings = link->client;
     status = icd_stream_sender_init(&client->sender, link, ICD_TELECOMMAND, sequences, half);
     if (status == ICD_OK && size < icd_stream_client_bytes(link, slot_count)) {
@@ -2742,9 +2963,9 @@ static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_n
     return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
 }
 
-/* The reply that the caller specified. Its id is in icd_stream_awaited_t. */
+/* The reply that the caller specified, or the requested telemetry. Its id is in icd_stream_awaited_t. */
 static const icd_response_t icdgen_specified_reply = {
-    0u, ICD_VERDICT_REPLY, 0u, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
+    0u, ICD_VERDICT_REPLY, 0u, false, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
 
 /* Return what a response can mean, as a mask of verdicts. */
 static inline uint32_t icdgen_verdicts(const icd_response_t *response)
@@ -2762,53 +2983,59 @@ static inline bool icdgen_can_be_reply(const icd_response_t *response)
 }
 
 /*
- * Return the possible response to a request after `last`, or the first one after NULL. NULL if there is none. The last
- * is the reply that the caller specified, which takes the place of those in the ICD.
+ * Return the possible response to a request at a position or after it, and advance the position. NULL if there is none.
+ * The reply that the caller specified takes the place of those in the ICD, and is the last; requested telemetry is the
+ * first.
  */
-static inline const icd_response_t *icdgen_next_response(
-    const icd_stream_awaited_t *awaited, const icd_response_t *last)
+static inline const icd_response_t *icdgen_next_response(const icd_stream_awaited_t *awaited, size_t *position)
 {
     const icd_exchange_t *const exchange = awaited->exchange;
     const bool has_reply = awaited->reply != NULL;
-    if (last == &icdgen_specified_reply) {
-        return NULL;
-    }
-    if (exchange != NULL) {
-        size_t next = last == NULL ? ICDGEN_SIZE(0) : ICDGEN_SIZE(last - exchange->responses) + 1u;
-        while (next < exchange->response_count && has_reply && icdgen_can_be_reply(&exchange->responses[next])) {
-            next++;
+    const size_t own = exchange->is_request ? ICDGEN_SIZE(0) : exchange->response_count;
+    while (*position <= exchange->response_count) {
+        const size_t i = *position;
+        (*position)++;
+        if (i == own) {
+            if (has_reply) {
+                return &icdgen_specified_reply;
+            }
+        } else {
+            const icd_response_t *const response = &exchange->responses[i - (i > own ? 1u : 0u)];
+            if (!has_reply || !icdgen_can_be_reply(response)) {
+                return response;
+            }
         }
-        if (next < exchange->response_count) {
-            return &exchange->responses[next];
-        }
     }
-    return has_reply ? &icdgen_specified_reply : NULL;
+    return NULL;
 }
 
-static inline uint32_t icdgen_response_id(const icd_stream_awaited_t *awaited, const icd_response_t *response)
+static inline uint32_t icdgen_response_source(const icd_stream_awaited_t *awaited, const icd_response_t *response)
 {
-    return response == &icdgen_specified_reply ? awaited->reply->id : response->telemetry;
+    return response == &icdgen_specified_reply ? awaited->reply->id : response->source;
 }
 
 /* Return the verdicts without which a request is not done, as a mask. */
 static inline uint32_t icdgen_needed(const icd_stream_awaited_t *awaited)
 {
     uint32_t verdicts = 0;
-    const icd_response_t *response = icdgen_next_response(awaited, NULL);
+    size_t position = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, &position);
     while (response != NULL) {
         verdicts |= icdgen_verdicts(response);
-        response = icdgen_next_response(awaited, response);
+        response = icdgen_next_response(awaited, &position);
     }
     return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
 }
 
-/* Return the response to a request that telemetry is; NULL if it is none of them. */
+/* Return the response to a request that telemetry or a packet is; NULL if it is none of them. */
 static inline const icd_response_t *icdgen_matching(
     const icd_stream_awaited_t *awaited, const icd_stream_event_t *event)
 {
-    const icd_response_t *response = icdgen_next_response(awaited, NULL);
+    const uint32_t source = event->is_packet ? event->packet : event->id;
+    size_t position = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, &position);
     while (response != NULL) {
-        bool matches = icdgen_response_id(awaited, response) == event->id;
+        bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
         for (size_t i = 0; matches && i < response->echo_count; ++i) {
             const icd_echo_t *const echo = &response->echoes[i];
             matches = icdgen_stream_number(&echo->place, event->id, event->data, event->length) ==
@@ -2817,7 +3044,7 @@ static inline const icd_response_t *icdgen_matching(
         if (matches) {
             break;
         }
-        response = icdgen_next_response(awaited, response);
+        response = icdgen_next_response(awaited, &position);
     }
     return response;
 }
@@ -2845,17 +3072,20 @@ static inline bool icdgen_differs_in_echo(
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_stream_awaited_t *b)
 {
-    const icd_response_t *of_a = icdgen_next_response(a, NULL);
+    size_t position_a = 0;
+    const icd_response_t *of_a = icdgen_next_response(a, &position_a);
     while (of_a != NULL) {
-        const icd_response_t *of_b = icdgen_next_response(b, NULL);
+        size_t position_b = 0;
+        const icd_response_t *of_b = icdgen_next_response(b, &position_b);
         while (of_b != NULL) {
-            if (icdgen_response_id(a, of_a) == icdgen_response_id(b, of_b) &&
-                !icdgen_differs_in_echo(a, of_a, b, of_b)) {
+            const bool is_same = icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
+                of_a->is_packet == of_b->is_packet;
+            if (is_same && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
                 return true;
             }
-            of_b = icdgen_next_response(b, of_b);
+            of_b = icdgen_next_response(b, &position_b);
         }
-        of_a = icdgen_next_response(a, of_a);
+        of_a = icdgen_next_response(a, &position_a);
     }
     return false;
 }
@@ -2891,8 +3121,7 @@ static inline void icdgen_settle(icd_stream_awaited_t *awaited, icd_verdict_t ve
 
 static inline uint32_t icdgen_stream_timeout(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
 {
-    const bool is_own = awaited->exchange != NULL && awaited->exchange->timeout != 0u;
-    return is_own ? awaited->exchange->timeout : client->settings.reply_timeout;
+    return awaited->exchange->timeout != 0u ? awaited->exchange->timeout : client->settings.reply_timeout;
 }
 
 /* Return the time at which a late response to a request can no longer arrive. */
@@ -2935,10 +3164,16 @@ static inline void icdgen_stream_set_time(icd_stream_client_t *client, uint32_t 
     }
 }
 
+/* Return whether the packet of requests is sent for a request, and `row` is the requested telemetry. */
+static inline bool icdgen_is_by_packet(const icd_stream_slot_t *slot)
+{
+    return (slot->row->flags & ICD_STREAM_REQUESTED) != 0u;
+}
+
 /* Return the id with which a request was started. */
 static inline uint32_t icdgen_request_id(const icd_stream_slot_t *slot)
 {
-    return slot->direction == ICD_TELEMETRY ? slot->row->requested : slot->row->id;
+    return slot->direction == ICD_TELEMETRY && !icdgen_is_by_packet(slot) ? slot->row->requested : slot->row->id;
 }
 
 /* End a request, and remember the responses that may still arrive. */
@@ -3003,45 +3238,57 @@ ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, ui
     return earliest.exists;
 }
 
-/* Return the telecommand that requests telemetry: the first one; NULL if there is none. */
+/*
+ * Return what is sent to request telemetry: the first telecommand that requests it, or the telemetry itself for the
+ * packet of requests. NULL if nothing requests it.
+ */
 static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form_t *form, uint32_t id)
 {
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
         const icd_stream_row_t *const row = &form->rows[ICD_TELECOMMAND][i];
-        if (row->is_request && row->requested == id) {
+        if ((row->flags & ICD_STREAM_REQUESTS) != 0u && row->requested == id) {
             return row;
         }
     }
-    return NULL;
+    const icd_stream_row_t *const telemetry = icdgen_stream_row(form, ICD_TELEMETRY, id);
+    return telemetry != NULL && (telemetry->flags & ICD_STREAM_REQUESTED) != 0u ? telemetry : NULL;
 }
 
 /* Return whether telemetry is a possible reply in the ICD. */
 static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 {
-    for (size_t i = 0; exchange != NULL && i < exchange->response_count; ++i) {
+    for (size_t i = 0; i < exchange->response_count; ++i) {
         const icd_response_t *const response = &exchange->responses[i];
-        if (response->telemetry == id && icdgen_can_be_reply(response)) {
+        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
             return true;
         }
     }
     return false;
 }
 
+/* Return the packet that is sent for a request. */
+static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
+{
+    const icdgen_outgoing_t outgoing = {
+        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length};
+    return outgoing;
+}
+
 ICDGEN_API icd_status_t
 icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request)
 {
+    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, false, 0u};
     const bool asks = request->direction == ICD_TELEMETRY;
     if (!client->ready) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    const icd_stream_form_t *const form = client->link->stream;
+    const icd_stream_form_t *const form = client->sender.link->stream;
     const icd_stream_row_t *const row =
         asks ? icdgen_stream_asking(form, request->id) : icdgen_stream_row(form, ICD_TELECOMMAND, request->id);
     if (row == NULL) {
         const bool is_known = asks && icdgen_stream_row(form, ICD_TELEMETRY, request->id) != NULL;
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
-    const size_t length = asks ? row->least : request->length;
     const bool has_reply = request->has_reply && !asks;
     const icd_stream_row_t *const reply = has_reply ? icdgen_stream_row(form, ICD_TELEMETRY, request->reply) : NULL;
     if (has_reply && reply == NULL) {
@@ -3050,34 +3297,48 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     if (client->started == client->slot_count) {
         return ICD_ERROR_BUSY;
     }
-    if (length < row->least || length > row->most) {
-        return ICD_ERROR_LENGTH;
-    }
     icd_stream_slot_t *const slot = &client->slots[client->started];
     uint8_t *const data = slot->data;
-    for (size_t i = 0; i < length; ++i) {
-        data[i] = asks ? 0u : request->data[i];
-    }
-    /* Without a buffer, this checks whether header and trailer values fit into their fields. */
-    size_t written = 0;
-    if (icd_stream_encode(
-            client->link, ICD_TELECOMMAND, row->id, data, length, &client->sender.values, NULL, 0, &written) ==
-        ICD_ERROR_RANGE) {
-        return ICD_ERROR_RANGE;
-    }
     (void)memset(slot, 0, sizeof *slot);
     slot->row = row;
     slot->data = data;
-    slot->length = length;
-    slot->repeat = request->repeat || asks || row->repeats;
     slot->direction = request->direction;
-    slot->state = ICD_STREAM_SLOT_QUEUED;
-    slot->awaited.exchange = row->exchange;
-    if (reply != NULL && !icdgen_has_reply(row->exchange, reply->id)) {
-        slot->awaited.reply = reply;
+    const bool by_packet = icdgen_is_by_packet(slot);
+    slot->length = request->length;
+    if (by_packet) {
+        slot->length = form->packets[form->request->packet].reserved;
+    } else if (asks) {
+        slot->length = row->least;
+    } else if (request->length < row->least || request->length > row->most) {
+        return ICD_ERROR_LENGTH;
+    } else {
+        /* the length fits */
     }
-    for (size_t i = 0; row->exchange != NULL && i < row->exchange->source_count; ++i) {
-        slot->awaited.sources[i] = icdgen_stream_number(&row->exchange->sources[i], row->id, data, length);
+    for (size_t i = 0; i < slot->length; ++i) {
+        data[i] = asks ? 0u : request->data[i];
+    }
+    /* Without a buffer, this only checks whether header and trailer values fit into their fields. */
+    size_t written = 0;
+    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    if (icdgen_outgoing_encode(&outgoing, &client->sender.values, NULL, 0, &written) == ICD_ERROR_RANGE) {
+        return ICD_ERROR_RANGE;
+    }
+    slot->repeat = request->repeat || asks || (row->flags & ICD_STREAM_REPEATS) != 0u;
+    slot->state = ICD_STREAM_SLOT_QUEUED;
+    const icd_exchange_t *exchange = by_packet ? form->request->exchange : row->exchange;
+    if (exchange == NULL) {
+        exchange = &no_exchange;
+    }
+    slot->awaited.exchange = exchange;
+    if (by_packet) {
+        slot->awaited.reply = row;
+    } else if (reply != NULL && !icdgen_has_reply(exchange, reply->id)) {
+        slot->awaited.reply = reply;
+    } else {
+        /* as in the ICD */
+    }
+    for (size_t i = 0; i < exchange->source_count; ++i) {
+        slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
     }
     client->started++;
     icdgen_stream_set_time(client, now);
@@ -3132,7 +3393,8 @@ static inline bool icdgen_stream_may_be_sent(const icd_stream_client_t *client, 
     if (client->in_gap) {
         return false;
     }
-    if (icdgen_next_response(&slot->awaited, NULL) == NULL) {
+    size_t position = 0;
+    if (icdgen_next_response(&slot->awaited, &position) == NULL) {
         return true;
     }
     for (size_t i = 0; i < client->started; ++i) {
@@ -3162,9 +3424,11 @@ static inline bool icdgen_stream_may_be_sent(const icd_stream_client_t *client, 
 ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
 {
     icd_stream_slot_t *const slot = icdgen_stream_queued(client);
-    if (slot == NULL || !icdgen_stream_may_be_sent(client, slot) ||
-        icd_stream_send(&client->sender, slot->row->id, slot->data, slot->length, buffer, capacity, written) !=
-            ICD_OK) {
+    if (slot == NULL || !icdgen_stream_may_be_sent(client, slot)) {
+        return false;
+    }
+    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    if (icdgen_outgoing_send(&outgoing, &client->sender, buffer, capacity, written) != ICD_OK) {
         return false;
     }
     icd_stream_awaited_t *const awaited = &slot->awaited;
@@ -3197,7 +3461,7 @@ static inline void icdgen_stream_report(
     event->kind = kind;
     event->has_id = true;
     event->id = icdgen_request_id(slot);
-    event->link = call->client->link;
+    event->link = call->client->sender.link;
     event->direction = slot->direction;
     event->attempts = slot->attempts;
     if (kind != ICD_STREAM_PROGRESS && kind != ICD_STREAM_REPLY) {
@@ -3236,7 +3500,7 @@ static inline void icdgen_stream_responded(
     icd_stream_slot_t *const slot = &client->slots[index];
     const icd_verdict_t verdict = icdgen_verdict(response, event);
     icd_stream_kind_t kind = ICD_STREAM_PROGRESS;
-    event->has_reply = true;
+    event->has_reply = !event->is_packet;
     event->reply = event->id;
     icdgen_settle(&slot->awaited, verdict);
     if (verdict == ICD_VERDICT_PROGRESS) {
@@ -3303,9 +3567,9 @@ static inline void icdgen_stream_on_event(void *context, const icd_stream_event_
     const icdgen_stream_call_t *const call = ICDGEN_CAST(const icdgen_stream_call_t *, context);
     icd_stream_client_t *const client = call->client;
     icd_stream_event_t reported = *event;
-    reported.link = client->link;
+    reported.link = client->sender.link;
     reported.direction = ICD_TELEMETRY;
-    if (event->kind == ICD_STREAM_MESSAGE) {
+    if (event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_PACKET) {
         for (size_t i = 0; i < client->started; ++i) {
             const icd_stream_slot_t *const slot = &client->slots[i];
             const bool is_awaited = slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
@@ -3317,7 +3581,7 @@ static inline void icdgen_stream_on_event(void *context, const icd_stream_event_
         }
         if (icdgen_stream_is_late(client, event)) {
             reported.kind = ICD_STREAM_LATE;
-        } else if (icdgen_stream_confirms(client->link->stream, event->id)) {
+        } else if (event->is_packet || icdgen_stream_confirms(client->sender.link->stream, event->id)) {
             reported.kind = ICD_STREAM_STRAY;
         } else {
             /* unsolicited */
@@ -3368,7 +3632,7 @@ ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *no
 {
     const bool arrived =
         event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_LATE || event->kind == ICD_STREAM_STRAY;
-    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY);
+    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY && !event->is_packet);
     return brings && (event->has_reply ? event->reply : event->id) == id && event->link != NULL &&
         icd_has_messages_of(event->link, node);
 }

@@ -5,15 +5,22 @@ const icdgenEnvelopes = ((frames) => {
   const ENDS = { slip: [0xc0, 0xdb], hdlc: [0x7e, 0x7d], cobs: [0x00, -1] };
   const SLIP_MEANT = { 0xdc: 0xc0, 0xdd: 0xdb };
 
-  const fieldOf = (form, role) => form.fields.find((field) => field.role === role);
+  const fieldOf = (packet, role) => packet.fields.find((field) => field.role === role);
+  const sideOf = (direction) => DIRECTIONS.indexOf(direction);
 
-  /** A field of a frame of which `length` bytes are whole. */
-  function get(form, field, frame, length) {
-    const from = field.at + (field.in_trailer ? length - form.trailer : 0);
+  /** A field of a frame of a packet format, of which `length` bytes are whole. */
+  function get(packet, field, frame, length) {
+    const from = field.at + (field.in_trailer ? length - packet.trailer : 0);
     const part = [...frame.slice(from, from + field.size)];
     if (field.little) part.reverse();
     const value = part.reduce((sum, byte) => sum * 256 + byte, 0);
     return Math.floor(value / 2 ** field.shift) % 2 ** field.bits;
+  }
+
+  /** The id of a frame from all its parts; undefined in a packet without id. */
+  function idOf(packet, frame, length) {
+    const parts = packet.fields.filter(({ role }) => role === "id");
+    return parts.length ? parts.reduce((id, field) => id + get(packet, field, frame, length) * 2 ** (field.id_shift ?? 0), 0) : undefined;
   }
 
   /** A checksum of up to 32 bits. */
@@ -37,10 +44,10 @@ const icdgenEnvelopes = ((frames) => {
   }
 
   /** The checksum that a frame must have; `row` has the seed of its message. */
-  function checksum(form, row, frame) {
-    const { from, trailer, seeded } = form.check;
-    const covered = [...frame.slice(from, frame.length - form.trailer + trailer)];
-    return sum(form.check, seeded ? [...covered, row[3]] : covered);
+  function checksum(packet, row, frame) {
+    const { from, trailer, seeded } = packet.check;
+    const covered = [...frame.slice(from, frame.length - packet.trailer + trailer)];
+    return sum(packet.check, seeded && row ? [...covered, row[3]] : covered);
   }
 
   /** An id as people write it: `01 35` where packets have it as bytes, the most significant first, else `309`. */
@@ -53,88 +60,150 @@ const icdgenEnvelopes = ((frames) => {
     return Uint8Array.from(little ? found : found.reverse());
   }
 
-  /** `{ event, id, data, values, is }` of a frame; `is` says whether it is one: `message`, `proven` (of no use) or `doubtful`. */
-  function judge(form, rows, constants, frame) {
-    const count = frame.length - form.header - form.trailer;
-    const of = (role) => fieldOf(form, role);
-    const read = (field) => get(form, field, frame, frame.length);
+  /**
+   * The packet formats of a direction, with what its decoder needs of each: `rows` of its messages and of the telemetry that
+   * it requests, by id, and `only`, the id of the message of a packet without id.
+   */
+  function packetsOf(form, direction) {
+    const kept = prepared.get(form) ?? {};
+    prepared.set(form, kept);
+    kept[direction] ??= prepare(form, direction);
+    return kept[direction];
+  }
+
+  const prepared = new WeakMap();
+
+  function prepare(form, direction) {
+    const byId = (rows) => new Map(rows.map((row) => [row[0], row]));
+    return form.packets.flatMap((packet, number) => {
+      if (!packet.directions.includes(direction)) return [];
+      const requested = direction === "telecommand" && form.request?.packet === number ? form.request.ids : [];
+      const rows = byId(form[direction].filter((row) => row[4] === number));
+      return {
+        ...packet,
+        number,
+        rows,
+        requested: byId(form.telemetry.filter(([id]) => requested.includes(id))),
+        constants: packet.fields.filter(({ role }) => role === "constant").map((field) => ({ field, value: field.values[sideOf(direction)] })),
+        length: fieldOf(packet, "length"),
+        only: rows.size ? Math.min(...rows.keys()) : 0,
+      };
+    });
+  }
+
+  /** The message, or the requested telemetry, of an id; undefined without one. */
+  const rowOf = (packet, id) => packet.rows.get(id ?? packet.only) ?? packet.requested.get(id ?? packet.only);
+
+  const isRequested = (packet, row) => Boolean(row) && packet.requested.get(row[0]) === row;
+
+  /** The smallest and the largest number of data bytes of a packet with the message of `row`, or without a message. */
+  function boundsOf(form, packet, row) {
+    if (isRequested(packet, row)) return [form.request.reserved, form.request.reserved];
+    return row ? [row[1], row[2]] : [packet.reserved, packet.reserved];
+  }
+
+  /** Whether a constant of the header, as far as it came, differs; `left` bytes came. */
+  const differs = (packet, front, left) =>
+    packet.constants.some(({ field, value }) => !field.in_trailer && field.at + field.size <= left && get(packet, field, front, 0) !== value);
+
+  /** Whether a frame has the size of header and trailer, and all constants. */
+  const fits = (packet, frame) =>
+    frame.length >= packet.header + packet.trailer && packet.constants.every(({ field, value }) => get(packet, field, frame, frame.length) === value);
+
+  /**
+   * `{ event, id, data, values, is, packet }` of a frame: a `message`, a `request` of telemetry, a `packet` without a message, or a
+   * fault. `is` says whether it is a packet of the link: `message`, `proven` (of no use) or `doubtful`.
+   */
+  function judge(form, packet, frame) {
+    const count = frame.length - packet.header - packet.trailer;
+    const read = (field) => get(packet, field, frame, frame.length);
     if (count < 0) return { event: "length", is: "doubtful" };
-    if (constants.some(({ field, value }) => read(field) !== value)) return { event: "framing", is: "doubtful" };
-    if (of("length") && read(of("length")) - form.plus !== count) return { event: "length", is: "doubtful" };
-    const id = of("id") ? read(of("id")) : Math.min(...rows.keys());
-    const row = rows.get(id);
-    if (of("checksum") && form.check) {
-      if (form.check.seeded && !row) return { event: "unknown_id", id, is: "doubtful" };
-      if (read(of("checksum")) !== checksum(form, row, frame)) return { event: "checksum", id, is: "doubtful" };
+    if (!fits(packet, frame)) return { event: "framing", is: "doubtful" };
+    if (packet.length && read(packet.length) - packet.plus !== count) return { event: "length", is: "doubtful" };
+    const given = idOf(packet, frame, frame.length);
+    const [id, row, needsRow] = [given ?? packet.only, rowOf(packet, given), packet.content !== "none"];
+    const sent = fieldOf(packet, "checksum");
+    if (sent && packet.check) {
+      if (packet.check.seeded && !row && needsRow) return { event: "unknown_id", id, is: "doubtful" };
+      if (read(sent) !== checksum(packet, row, frame)) return { event: "checksum", id, is: "doubtful" };
     }
-    if (!row) return { event: "unknown_id", id, is: "proven" };
-    if (count < row[1] || count > row[2]) return { event: "length", id, is: "proven" };
-    const values = Object.fromEntries(form.fields.filter((field) => form.given.includes(field.role)).map((field) => [field.role, read(field)]));
-    return { event: "message", id, data: frame.slice(form.header, form.header + count), values, is: "message" };
+    if (!row && needsRow) return { event: "unknown_id", id, is: "proven" };
+    const [least, most] = boundsOf(form, packet, row);
+    if (count < least || count > most) return { event: "length", id, is: "proven" };
+    const values = Object.fromEntries(packet.fields.filter((field) => form.given.includes(field.role)).map((field) => [field.role, read(field)]));
+    const event = !row ? "packet" : isRequested(packet, row) ? "request" : "message";
+    const data = frame.slice(packet.header, event === "message" ? packet.header + count : packet.header);
+    return { event, id, data, values, is: "message", packet: packet.number };
   }
 
   /** `{ events, lost }` of the messages of a direction; `lost` bytes belong to no message. */
   function decode(form, direction, bytes) {
-    const rows = new Map(form[direction].map((row) => [row[0], row]));
-    const side = DIRECTIONS.indexOf(direction);
-    const constants = form.fields.filter(({ role }) => role === "constant").map((field) => ({ field, value: field.values[side] }));
+    const packets = packetsOf(form, direction);
     const [events, found] = [[], { lost: 0 }];
     let end = 0;
+    function refuse(event, frame, size) {
+      events.push({ event, at: end, end: end + size, frame });
+      end += size;
+      found.lost += size;
+    }
     function take(frame, size) {
-      const one = judge(form, rows, constants, frame);
+      const one = judge(form, packets.find((packet) => fits(packet, frame)) ?? packets[0], frame);
       events.push({ ...one, at: end, end: end + size, frame });
       end += size;
       if (one.is !== "message") found.lost += size;
     }
-    if (form.delimited_by === "none") take(bytes, bytes.length);
-    else if (form.delimited_by === "length") [found.lost, end] = byLength(form, rows, constants, bytes, events);
+    if (form.delimited_by === "none" && bytes.length > form.longest) refuse("overrun", bytes, bytes.length);
+    else if (form.delimited_by === "none") take(bytes, bytes.length);
+    else if (form.delimited_by === "length") [found.lost, end] = byLength(form, packets, bytes, events);
     else {
       const read = unstuffed(form, bytes);
       for (const { frame, size, fault } of read.frames) {
-        if (fault) {
-          events.push({ event: fault, at: end, end: end + size, frame: Uint8Array.from(frame) });
-          end += size;
-          found.lost += size;
-        } else {
-          take(Uint8Array.from(frame), size);
-        }
+        if (fault) refuse(fault, Uint8Array.from(frame), size);
+        else take(Uint8Array.from(frame), size);
       }
       found.lost += read.left;
     }
-    if (end < bytes.length) events.push({ event: "cut", at: end, end: bytes.length, ...begun(form, bytes.subarray(end)) });
+    if (end < bytes.length) events.push({ event: "cut", at: end, end: bytes.length, ...begun(form, direction, bytes.subarray(end)) });
     return { events, lost: found.lost };
   }
 
   /** Adds the events where the length delimits; how many bytes belong to no message, and where what is undecided begins. */
-  function byLength(form, rows, constants, bytes, events) {
-    const ahead = constants.filter(({ field }) => !field.in_trailer);
-    const length = fieldOf(form, "length");
+  function byLength(form, packets, bytes, events) {
     let lost = 0;
     for (let at = 0; at < bytes.length; ) {
       const left = bytes.length - at;
-      const front = bytes.subarray(at, at + form.header);
-      if (ahead.some(({ field, value }) => field.at + field.size <= left && get(form, field, front, 0) !== value)) {
+      const packet = packets.find((one) => !differs(one, bytes.subarray(at, at + one.header), left));
+      if (!packet) {
         lost += 1;
         at += 1;
         continue;
       }
-      if (left < form.header) return [lost + left, at];
-      const data = get(form, length, front, 0) - form.plus;
-      const size = form.header + data + form.trailer;
-      if (data < 0 || size > form.longest) {
-        events.push({ event: "length", at, end: at + 1, frame: front });
+      const front = bytes.subarray(at, at + packet.header);
+      if (left < packet.header) return [lost + left, at];
+      const data = dataOf(form, packet, front);
+      const size = packet.header + data + packet.trailer;
+      if (data === undefined || data < 0 || size > form.longest) {
+        events.push({ event: data === undefined ? "unknown_id" : "length", id: idOf(packet, front, 0), at, end: at + 1, frame: front });
         lost += 1;
         at += 1;
         continue;
       }
       if (left < size) return [lost + left, at];
-      const one = judge(form, rows, constants, bytes.slice(at, at + size));
+      const one = judge(form, packet, bytes.slice(at, at + size));
       events.push({ ...one, at, end: at + size, frame: bytes.slice(at, at + size) });
       const used = one.is === "doubtful" ? 1 : size;
       if (one.is !== "message") lost += used;
       at += used;
     }
     return [lost, bytes.length];
+  }
+
+  /** Bytes of the data behind a header: of its length field, else those of the message; undefined for the id of no message. */
+  function dataOf(form, packet, front) {
+    if (packet.length) return get(packet, packet.length, front, 0) - packet.plus;
+    if (packet.content !== "message") return packet.reserved;
+    const row = rowOf(packet, idOf(packet, front, 0));
+    return row && boundsOf(form, packet, row)[1];
   }
 
   /** `{ frames, left }` between delimiters: what stood there, of so many bytes, and its fault; `left` bytes follow. */
@@ -176,8 +245,8 @@ const icdgenEnvelopes = ((frames) => {
     return { frames: found, left: now.size };
   }
 
-  /** Whether a message shows that it is one, by a constant or a checksum. */
-  const isMarked = (form) => Boolean(form.check || fieldOf(form, "constant"));
+  /** Whether each packet shows that it is one, by a constant or a checksum. */
+  const isMarked = (form) => form.packets.every((packet) => packet.check || fieldOf(packet, "constant"));
 
   const chosen = (values) => Object.entries(values).map(([role, value]) => `${role} ${value}`).join(", ");
 
@@ -189,40 +258,71 @@ const icdgenEnvelopes = ((frames) => {
   /** What is said of the bytes around the messages. */
   const around = (lost) => (lost ? [`${lost} byte${lost === 1 ? "" : "s"} around the frame belong to none`] : []);
 
+  // Packets without a message
+
+  /** The number at a place; bytes that are not there are 0. */
+  function numberAt([at, size, shift, bits, little], bytes) {
+    const field = { at, size, shift, bits, little };
+    return get({}, field, Uint8Array.from({ length: at + size }, (_, place) => bytes[place] ?? 0), 0);
+  }
+
+  /**
+   * `{ what, reason, about }` of a packet without a message: `acknowledge` or `refusal`, the name of the reason of a refusal, and
+   * `[direction, id]` of the message of its id; without one, of any message. Null if nothing is answered with the packet.
+   */
+  function statement(form, { packet, id, frame }) {
+    const responses = (form.responses ?? []).filter((one) => one.packet === packet);
+    const directions = ["telemetry", "telecommand"];
+    const declared = directions.map((direction) => [direction, responses.find((one) => one.about[direction]?.includes(id))]);
+    const other = directions.find((direction) => form[direction].some(([one]) => one === id));
+    const [direction, response] = declared.find(([, one]) => one) ?? [other, responses[0]];
+    if (!response) return null;
+    const meaning = response.status && response.meanings.find(([value]) => value === numberAt(response.status, frame));
+    const what = ["ack", "progress"].includes(meaning ? meaning[1] : response.verdict) ? "acknowledge" : "refusal";
+    const code = what === "refusal" && response.reason ? numberAt(response.reason, frame) : undefined;
+    const reason = code === undefined ? "" : response.names.find(([value]) => value === code)?.[1] ?? String(code);
+    return { what, reason, about: direction && [direction, id] };
+  }
+
   // Packets that cannot be decoded
 
   const count = (number) => `${number} byte${number === 1 ? "" : "s"}`;
   const isDelimitedAhead = (form) => ["slip", "hdlc"].includes(form.delimited_by);
-  const constantsOf = (form) => form.fields.filter(({ role, in_trailer }) => role === "constant" && !in_trailer);
-  const sideOf = (direction) => DIRECTIONS.indexOf(direction);
+  const ahead = (packet) => packet.constants.filter(({ field }) => !field.in_trailer);
+  const syncBits = (packet) => ahead(packet).reduce((bits, { field }) => bits + field.bits, 0);
+  const BITS_OF_SYNC = 8; // constants of fewer bits are in any data
 
-  /** Whether packets begin with bytes by which they are recognized. */
-  const hasSync = (form) => isDelimitedAhead(form) || constantsOf(form).reduce((bits, field) => bits + field.bits, 0) >= 8;
+  /** Whether packets of a direction begin with bytes by which they are recognized. */
+  const hasSync = (form, direction) => isDelimitedAhead(form) || packetsOf(form, direction).every((packet) => syncBits(packet) >= BITS_OF_SYNC);
 
   /** Whether bytes begin as packets of a direction do: with the delimiter, or with the constants of the header. */
   function begins(form, direction, bytes) {
     if (isDelimitedAhead(form)) return bytes[0] === ENDS[form.delimited_by][0];
-    return bytes.length > 0 && hasSync(form) && bitsOfConstants(form, direction, bytes) > 0;
+    return bytes.length > 0 && packetsOf(form, direction).some((packet) => syncBits(packet) >= BITS_OF_SYNC && bitsOfConstants(packet, bytes) > 0);
   }
 
-  /** `A5 5A`: bytes that packets of a direction begin with; empty if their first byte is not constant. */
-  function syncText(form, direction) {
-    if (isDelimitedAhead(form)) return frames.hex([ENDS[form.delimited_by][0]]);
-    const constants = new Map(constantsOf(form).map((field) => [field.at, field]));
+  /** `A5 5A`: bytes that the packets of a direction begin with; none for those whose first byte is not constant. */
+  function syncTexts(form, direction) {
+    if (isDelimitedAhead(form)) return [frames.hex([ENDS[form.delimited_by][0]])];
+    return packetsOf(form, direction).map(syncText).filter(Boolean);
+  }
+
+  function syncText(packet) {
+    const constants = new Map(ahead(packet).map((one) => [one.field.at, one]));
     const found = [];
-    for (let field = constants.get(0); field && field.bits === 8 * field.size; field = constants.get(found.length)) {
-      found.push(...bytesOf(field.values[sideOf(direction)], field.size, field.little));
+    for (let one = constants.get(0); one && one.field.bits === 8 * one.field.size; one = constants.get(found.length)) {
+      found.push(...bytesOf(one.value, one.field.size, one.field.little));
     }
     return frames.hex(found);
   }
 
-  /** Bits of the header's constants that the packet has; -1 if one has another value. A field may be cut off. */
-  function bitsOfConstants(form, direction, packet) {
+  /** Bits of the header's constants that the bytes have; -1 if one has another value. A field may be cut off. */
+  function bitsOfConstants(packet, bytes) {
     let found = 0;
-    for (const field of constantsOf(form)) {
+    for (const { field, value } of ahead(packet)) {
       const mask = bytesOf((2 ** field.bits - 1) * 2 ** field.shift, field.size, field.little);
-      const right = bytesOf(field.values[sideOf(direction)] * 2 ** field.shift, field.size, field.little);
-      const came = packet.subarray(field.at, field.at + field.size);
+      const right = bytesOf(value * 2 ** field.shift, field.size, field.little);
+      const came = bytes.subarray(field.at, field.at + field.size);
       if (came.some((byte, at) => (byte ^ right[at]) & mask[at])) return -1;
       for (let at = 0; at < came.length; at += 1) found += mask[at].toString(2).replaceAll("0", "").length;
     }
@@ -230,16 +330,18 @@ const icdgenEnvelopes = ((frames) => {
   }
 
   /** Bytes of the packet as its header says; undefined if it does not, or has not come. */
-  function sizeOf(form, packet) {
-    const field = fieldOf(form, "length");
-    return field && packet.length >= form.header ? form.header + get(form, field, packet, 0) - form.plus + form.trailer : undefined;
+  function sizeOf(form, packet, bytes) {
+    if (bytes.length < packet.header || (!packet.length && form.delimited_by !== "length")) return undefined;
+    const data = dataOf(form, packet, bytes);
+    return data === undefined ? undefined : packet.header + data + packet.trailer;
   }
 
   /** The packet that bytes begin with, without stuffing, and whether its end came. */
-  function begun(form, bytes) {
+  function begun(form, direction, bytes) {
     if (form.delimited_by === "none") return { frame: bytes, whole: true };
     if (form.delimited_by === "length") {
-      const needed = sizeOf(form, bytes);
+      const packet = packetsOf(form, direction).find((one) => bitsOfConstants(one, bytes) >= 0);
+      const needed = packet && sizeOf(form, packet, bytes);
       return { frame: bytes.slice(0, needed < 0 ? 0 : needed), whole: needed !== undefined && bytes.length >= needed };
     }
     const [first] = unstuffed(form, bytes).frames;
@@ -249,60 +351,86 @@ const icdgenEnvelopes = ((frames) => {
   }
 
   /**
-   * Why a packet without its stuffing is no message of a direction: `{ rank, text, isOfMessage, isCertain }`; null if it is
-   * not even the beginning of a packet. `namesOf` gives the messages of a direction and an id.
+   * Why bytes without stuffing are no packet of a direction, for the format whose header fits best:
+   * `{ rank, text, isOfMessage, isCertain }`; null if they are not even the beginning of one. `namesOf` gives the messages of a
+   * direction and an id.
    */
-  function faultOf(form, direction, packet, isWhole, title, namesOf) {
-    const bits = bitsOfConstants(form, direction, packet);
+  function faultOf(form, direction, bytes, isWhole, title, namesOf) {
+    const every = packetsOf(form, direction).map((packet) => faultIn(form, direction, packet, bytes, isWhole, title, namesOf));
+    return likeliest(every.filter(Boolean));
+  }
+
+  function faultIn(form, direction, packet, bytes, isWhole, title, namesOf) {
+    const bits = bitsOfConstants(packet, bytes);
     if (bits < 0) return null;
-    const field = fieldOf(form, "id");
-    const isThere = field && field.at + field.size <= packet.length && (!field.in_trailer || (isWhole && packet.length >= form.trailer));
-    const only = form[direction][0]?.[0];
-    const id = field ? (isThere ? get(form, field, packet, packet.length) : undefined) : only;
-    const row = id === undefined ? undefined : form[direction].find(([one]) => one === id);
-    const names = row ? namesOf(direction, id) : [];
-    let told = `packet of ${title}`;
-    if (field && id !== undefined) told += ` with the id ${idText(form, id)}`;
-    if (names.length) told = `packet of ${title}, ${names.join(" or ")} (${direction} ${idText(form, id)})`;
-    const needed = sizeOf(form, packet);
-    const data = needed === undefined ? undefined : needed - form.header - form.trailer;
+    const parts = packet.fields.filter(({ role }) => role === "id");
+    const hasCome = (field) => field.at + field.size <= bytes.length && (!field.in_trailer || (isWhole && bytes.length >= packet.trailer));
+    const id = parts.length && parts.every(hasCome) ? idOf(packet, bytes, bytes.length) : undefined;
+    const row = parts.length && id === undefined ? undefined : rowOf(packet, id);
+    const names = row ? namesOf(isRequested(packet, row) ? "telemetry" : direction, row[0]) : [];
+    let told = packet.content === "none" ? `packet ${packet.name} of ${title}` : `packet of ${title}`;
+    if (names.length) {
+      const which = `(${isRequested(packet, row) ? "telemetry" : direction} ${idText(form, row[0])})`;
+      told += `, ${isRequested(packet, row) ? "request of " : ""}${names.join(" or ")} ${which}`;
+    } else if (id !== undefined) told += ` with the id ${idText(form, id)}`;
+    const needed = sizeOf(form, packet, bytes);
+    const data = needed === undefined ? undefined : needed - packet.header - packet.trailer;
     const fault = (rank, text, isCertain = false) => ({ rank: bits + (row ? 100 : 0) + rank, text: `a ${told} ${text}`, isOfMessage: Boolean(row), isCertain });
     if (data < 0 || needed > form.longest) return fault(0, `says that it has ${count(needed)}; packets have up to ${form.longest}`);
-    const isCertain = Boolean(row) && (data === undefined ? isDelimitedAhead(form) : row[1] <= data && data <= row[2]);
-    if (!isWhole || needed > packet.length) {
-      let wanted = needed === undefined ? `its header has ${form.header}` : `${needed} are needed`;
-      if (needed === undefined && packet.length >= form.header && ENDS[form.delimited_by]) {
+    const [least, most] = boundsOf(form, packet, row);
+    const isCertain = Boolean(row) && (packet.length && data !== undefined ? least <= data && data <= most : isDelimitedAhead(form));
+    const isNone = packet.content !== "none" && !row && (id !== undefined || !parts.length);
+    const whole = { row, needed, isCertain, fault, namesOf, id, isNone };
+    // Without a length field, only the message of the id says where the packet ends.
+    if (form.delimited_by === "length" && !packet.length && isNone) return noMessage(form, direction, packet, bytes, whole);
+    if (!isWhole || needed > bytes.length) {
+      let wanted = needed === undefined ? `its header has ${packet.header}` : `${needed} are needed`;
+      if (needed === undefined && bytes.length >= packet.header && ENDS[form.delimited_by]) {
         wanted = `the byte ${frames.hex([ENDS[form.delimited_by][0]])} that ends it is missing`;
       }
-      return fault(0, `is cut off: ${count(packet.length)} came, ${wanted}`, isCertain);
+      return fault(0, `is cut off: ${count(bytes.length)} came, ${wanted}`, isCertain);
     }
-    return wholeFault(form, direction, packet, { row, needed, isCertain, fault, namesOf, field });
+    return wholeFault(form, direction, packet, bytes, whole);
   }
 
   /** Of a packet whose end came. */
-  function wholeFault(form, direction, packet, { row, needed, isCertain, fault, namesOf, field }) {
-    const size = packet.length - form.header - form.trailer;
-    const side = sideOf(direction);
-    const read = (one) => get(form, one, packet, packet.length);
-    if (size < 0) return fault(0, `is cut off: ${count(packet.length)} came, header and trailer have ${form.header + form.trailer}`);
-    if (needed !== undefined && needed !== packet.length) return fault(0, `has ${count(packet.length)}, its length says ${needed}`);
-    const end = form.fields.find((one) => one.role === "constant" && one.in_trailer && read(one) !== one.values[side]);
-    if (end) return fault(0, `ends with ${valueText(end, read(end))}, expected ${valueText(end, end.values[side])}`);
-    const place = fieldOf(form, "checksum");
-    if (place && form.check && (row || !form.check.seeded)) {
-      const right = checksum(form, row, packet);
+  function wholeFault(form, direction, packet, bytes, whole) {
+    const { row, needed, isCertain, fault, isNone } = whole;
+    const size = bytes.length - packet.header - packet.trailer;
+    const read = (field) => get(packet, field, bytes, bytes.length);
+    if (size < 0) return fault(0, `is cut off: ${count(bytes.length)} came, header and trailer have ${packet.header + packet.trailer}`);
+    if (needed !== undefined && needed !== bytes.length) return fault(0, `has ${count(bytes.length)}, its length says ${needed}`);
+    const end = packet.constants.find(({ field, value }) => field.in_trailer && read(field) !== value);
+    if (end) return fault(0, `ends with ${valueText(end.field, read(end.field))}, expected ${valueText(end.field, end.value)}`);
+    const place = fieldOf(packet, "checksum");
+    if (place && packet.check && (row || !packet.check.seeded || packet.content === "none")) {
+      const right = checksum(packet, row, bytes);
       if (read(place) !== right) return fault(200, `has a wrong checksum: it is ${valueText(place, read(place))}, expected ${valueText(place, right)}`, isCertain);
     }
-    if (!row) {
-      const other = DIRECTIONS[1 - side];
-      const names = field && form[other].some(([one]) => one === read(field)) ? namesOf(other, read(field)) : [];
-      const none = names.length ? `no ${direction} with this id, but ${other} ${names.join(" or ")}` : "no message with this id";
-      return fault(300, `and ${count(size)} of data is no message: it has ${none}`);
-    }
-    if (size < row[1] || size > row[2]) {
-      return fault(300, `has ${count(size)} of data, the ICD says ${row[1] === row[2] ? row[1] : `${row[1]} to ${row[2]}`}`, true);
+    if (isNone) return noMessage(form, direction, packet, bytes, whole);
+    if (packet.content === "none" && size === packet.reserved) return unrelated(form, packet, bytes, whole);
+    const [least, most] = boundsOf(form, packet, row);
+    if (size < least || size > most) {
+      return fault(300, `has ${count(size)} of data, the ICD says ${least === most ? least : `${least} to ${most}`}`, true);
     }
     return fault(300, "has data that are not those of the message, by length and constants");
+  }
+
+  /** Of a packet with an id that no message of the direction has in it. */
+  function noMessage(form, direction, packet, bytes, { fault, namesOf, id }) {
+    const other = DIRECTIONS[1 - sideOf(direction)];
+    const names = id !== undefined && form[other].some(([one]) => one === id) ? namesOf(other, id) : [];
+    const none = names.length ? `no ${direction} with this id, but ${other} ${names.join(" or ")}` : "no message with this id";
+    const size = bytes.length - packet.header - packet.trailer;
+    const data = size < 0 || (form.delimited_by === "length" && !packet.length) ? "" : `and ${count(size)} of data `;
+    return fault(300, `${data}is no message: it has ${none}`);
+  }
+
+  /** Of a packet without a message that responds to no message of the ICD. */
+  function unrelated(form, packet, bytes, { fault }) {
+    const { what, reason } = statement(form, { packet: packet.number, frame: bytes }) ?? { what: "response", reason: "" };
+    const absence = packet.fields.some(({ role }) => role === "id") ? "no message has this id" : "without an id, it names no message";
+    return fault(300, `is a ${what}${reason ? `, reason ${reason}` : ""}: ${absence}`);
   }
 
   /** A checksum as its bytes are sent; where they are shared with other fields, as a number. */
@@ -314,7 +442,7 @@ const icdgenEnvelopes = ((frames) => {
   /** The fault of bytes that begin as a packet does; null if they do not. */
   function faultOfBeginning(form, bytes, title, namesOf) {
     const every = DIRECTIONS.filter((one) => begins(form, one, bytes)).map((one) => {
-      const { frame, whole } = begun(form, bytes);
+      const { frame, whole } = begun(form, one, bytes);
       return faultOf(form, one, frame, whole, title, namesOf);
     });
     return likeliest(every.filter(Boolean));
@@ -323,6 +451,9 @@ const icdgenEnvelopes = ((frames) => {
   /** Of several explanations the one by which most of the header fits. */
   const likeliest = (every) => every.reduce((best, one) => (best && best.rank >= one.rank ? best : one), null);
 
-  return { DIRECTIONS, decode, isMarked, removed, around, hasSync, syncText, faultOf, faultOfBeginning, likeliest, idText };
+  /** The directions in which a link has packets. */
+  const directionsOf = (form) => DIRECTIONS.filter((direction) => packetsOf(form, direction).length);
+
+  return { DIRECTIONS, directionsOf, decode, isMarked, removed, around, statement, hasSync, syncTexts, faultOf, faultOfBeginning, likeliest, idText };
 })(typeof icdgenFrames === "undefined" ? require("./frames.js") : icdgenFrames);
 if (typeof module !== "undefined") module.exports = icdgenEnvelopes;

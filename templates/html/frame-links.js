@@ -23,9 +23,10 @@ const icdgenFrameLinks = (() => {
 
   function link(one) {
     const told = OF[one.what];
+    const title = told && !one.message ? one.what : told ? `${told} ${one.message}` : one.message;
     const hex = [...one.data].map((byte) => byte.toString(16).padStart(2, "0")).join("");
     return {
-      title: told ? `${told} ${one.message}` : one.message,
+      title,
       context: [...(one.time ? [one.time] : []), `${told ? "" : `${one.what} · `}${one.title}`, ...one.remarks.filter((text) => !text.startsWith("left out: "))].join(" · "),
       url: `${root}${one.url}${told ? "" : `#try=${hex}`}`,
     };

@@ -11,7 +11,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
 
   /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
   function unwrap(wire, length, bytes) {
-    const begun = wire.stream && envelopes.faultOfBeginning(wire.stream, bytes, "this node", () => ["this message"]);
+    const begun = wire.stream && envelopes.faultOfBeginning(wire.stream, bytes, "this node", namesIn(wire));
     if (hasLength(wire, length, bytes)) {
       const sure = surelyEnveloped(wire, length, bytes);
       if (!sure && begun?.isCertain) throw new Error(begun.text);
@@ -32,7 +32,7 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
 
   /** Where frames differ in length one in its envelope can be as long as another without: a checksum tells. */
   function surelyEnveloped(wire, length, bytes) {
-    if (!wire.lengths || !wire.stream?.check) return null;
+    if (!wire.lengths || !wire.stream || !isChecked(wire)) return null;
     try {
       return ofEnvelopes(wire, length, bytes);
     } catch {
@@ -40,26 +40,45 @@ const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
     }
   }
 
-  /** The first message of this kind in its envelope; null if there is none. Throws an Error where one is damaged, or another one's. */
+  /** The first message of this kind in its envelope; null if there is none. Throws an Error where one is damaged, another one's, or has no data. */
   function ofEnvelopes(wire, length, bytes) {
-    const heard = envelopes.DIRECTIONS.filter((what) => wire.stream[what].length).map((what) => envelopes.decode(wire.stream, what, bytes));
-    const mine = ({ event, data }) => event === "message" && hasLength(wire, length, data);
-    const able = heard.filter((one) => one.events.some(mine) && (!one.lost || envelopes.isMarked(wire.stream)));
-    const best = able.sort((one, other) => one.lost - other.lost)[0];
+    const form = wire.stream;
+    const able = (what) => form[what].length || (what === "telecommand" && form.request?.ids.length);
+    const heard = envelopes.directionsOf(form).filter(able).map((what) => ({ what, ...envelopes.decode(form, what, bytes) }));
+    const isMine = (what, { event, id, data }) => event === "message" && idIn(wire, what) === id && hasLength(wire, length, data);
+    const usable = heard.filter(({ what, events, lost }) => events.some((event) => isMine(what, event)) && (!lost || envelopes.isMarked(form)));
+    const best = usable.sort((one, other) => one.lost - other.lost)[0];
     if (best) {
-      const [first, ...others] = best.events.filter(mine);
+      const [first, ...others] = best.events.filter((event) => isMine(best.what, event));
       const left = others.length ? [`${others.length} other frame${others.length === 1 ? "" : "s"} left out`] : [];
-      return { data: first.data, remarks: [envelopes.removed(wire.stream, first), ...left, ...envelopes.around(best.lost)] };
+      return { data: first.data, remarks: [envelopes.removed(form, first), ...left, ...envelopes.around(best.lost)] };
     }
-    const damaged = heard.flatMap((one) => one.events).find((one) => one.event === "checksum");
-    if (damaged && envelopes.isMarked(wire.stream)) {
-      const faults = envelopes.DIRECTIONS.map((what) => envelopes.faultOf(wire.stream, what, damaged.frame, true, "this node", () => ["this message"]));
+    if (!envelopes.isMarked(form)) return null;
+    const events = heard.flatMap(({ what, events: own }) => own.map((event) => ({ ...event, what })));
+    const damaged = events.find(({ event }) => event === "checksum");
+    if (damaged) {
+      const faults = envelopes.DIRECTIONS.map((what) => envelopes.faultOf(form, what, damaged.frame, true, "this node", namesIn(wire)));
       throw new Error(envelopes.likeliest(faults.filter(Boolean)).text);
     }
-    const other = envelopes.isMarked(wire.stream) && heard.flatMap((one) => one.events).find((one) => one.event === "unknown_id" && one.is === "proven");
-    if (other) throw new Error(`in an envelope with id ${envelopes.idText(wire.stream, other.id)}, which is another message's`);
+    const dataless = events.find(({ event }) => event === "request" || event === "packet");
+    if (dataless) {
+      const { name } = form.packets[dataless.packet];
+      throw new Error(dataless.event === "request" ? "a request of this message, which carries no data" : `a packet ${name}, which carries no message`);
+    }
+    const other = events.find(({ event, is, id, what }) => (event === "message" ? id !== idIn(wire, what) : event === "unknown_id" && is === "proven"));
+    if (other) throw new Error(`in an envelope with id ${envelopes.idText(form, other.id)}, which is another message's`);
     return null;
   }
+
+  /** Whether the packets of the message have a checksum. */
+  const isChecked = (wire) =>
+    envelopes.DIRECTIONS.every((what) => wire.stream[what].every(([id, , , , packet]) => id !== idIn(wire, what) || wire.stream.packets[packet].check));
+
+  /** What a packet of an id of a direction is called: other messages are not known here. */
+  const namesIn = (wire) => (direction, id) => (idIn(wire, direction) === id ? ["this message"] : []);
+
+  /** The id of the message in a direction; null if it is not sent in it. */
+  const idIn = (wire, direction) => (direction === "telemetry" ? wire.telemetry : wire.command ? wire.id : null);
 
   function ofStream(wire, length, { messages, remarks, errors }) {
     const mine = messages.filter(([id]) => wire.ids.includes(id));

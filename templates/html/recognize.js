@@ -4,7 +4,7 @@
  *
  * A reading is `{ what, message, node, title, url, id, data, checked, remarks, leftOut, time }`, `leftOut` being reports about other
  * packets of the input, `time` what candump printed or seconds of slcan, `what` telecommand, telemetry, request,
- * acknowledge, refusal, or configuration where nothing tells the direction.
+ * acknowledge, refusal, or configuration where nothing tells the direction. `message` is empty for a response without id.
  */
 const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
   const OF_CAN = { telecommand: "telecommand", acknowledge: "acknowledge", refusal: "refusal", request: "request", reply: "telemetry", request_refusal: "refusal" };
@@ -60,7 +60,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   /** The messages, of the direction that leaves the least; none if there are none, or hardly by intent. */
   function enveloped(index, talking, data) {
-    const heard = talking.filter((one) => one.stream).flatMap((speaker) => envelopes.DIRECTIONS.map((what) => heardOf(index, speaker, what, data)));
+    const heard = talking.filter((one) => one.stream).flatMap((speaker) => envelopes.directionsOf(speaker.stream).map((what) => heardOf(index, speaker, what, data)));
     const found = heard.filter((one) => one.read.length && (!one.lost || envelopes.isMarked(one.speaker.stream)));
     if (!found.length) {
       const firsts = heard.filter((one) => envelopes.isMarked(one.speaker.stream)).flatMap((one) => one.faults.slice(0, 1));
@@ -72,7 +72,10 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     const least = Math.min(...found.map((one) => one.lost));
     const clean = found.filter((one) => one.lost === least);
     const most = Math.max(...clean.map((one) => one.read.length));
-    const best = clean.filter((one) => one.read.length === most);
+    const likeliest = clean.filter((one) => one.read.length === most);
+    // Packets of the other direction at other places are no alternatives.
+    const placesOf = (one) => JSON.stringify(one.read.map(({ span }) => span));
+    const best = likeliest.filter((one) => one.speaker !== likeliest[0].speaker || placesOf(one) === placesOf(likeliest[0]));
     const chosen = Array.from({ length: most }, (_, at) => [best[0].read[at].span, decided(best.map((one) => one.read[at]), "a frame in an envelope")]);
     let lost = least;
     const taken = new Uint8Array(data.length);
@@ -118,23 +121,55 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   /** What one direction of a link makes of the bytes. */
   function heardOf(index, speaker, what, data) {
-    const { events, lost } = envelopes.decode(speaker.stream, what, data);
-    const ids = what === "telemetry" ? speaker.telemetry : speaker.telecommands;
+    const { events, lost: unused } = envelopes.decode(speaker.stream, what, data);
     const [read, faults] = [[], []];
+    let lost = unused;
     for (const one of events) {
-      const number = one.event === "message" ? numberOf(index, ids[one.id], one.data) : undefined;
-      if (number !== undefined && fits(index, number, one.data)) {
-        const note = envelopes.removed(speaker.stream, one);
-        const found = reading(index, speaker, what, number, one.id, one.data, [note], Boolean(speaker.stream.check));
+      const found = one.is === "message" ? readingOf(index, speaker, what, one) : null;
+      if (found) {
         read.push({ ...found, span: [one.at, one.end] });
         continue;
       }
+      if (one.is === "message") lost += one.end - one.at;
       const isWhole = one.event === "cut" ? one.whole : one.event !== "framing";
       const fault = envelopes.faultOf(speaker.stream, what, one.frame, isWhole, speaker.title, namesOf(index, speaker));
       // Without a sync, noise is as likely as a packet.
-      if (fault && (fault.isOfMessage || envelopes.hasSync(speaker.stream))) faults.push({ ...fault, at: one.at, end: one.end });
+      if (fault && (fault.isOfMessage || envelopes.hasSync(speaker.stream, what))) faults.push({ ...fault, at: one.at, end: one.end });
     }
     return { speaker, lost, read, faults };
+  }
+
+  /** The reading of a packet of a link; null for a message whose data are not those of the ICD. */
+  function readingOf(index, speaker, what, event) {
+    const form = speaker.stream;
+    const checked = Boolean(form.packets[event.packet].check);
+    if (event.event === "packet") return responseOf(index, speaker, event, checked);
+    const note = envelopes.removed(form, event);
+    if (event.event === "request") {
+      const [number] = numbersOf(speaker.telemetry[event.id]);
+      return reading(index, speaker, "request", number, event.id, event.data, [note], checked);
+    }
+    const ids = what === "telemetry" ? speaker.telemetry : speaker.telecommands;
+    const number = numberOf(index, ids[event.id], event.data);
+    if (number === undefined || !fits(index, number, event.data)) return null;
+    return reading(index, speaker, what, number, event.id, event.data, [note], checked);
+  }
+
+  /** The reading of a packet without a message: what it says about the message of its id; null if no message has the id. */
+  function responseOf(index, speaker, event, checked) {
+    const statement = envelopes.statement(speaker.stream, event);
+    if (!statement) return null;
+    const { what, reason, about } = statement;
+    const { name, fields } = speaker.stream.packets[event.packet];
+    const remarks = [`packet ${name}`, ...(reason ? [`reason ${reason}`] : [])];
+    if (!fields.some(({ role }) => role === "id")) {
+      const url = `${speaker.protocol}#responses`;
+      return { ...blank, what, message: "", node: speaker.node, title: speaker.title, url, id: null, checked, remarks, owner: speaker.node, key: `${what} ${url} ${reason}` };
+    }
+    if (!about) return null;
+    const [direction, id] = about;
+    const [number] = numbersOf((direction === "telemetry" ? speaker.telemetry : speaker.telecommands)[id]);
+    return reading(index, speaker, what, number, event.id, new Uint8Array(), remarks, checked);
   }
 
   // UART
@@ -180,8 +215,8 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
 
   /** Bytes without the framing that their node has: what they can be shows only if the message is named. */
   function noPacket(index, talking, data) {
-    const syncs = talking.flatMap((one) => envelopes.DIRECTIONS.map((direction) => envelopes.syncText(one.stream, direction)));
-    const begin = [...new Set(syncs.filter(Boolean))].join(" or ");
+    const syncs = talking.flatMap((one) => envelopes.DIRECTIONS.flatMap((direction) => envelopes.syncTexts(one.stream, direction)));
+    const begin = [...new Set(syncs)].join(" or ");
     const nodes = talking.map((one) => one.title).join(", ");
     const text = `${data.length} byte${data.length === 1 ? " is" : "s are"} no packet of ${nodes}${begin ? `: packets begin with ${begin}` : ""}`;
     const candidates = eachOnce([...byId(index, talking, data), ...byLength(index, talking, data)]);
@@ -273,9 +308,11 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
   /** Bytes of a message, for people. */
   const lengthText = (index, number) => (index.messages[number][4] ? `${index.messages[number][4].least} to ` : "") + lengthOf(index, number);
 
+  const blank = { data: new Uint8Array(), leftOut: [], time: "" };
+
   function reading(index, speaker, what, number, id, data = new Uint8Array(), remarks = [], checked = false) {
     const [message, url, , owner] = index.messages[number];
-    return { what, message, node: speaker.node, title: speaker.title, url, id, data, checked, remarks, owner, leftOut: [], time: "", key: `${what} ${url}` };
+    return { ...blank, what, message, node: speaker.node, title: speaker.title, url, id, data, checked, remarks, owner, key: `${what} ${url}` };
   }
 
   /** The message, if the bytes are as many as it has, or the right checksum follows them. */
@@ -405,7 +442,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
   const noted = (one, ...remarks) => ({ ...one, remarks: [...one.remarks, ...remarks] });
   /** The readings by name, the first few of them; one that has two directions once. */
   function named(found) {
-    const every = [...new Set(found.map((one) => (one.what === "acknowledge" ? `an acknowledge of ${one.message}` : one.message)))];
+    const every = [...new Set(found.map((one) => (one.what === "acknowledge" ? `an acknowledge of ${one.message}` : one.message || one.what)))];
     return every.slice(0, 3).join(", or ") + (every.length > 3 ? `, or one of ${every.length - 3} others` : "");
   }
 

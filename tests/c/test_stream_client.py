@@ -167,7 +167,6 @@ static void on_event(void *context, const icd_stream_event_t *event)
 {
     arm_position_t position;
     arm_command_result_t result;
-    arm_detail_t detail = 0;
     (void)context;
     strcat(seen, event->kind == ICD_STREAM_REPLY ? "reply" : event->kind == ICD_STREAM_DONE ? "done"
         : event->kind == ICD_STREAM_REFUSED ? "refused" : event->kind == ICD_STREAM_TIMEOUT ? "timeout"
@@ -178,8 +177,8 @@ static void on_event(void *context, const icd_stream_event_t *event)
     if (arm_receive_command_result(&result, event) == ICD_OK) {
         strcat(seen, result.number == event->data[3] ? " result" : "?");
     }
-    if (arm_refusal(event, &detail)) {
-        assert(event->kind == ICD_STREAM_REFUSED && detail == ARM_DETAIL_BLOCKED);
+    if (event->has_code) {
+        assert(event->kind == ICD_STREAM_REFUSED && event->code == ARM_DETAIL_BLOCKED);
         strcat(seen, " blocked");
     }
     strcat(seen, "; ");
@@ -402,3 +401,92 @@ def test_only_what_the_node_takes_and_can_be_asked_compiles(both, tmp_path, call
         capture_output=True,
     )
     assert done.returncode == CALLS[call], done.stderr
+
+
+BATTERY = r"""
+#include "jbd.h"
+#include <assert.h>
+#include <stdio.h>
+
+static jbd_client_t battery;
+
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    static const char *const names[] = {"message", "gap", "checksum", "length", "unknown id", "overrun", "framing",
+        "done", "timeout", "sent", "refused", "busy", "progress", "reply", "late", "stray"};
+    jbd_basic_information_t information;
+    jbd_status_t status = 0;
+    (void)context;
+    printf("%s %x", names[event->kind], (unsigned)event->id);
+    if (jbd_receive_basic_information(&information, event) == ICD_OK) {
+        printf(": %u mV, %u sensors", 10u * information.total_voltage, (unsigned)information.sensors);
+    }
+    if (jbd_refusal(event, &status)) {
+        printf(": status %x", (unsigned)status);
+    }
+    printf(event->is_packet ? ", a packet of %u bytes\n" : "\n", (unsigned)event->length);
+}
+
+static void sends(void)
+{
+    uint8_t line[JBD_LINE_BYTES];
+    size_t count = 0;
+    while (icd_stream_client_output(&battery.client, line, sizeof line, &count)) {
+        printf("> ");
+        for (size_t i = 0; i < count; ++i) {
+            printf("%02x", (unsigned)line[i]);
+        }
+        printf("\n");
+    }
+}
+
+static void responds(uint32_t now, const char *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t byte = (uint8_t)bytes[i];
+        icd_stream_client_received(&battery.client, now, &byte, 1, on_event, NULL);
+    }
+    sends();
+}
+
+int main(void)
+{
+    static uint8_t buffer[JBD_LONGEST + 2u * JBD_REQUEST_BYTES];
+    static icd_stream_slot_t slots[2];
+    static const char information[] =
+        "\xDD\x03\x00\x1B\x17\x00\x00\x00\x02\xD0\x03\xE8\x00\x00\x20\x78\x00\x00\x00\x00\x00\x00\x10\x48\x03\x0F\x02"
+        "\x0B\x76\x0B\x82\xFB\xFF\x77";
+    jbd_switch_off_t command;
+    assert(jbd_client_init(&battery, slots, 2, buffer, sizeof buffer) == ICD_OK);
+    jbd_switch_off_init(&command);
+    command.switches = 2;
+    assert(jbd_request_basic_information(&battery, 0) == ICD_OK);
+    sends();
+    responds(10, information, sizeof information - 1u);
+    assert(jbd_send_switch_off(&battery, 20, &command) == ICD_OK);
+    sends();
+    responds(30, "\xDD\xE1\x00\x00\x00\x00\x77", 7);
+    assert(jbd_send_switch_off(&battery, 40, &command) == ICD_OK);
+    assert(jbd_request_cell_voltages(&battery, 40) == ICD_OK);
+    sends();
+    responds(50, "\xDD\x04\x80\x00\xFF\x80\x77", 7); /* of another request */
+    responds(60, "\xDD\xE1\x80\x00\xFF\x80\x77", 7);
+    responds(70, "\xDD\x04\x80\x00\xFF\x80\x77", 7);
+    return 0;
+}
+"""
+OF_BATTERY = [
+    "> dda50300fffd77",
+    "done 3: 58880 mV, 2 sensors",
+    "> dd5ae1020002ff1b77",
+    "done e1",
+    "> dd5ae1020002ff1b77",
+    "stray 4, a packet of 7 bytes",
+    "refused e1: status 80, a packet of 7 bytes",
+    "> dda50400fffc77",
+    "refused 4: status 80, a packet of 7 bytes",
+]
+
+
+def test_a_battery_is_read_and_refuses_with_packets_of_other_formats(tmp_path):
+    assert run(tmp_path, BATTERY, EXAMPLES / "jbd.yaml").splitlines() == OF_BATTERY

@@ -19,9 +19,7 @@ import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Any
-
-from icdgen_runtime.wire.link import Link
+from typing import TYPE_CHECKING, Any
 
 from icdgen.icd.model import Icd
 from icdgen.icd.responses import BUSY, NAK
@@ -76,6 +74,9 @@ STEPS = (
 HALF = 1 << 31  # times that a counter of 32 bits could take for negative
 Row = dict[str, object]
 
+if TYPE_CHECKING:
+    from icdgen_runtime.wire.link import Link
+
 
 class Script:
     """Builder of a script for a node."""
@@ -125,8 +126,13 @@ class Script:
     def telemetry(self) -> Row:
         """Return a row that requests telemetry."""
         asking = [row for row in self.form.telecommands if row.requests is not None]
+        asking += [row for row in self.form.telemetry if row.is_requested]
         if asking and self.source.random() < 0.8:
             row = self.source.choice(asking)
+            if row.is_requested:
+                started: Row = {"telemetry": row.id}
+                self.begun.append((row, started))
+                return started
             data = bytes(row.least).hex()
             self.begun.append((row, {"telecommand": row.id, "bytes": data}))
             return {"telemetry": row.requests}
@@ -157,13 +163,20 @@ class Script:
             return b""
         row, started = self.source.choice(self.begun[-4:]) if self.begun else (None, {})
         chance = self.source.random()
-        if row and row.exchange and chance < 0.8:
-            return self.response(row.exchange, started)
+        exchange = self._exchange(row) if row else None
+        if exchange and chance < 0.8:
+            return self.response(exchange, started)
         frame = self.source.choice(self.form.telemetry)
         named = started.get("reply")
         if chance < 0.9:
             frame = next((row for row in self.form.telemetry if row.id == named), frame)
         return self.encoded(frame, self.data(frame.most))
+
+    def _exchange(self, row: StreamRow) -> Exchange | None:
+        """Return the responses to a telecommand, or to a request of telemetry."""
+        if row.is_requested and self.form.request:
+            return self.form.request.exchange
+        return row.exchange
 
     def response(self, exchange: Exchange, started: Row) -> bytes:
         """Return a response to a telecommand, sometimes with a foreign echo."""
@@ -172,7 +185,12 @@ class Script:
         response = self.source.choice(
             kept if kept and self.source.random() < 0.4 else exchange.responses
         )
-        frame = next(row for row in self.form.telemetry if row.id == response.telemetry)
+        if response.packet is not None:
+            return self._packet(exchange, response, started)
+        id = response.telemetry
+        if id is None:  # the requested telemetry
+            id = started.get("telemetry", 0)
+        frame = next(row for row in self.form.telemetry if row.id == id)
         data = bytearray(self.data(frame.most))
         self._echo(data, exchange, response, started)
         if response.status and response.meanings and self.source.random() < 0.8:
@@ -180,10 +198,22 @@ class Script:
             wire_place(response.status).put(value, data)
         return self.encoded(frame, bytes(data))
 
+    def _packet(self, exchange: Exchange, response: Response, started: Row) -> bytes:
+        """Return a packet without a message that responds."""
+        assert response.packet is not None
+        packet = self.form.packets[response.packet]
+        draft = bytearray(packet.overhead + packet.reserved)
+        self._echo(draft, exchange, response, started)
+        if response.reason:
+            place = wire_place(response.reason)
+            place.put(self.source.randrange(1, 1 << place.bits), draft)
+        return self.sample.packet(response.packet, bytes(draft))
+
     def _echo(
         self, data: bytearray, exchange: Exchange, response: Response, started: Row
     ) -> None:
-        id, text = started["telecommand"], started["bytes"]
+        id = started.get("telecommand", started.get("telemetry"))
+        text = started.get("bytes", "")
         assert isinstance(id, int) and isinstance(text, str)
         telecommand = id.to_bytes(4, "big") + bytes.fromhex(text)
         for echo in response.echoes:
@@ -205,6 +235,8 @@ class Script:
         if not self.begun or self.source.random() < 0.3:
             return {"cancel": True}
         row, started = self.source.choice(self.begun[-4:])
+        if row.is_requested:
+            return {"cancel": True, "telemetry": row.id}
         if row.requests is not None and self.source.random() < 0.5:
             return {"cancel": True, "telemetry": row.requests}
         return {"cancel": True, "telecommand": started["telecommand"]}
@@ -217,7 +249,7 @@ def requests(icd: Icd, source: random.Random) -> Iterator[dict]:
         for node in icd.nodes
         if icd.protocol_of(node)
         and (form := facts.of(icd, node).stream)
-        and form.telecommands
+        and (form.telecommands or form.request)
     ]
     # The nodes whose telecommands have responses come first more often.
     weights = [1 + 9 * min(2, len(form.exchanges)) for _, _, form in forms]

@@ -50,7 +50,7 @@ def messages(
     for number in range(count):
         row = source.choice(form.rows("telemetry"))
         data = source.randbytes(row.most - 1) + b"\1"
-        values = {"sequence": number} if form.of("sequence") else {}
+        values = {"sequence": number} if "sequence" in form.chosen("telemetry") else {}
         line += stream_encode(link_to(node), row.id, data, "telemetry", **values)
         sent.append((row.id, data.hex()))
     return line, sent

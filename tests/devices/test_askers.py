@@ -113,7 +113,7 @@ fn answer(bias: i32) -> Vec<u8> {
     let link = &receiver::LINK;
     let (mut clock, mut line) = (NavigationClock::default(), [0; 600]);
     clock.clock_bias = bias;
-    let values = stream::Values::new(link, Direction::Telemetry);
+    let values = stream::Values::default();
     let data = icd::Message::to_bytes(&clock).unwrap();
     let size = stream::encode(link, Direction::Telemetry, 0x0122, data.as_ref(), &values, &mut line).unwrap();
     line[..size].to_vec()

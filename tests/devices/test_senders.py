@@ -84,8 +84,8 @@ fn put(line: &[u8]) {
 fn main() -> Result<(), Error> {
     let mut line = [0; 600];
     let mut sender = Sender::<autopilot::Node, { autopilot::SEQUENCES }>::new(&autopilot::LINK)?;
-    sender.values.source = 9;
-    sender.values.sequence = 254;
+    sender.values.source = Some(9);
+    sender.values.sequence = Some(254);
     let mut mode = autopilot::SetMode::default();
     mode.target_system = 1;
     for _ in 0..3 {

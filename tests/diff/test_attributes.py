@@ -163,6 +163,7 @@ OF_MESSAGE = {
     "acknowledge": False,
     "response": "none",
     "repeat": True,
+    "requested": False,
     "hazard": "It burns.",
     "contains": (Part("Status", 0),),
     "reserved": 2,

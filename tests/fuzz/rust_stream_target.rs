@@ -1,7 +1,7 @@
 //! cargo-fuzz harness on the decoders of envelopes of the generated crate. See README.md.
 #![no_main]
 
-use icd::wire::stream::{encode, Decoder, Event};
+use icd::wire::stream::{encode, encode_request, Decoder, Event};
 use icd::wire::{Direction, Link};
 use libfuzzer_sys::fuzz_target;
 
@@ -15,12 +15,16 @@ fn heard(link: &'static Link, direction: Direction, stream: &[u8], size: usize, 
     let mut events = Vec::new();
     for piece in stream.chunks(size.max(1)) {
         decoder.feed(piece, |event| {
-            if let Event::Message { id, data, values } = event {
-                assert!(data.len() <= limit);
-                let mut line = vec![0; 2 * data.len() + 600];
-                let written = encode(link, direction, id, data, &values, &mut line).unwrap();
-                assert!(written > 0);
-            }
+            let mut line = vec![0; 2 * LONGEST + 600];
+            let written = match event {
+                Event::Message { id, data, values } => {
+                    assert!(data.len() <= limit);
+                    encode(link, direction, id, data, values, &mut line)
+                }
+                Event::Request { id, values } => encode_request(link, id, values, &mut line),
+                _ => Ok(1),
+            };
+            assert!(written.unwrap() > 0);
             events.push(format!("{event:?}"));
         });
     }
@@ -33,7 +37,8 @@ fuzz_target!(|input: &[u8]| {
     let Some(link) = link_of((*node).into()) else { return };
     let Some(form) = link.stream.as_ref() else { return };
     let direction = if direction & 1 == 0 { Direction::Telecommand } else { Direction::Telemetry };
-    let limit = link.longest.saturating_sub(usize::from(*room)).max(form.header_bytes + form.trailer_bytes);
+    let around = form.packets.iter().map(|packet| packet.header_bytes + packet.trailer_bytes).max();
+    let limit = link.longest.saturating_sub(usize::from(*room)).max(around.unwrap_or(0));
     let whole = heard(link, direction, stream, stream.len(), limit);
     if form.delimited_by != icd::wire::link::Delimiter::Packet {
         assert_eq!(whole, heard(link, direction, stream, usize::from(*size), limit));

@@ -40,7 +40,11 @@ def encoded(
     for number in range(count):
         row = draw(st.sampled_from(link.stream.rows("telemetry")))
         data = draw(st.binary(min_size=row.most, max_size=row.most))
-        values = {"sequence": number} if link.stream.of("sequence") else {}
+        values = (
+            {"sequence": number}
+            if "sequence" in link.stream.chosen("telemetry")
+            else {}
+        )
         line += stream_encode(link, row.id, data, "telemetry", **values)
         sent.append((row.id, data))
     return line, sent

@@ -315,6 +315,7 @@ def outcomes(source: Source, key: Key, whole: bool) -> Iterator[tuple[Path_, Any
 def sources(work: Path) -> Iterator[Source]:
     """ICDs that have all keys between them."""
     groups = [[KEYS / "board.yaml", KEYS / "app.yaml"], [KEYS / "link.yaml"]]
+    groups += [[KEYS / f"{name}.yaml"] for name in ("packets", "frames")]
     groups += [
         [path]
         for folder in ("examples/links", "tests/conformance/links")

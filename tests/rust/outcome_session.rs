@@ -65,7 +65,7 @@ impl Write for Line {
 
 fn encoded<M: TelemetryOf<Node>>(message: &M) -> Vec<u8> {
     let (data, mut line) = (message.to_bytes().unwrap(), [0; 100]);
-    let values = stream::Values::new(&LINK, Direction::Telemetry);
+    let values = stream::Values::default();
     let size = stream::encode(&LINK, Direction::Telemetry, M::TELEMETRY_ID, data.as_ref(), &values, &mut line);
     line[..size.unwrap()].to_vec()
 }

@@ -112,7 +112,7 @@ fn over_envelopes() {
         .poll(0, &mut port, &mut line, |_| panic!("nothing came"))
         .unwrap();
     assert_eq!(port.written, [0xb5, 0x62, 0x01, 0x22, 0, 0, 0x23, 0x6a]);
-    let values = stream::Values::new(&ubx::LINK, Direction::Telemetry);
+    let values = stream::Values::default();
     let clock = NavigationClock {
         clock_bias: -5,
         ..NavigationClock::default()

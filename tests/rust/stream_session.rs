@@ -25,7 +25,7 @@ impl Device {
     fn says(&mut self, clock_bias: i32) {
         let clock = NavigationClock { clock_bias, ..NavigationClock::default() };
         let (data, mut line) = (clock.to_bytes().unwrap(), [0; 100]);
-        let values = stream::Values::new(&LINK, Direction::Telemetry);
+        let values = stream::Values::default();
         let size = stream::encode(&LINK, Direction::Telemetry, NavigationClock::ID.into(), &data, &values, &mut line).unwrap();
         self.coming.extend_from_slice(&line[..size]);
     }

@@ -19,7 +19,7 @@ type Client = stream::Client<datagram::Node, { datagram::LONGEST }, { datagram::
 
 fn seen(data: &[u8]) -> (Option<u8>, Option<u32>, bool) {
     let mut line = [0; 200];
-    let values = stream::Values::new(&LINK, Direction::Telemetry);
+    let values = stream::Values::default();
     let size = stream::encode(&LINK, Direction::Telemetry, ShortLevel::ID, data, &values, &mut line).unwrap();
     let mut client = Client::new(&LINK).unwrap();
     let mut found = None;
@@ -51,7 +51,7 @@ type Client = stream::Client<Node, { wheel::LONGEST }, { wheel::SEQUENCES }, 2>;
 
 fn encoded<M: TelemetryOf<Node>>(message: M) -> Vec<u8> {
     let (data, mut line) = (message.to_bytes().unwrap(), [0; 100]);
-    let values = stream::Values::new(&LINK, Direction::Telemetry);
+    let values = stream::Values::default();
     let size = stream::encode(&LINK, Direction::Telemetry, M::TELEMETRY_ID, data.as_ref(), &values, &mut line);
     line[..size.unwrap()].to_vec()
 }
@@ -146,6 +146,84 @@ fn main() {
     assert_eq!((sent(&mut client), client.deadline()), (None, None));
 }
 """
+
+PACKETS = """
+use icd::jbd::{self, enums::Status, CellVoltages, Node, SwitchOff, LINK};
+use icd::wire::{stream, Error};
+use stream::Event;
+
+type Client = stream::Client<Node, { jbd::LONGEST }, { jbd::SEQUENCES }, 2>;
+
+const CELLS: [u8; 9] = [0xdd, 4, 0, 2, 0x0f, 0xa0, 0xff, 0x4f, 0x77];
+const CELLS_REFUSED: [u8; 7] = [0xdd, 4, 0x80, 0, 0xff, 0x80, 0x77];
+const SWITCHED: [u8; 7] = [0xdd, 0xe1, 0, 0, 0, 0, 0x77];
+
+fn sent(client: &mut Client) -> Vec<u8> {
+    let mut line = [0; jbd::LONGEST];
+    client.output(&mut line).unwrap().unwrap().to_vec()
+}
+
+fn received(client: &mut Client, bytes: &[u8]) -> String {
+    let mut told = String::new();
+    client.received(1, bytes, |event| {
+        let cells = event.message::<CellVoltages>().map(|cells| cells.voltages[0]);
+        told += &match *event {
+            Event::Done { id, packet, .. } => format!("done {id} {packet:?} {cells:?}"),
+            Event::Refused { id, code, .. } => {
+                assert_eq!(event.reason(), Some(Status::Error));
+                format!("refused {id} {code:?} {cells:?}")
+            }
+            Event::Stray { id, packet, data } => format!("stray {id} {packet:?} {data:x?} {cells:?}"),
+            other => panic!("{other:?}"),
+        };
+    });
+    told
+}
+
+fn main() {
+    let mut client = Client::new(&LINK).unwrap();
+    let packet = |name| LINK.stream.as_ref().unwrap().packets.iter().position(|packet| packet.name == name);
+
+    client.request::<CellVoltages>(0).unwrap();
+    assert_eq!(sent(&mut client), [0xdd, 0xa5, 4, 0, 0xff, 0xfc, 0x77]);
+    assert_eq!(received(&mut client, &CELLS), "done 4 None Some(4000)");
+
+    // A refusal is a packet of its own, which no telemetry can be read from.
+    client.request::<CellVoltages>(0).unwrap();
+    sent(&mut client);
+    assert_eq!(received(&mut client, &CELLS_REFUSED), "refused 4 Some(128) None");
+    let refusal = packet("refusal");
+    assert_eq!(received(&mut client, &CELLS_REFUSED), format!("stray 4 {refusal:?} {CELLS_REFUSED:x?} None"));
+
+    let off = SwitchOff { switches: 3, ..SwitchOff::default() };
+    client.send(0, &off).unwrap();
+    assert_eq!(sent(&mut client), [0xdd, 0x5a, 0xe1, 2, 0, 3, 0xff, 0x1a, 0x77]);
+    assert_eq!(received(&mut client, &SWITCHED), format!("done 225 {:?} None", packet("written")));
+
+    let (mut line, values) = ([0; jbd::LONGEST], stream::Values::default());
+    assert_eq!(stream::encode_request(&LINK, 4, &values, &mut line), Ok(7));
+    assert_eq!(line[..7], [0xdd, 0xa5, 4, 0, 0xff, 0xfc, 0x77]);
+    let unknown = stream::encode_request(&LINK, 9, &values, &mut line);
+    assert_eq!(unknown, Err(Error::UnknownId { id: 9 }));
+}
+"""
+
+
+@pytest.mark.parametrize("toolchain", list(toolchains()))
+def test_telemetry_is_requested_and_refused_by_packets_of_their_own(
+    toolchain, tmp_path
+):
+    crate = harness.generate(
+        harness.read(ROOT / "examples" / "links" / "jbd.yaml"), tmp_path
+    )
+    (tmp_path / "user.rs").write_text(PACKETS)
+    run(
+        Toolchain(toolchain).program(
+            tmp_path / "user.rs",
+            Toolchain(toolchain).library(crate, *USED),
+            tmp_path / "user",
+        )
+    )
 
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))

@@ -172,6 +172,8 @@ def _outcome_text(
     if protocol_facts.stream:
         if not isinstance(outcome, Done):
             return "sent; the ICD describes no response to it"
+        if outcome.reply is None:
+            return "acknowledged"
         name = response.message.name if response else "an unknown message"
         is_confirmed = outcome.reply in protocol_facts.stream.confirming
         return f"{'acknowledged' if is_confirmed else 'answered'} with {name}"

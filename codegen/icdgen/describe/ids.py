@@ -12,16 +12,16 @@ def pair_bytes(form: Stream | None) -> int:
     Protocols whose header has the id as several bytes, the most significant first,
     write these apart (class and number, say). Ids in little-endian order are numbers.
     """
-    field = form.of("id") if form else None
-    if (
-        field is None
-        or field.little
-        or field.shift
-        or field.bits != 8 * field.size
-        or field.size < 2
-    ):
-        return 0
-    return field.size
+    for packet in form.packets if form else ():
+        fields = [field for field in packet.fields if field.role == "id"]
+        is_bytes = all(
+            not field.shift and field.bits == 8 * field.size for field in fields
+        )
+        size = sum(field.size for field in fields)
+        if fields:
+            is_number = len(fields) == 1 and fields[0].little
+            return size if is_bytes and size > 1 and not is_number else 0
+    return 0
 
 
 def id_text(form: Stream | None, id: int) -> str:

@@ -14,7 +14,6 @@ from icdgen.describe.enums import EnumDescription
 from icdgen.describe.nodes import Description
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CONFIGURATION, Message
-from icdgen.icd.responses import declared_responses, reason_of
 from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact
@@ -123,8 +122,8 @@ class Assumptions:
 
 
 def byte_table(crc: Crc) -> list[int]:
-    """Return the register after each of the 256 bytes, most significant bit first, if
-    it was 0 before.
+    """Return the register after each of the 256 bytes if it was 0 before. If bytes
+    enter least significant bit first, the register is reflected.
     """
     top, mask = 1 << crc.width - 1, (1 << crc.width) - 1
     table, register = [0], crc.polynomial
@@ -133,7 +132,14 @@ def byte_table(crc: Crc) -> list[int]:
         # ^ entry b.
         table += [entry ^ register for entry in table]
         register = register << 1 & mask ^ (crc.polynomial if register & top else 0)
+    if crc.reflect_in:
+        return [_reflected(table[_reflected(n, 8)], crc.width) for n in range(256)]
     return table
+
+
+def _reflected(value: int, width: int) -> int:
+    """Return a value with its bits in reverse order."""
+    return int(f"{value:0{width}b}"[::-1], 2)
 
 
 def links_of(description: Description) -> dict[str, LinkDescription]:
@@ -192,9 +198,8 @@ class LinkDescription:
 
     @property
     def requested_ids(self) -> frozenset[int]:
-        """Ids of telemetry in packets that a telecommand without values requests."""
-        rows = self.facts.stream.telecommands if self.facts.stream else ()
-        return frozenset(row.requests for row in rows if row.requests is not None)
+        """Ids of the telemetry on a framed link that a client can request."""
+        return self.facts.stream.requested_ids if self.facts.stream else frozenset()
 
     @cached_property
     def reason_enum(self) -> EnumDescription | None:
@@ -203,21 +208,12 @@ class LinkDescription:
         None without reasons, or if they are not all of one enumeration without negative
         values: clients compare numbers without sign.
         """
-        icd, node = self._description.icd, self.facts.node
-        commands = icd.protocol_of(node).get("stream", {}).get("commands", {})
-        messages = self._description.node(node).all_messages
-        reasons = {
-            (row["message"], reason_of(row))
-            for message in messages
-            if message.model.telecommand_id is not None
-            for row in declared_responses(commands, message.model).values()
-            if reason_of(row) is not None
-        }
+        exchanges = self.facts.stream.exchanges if self.facts.stream else ()
         enums = [
-            field.enum
-            for message in messages
-            for field in message.fields
-            if (message.model.name, field.model.name) in reasons
+            self._description.enum(response.enum)
+            for exchange in exchanges
+            for response in exchange.responses
+            if response.enum is not None
         ]
         first = enums[0] if enums else None
         if first is None or first.storage.signed:

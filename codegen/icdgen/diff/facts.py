@@ -7,7 +7,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from typing import Any, NamedTuple
 
 from icdgen.diagnostics import Place
@@ -20,13 +20,15 @@ from icdgen.protocol import facts as protocol
 WORDS = frozenset(("source", "summary", "printed_constant"))
 NAMES = ("name", "role", "value")  # keys that identify the rows of a list
 PART = re.compile(
-    r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?"
+    r"protocol\.stream(\.packets(\.[^.]+)?)?(\.(header|trailer)(\.[^.]+)?)?"
 )  # keys whose addition or removal changes the packet format
 AROUND = re.compile(
-    r"protocol\.stream\.(delimited_by|header|trailer)\b.*|protocol\.checksums\b.*"
+    r"protocol\.stream\.(delimited_by|header|trailer|packets)\b.*"
+    r"|protocol\.checksums\b.*"
 )
 
-RESPONSES = re.compile(r"protocol\.stream\.commands\b.*")  # to telecommands
+# To telecommands and requests of telemetry
+RESPONSES = re.compile(r"protocol\.stream\.(commands|requests)\b.*")
 
 
 class Fact(NamedTuple):
@@ -156,21 +158,18 @@ def _form(icd: Icd, node: Node, direction: str) -> object:
     stream = protocol.of(icd, node).stream
     assert stream is not None
     place = int(direction == "telemetry")
-    # `values` of a constant belong to one direction; defaults of other roles do not
-    # change the format.
-    fields = [
-        (
-            *astuple(field)[:-1],
-            field.values[place] if field.role == "constant" else None,
-        )
-        for field in stream.fields
-    ]
-    check = None if stream.check is None else astuple(stream.check)
-    return (
-        stream.delimited_by,
-        stream.header_bytes,
-        stream.trailer_bytes,
-        stream.length_plus,
-        fields,
-        check,
-    )
+    packets = []
+    for packet in stream.packets_of(direction):
+        # `values` of a constant belong to one direction; defaults of other roles do not
+        # change the format.
+        fields = [
+            (
+                replace(field, values=(field.values[place],) * 2)
+                if field.role == "constant"
+                else replace(field, values=(0, 0))
+            )
+            for field in packet.fields
+        ]
+        named = replace(packet, name="", directions=(), fields=tuple(fields))
+        packets.append(astuple(named))
+    return stream.delimited_by, packets

@@ -238,6 +238,7 @@ class Builder:
             expects_reset=item.get("acknowledge") == "reset",
             response=item.get("response"),
             repeat=item.get("repeat", False),
+            requested=item.get("requested", True),
             hazard=item.get("hazard", ""),
             assumptions=tuple(
                 (key, str(why)) for key, why in (item.get("assumptions") or {}).items()

@@ -95,6 +95,7 @@ class Message:
     hazard: str = ""  # irreversible effect of sending the message
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of each assumption
     contains: tuple[Part, ...] = ()
+    requested: bool = True  # telemetry: whether a packet with its id requests it
     reserved: int = 0  # reserved bytes at the end
     # "zeros": frames may be sent without their trailing zeros; else empty
     may_end_early: str = ""

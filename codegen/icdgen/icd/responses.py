@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from math import ceil
 from typing import Any, NamedTuple
 
+from icdgen.icd.enumeration import Enum
 from icdgen.icd.layout import Orders
 from icdgen.icd.model import Message, Node
 from icdgen.icd.pieces import pieces_at
@@ -116,14 +117,19 @@ def number_run(place: NodePlace, node: Node) -> NumberRun | None:
     return NumberRun(pieces[0].byte, len(pieces), upwards[0].shift, little)
 
 
-def status_value(field: NodePlace, value: object) -> int | None:
-    """Return a value of the status, which is given as a number or as a member of its
-    enumeration; None if there is no such member.
+def number_of(value: object, enum: Enum | None) -> int | None:
+    """Return a value that is given as a number or as a member of an enumeration; None if
+    there is no such member.
     """
     if isinstance(value, int):
         return int(value)
-    members = field.scalar.enum.members if field.scalar.enum else ()
+    members = enum.members if enum else ()
     return next((member.value for member in members if member.name == value), None)
+
+
+def status_value(field: NodePlace, value: object) -> int | None:
+    """Return a value of the status; None if its enumeration has no such member."""
+    return number_of(value, field.scalar.enum)
 
 
 def raw_status(field: NodePlace, value: object) -> int | None:

@@ -85,15 +85,18 @@ class Monitor:
             return ""
         responses = [row for exchange in form.exchanges for row in exchange.responses]
         responding = {response.telemetry for response in responses}
-        if any(row.id not in responding for row in form.telemetry):
+        if any(
+            row.id not in responding and not row.is_requested for row in form.telemetry
+        ):
             return ""
-        asked = {row.requests for row in form.telecommands}
+        asked = form.requested_ids
         names = [
             message.name
             for message in self.icd.messages_of(self.node)
             if message.telemetry_id is not None and message.telemetry_id in asked
         ]
-        what = f"{self.node.name} sends telemetry only in response to telecommands"
+        why = "on request" if form.request else "in response to telecommands"
+        what = f"{self.node.name} sends telemetry only {why}"
         if not names:
             return f"{what}, and none can be requested; `icdgen send` shows responses"
         words = shlex.join(["icdgen", "monitor", self.node.name, names[0]])
@@ -111,8 +114,7 @@ class Monitor:
 
     def requested(self) -> Iterator[Message]:
         """Return the messages that must be requested."""
-        rows = self.facts.stream.telecommands if self.facts.stream else ()
-        asking = {row.requests for row in rows}
+        asking = self.facts.stream.requested_ids if self.facts.stream else ()
         yield from (
             message
             for message in self.messages

@@ -67,7 +67,7 @@ def has_further_fields(icd: Icd, node: Node, sent: Message, response: Message) -
     commands = icd.protocol_of(node).get("stream", {}).get("commands", {})
     known: set[str | None] = set()
     for row in declared_responses(commands, sent).values():
-        if row["message"] == response.name:
+        if row.get("message") == response.name:
             known |= {*echoes_of(row), row.get("status"), reason_of(row)}
     return any(
         field.name not in known and field.const is None

@@ -38,7 +38,7 @@ class Sheet:
             for name, message in recording.messages.items()
             if name in set(received)
         ]
-        roles = {field.role for field in recording.form.fields}
+        roles = recording.form.chosen("telemetry")
         self.roles = [role for role in GIVEN if role in roles]
         columns = unique(
             column

@@ -23,7 +23,7 @@ LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = (
 )
 """Delimiters of messages; `none`: the packet that carries the message."""
 
-GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
+GIVEN = ("sequence", "source", "destination", "type", "flags", "time", "status", "reason")  # fmt: skip
 """Roles of fields whose values the sender chooses."""
 
 ROLES = ("constant", "id", "length", "checksum", *GIVEN)
@@ -53,6 +53,7 @@ class EnvelopeField:
     little: bool
     # Value of a constant, or default: in telecommands, in telemetry
     values: tuple[int, int]
+    id_shift: int = 0  # bits of the id below those in this field
 
     @property
     def mask(self) -> int:
@@ -92,26 +93,64 @@ class StreamRow:
     # Id of the telemetry that it requests if it is sent without values, which is as
     # `least` zero bytes
     requests: int | None = None
+    packet: int = 0  # index of `Stream.packets`
+    is_requested: bool = False  # of telemetry: by the packet of `Stream.request`
+
+
+MESSAGE, REQUEST, NOTHING = CONTENTS = ("message", "request", "none")
+"""Content of a packet: a message, a request of telemetry, no message."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class PacketFormat:
+    """Format of the packets of one or both directions."""
+
+    name: str  # empty if the link has one format
+    directions: tuple[str, ...]
+    content: str  # one of `CONTENTS`
+    header_bytes: int
+    trailer_bytes: int
+    length_plus: int  # value of the length field minus bytes of data
+    reserved: int  # bytes of data in packets without a message
+    fields: tuple[EnvelopeField, ...]
+    check: Check | None
+
+    def of(self, role: str) -> EnvelopeField | None:
+        """Return the first field of a role; None without such a field."""
+        return next((field for field in self.fields if field.role == role), None)
+
+    @property
+    def overhead(self) -> int:
+        """Bytes of header and trailer."""
+        return self.header_bytes + self.trailer_bytes
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TelemetryRequest:
+    """Request of telemetry by a packet with its id."""
+
+    packet: int  # index of `Stream.packets`
+    exchange: Exchange
+    reserved: int  # bytes of data without meaning
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Stream:
-    """Packet format of messages in a byte stream or in packets."""
+    """Messages in a byte stream or in packets, with header and trailer."""
 
     delimited_by: str  # one of `DELIMITERS`
-    header_bytes: int
-    trailer_bytes: int
-    length_plus: int  # value of the length field minus bytes of data
     per_id: bool  # whether each id has its own sequence counter
-    fields: tuple[EnvelopeField, ...]
-    check: Check | None
+    packets: tuple[PacketFormat, ...]  # an earlier one precedes if both fit
     telecommands: tuple[StreamRow, ...]  # in ascending order of ids
     telemetry: tuple[StreamRow, ...]
+    request: TelemetryRequest | None = None  # None: only telecommands request
 
     @property
     def exchanges(self) -> tuple[Exchange, ...]:
         """Return the different exchanges of the telecommands, in order."""
-        exchanges = (row.exchange for row in self.telecommands if row.exchange)
+        exchanges = [row.exchange for row in self.telecommands if row.exchange]
+        if self.request:
+            exchanges.append(self.request.exchange)
         return tuple(dict.fromkeys(exchanges))
 
     @property
@@ -123,19 +162,35 @@ class Stream:
             (response.telemetry, response.is_reply)
             for exchange in self.exchanges
             for response in exchange.responses
+            if response.telemetry is not None
         }
         replies = {id for id, is_reply in responses if is_reply}
         return tuple(sorted({id for id, _ in responses} - replies))
+
+    @property
+    def requested_ids(self) -> frozenset[int]:
+        """Return the ids of the telemetry that a client can request."""
+        asked = {row.requests for row in self.telecommands if row.requests is not None}
+        return frozenset(asked | {row.id for row in self.telemetry if row.is_requested})
 
     def rows(self, direction: str) -> tuple[StreamRow, ...]:
         """Return the messages of a direction."""
         return self.telemetry if direction == "telemetry" else self.telecommands
 
-    def of(self, role: str) -> EnvelopeField | None:
-        """Return the field of a role that occurs at most once; None without such a
-        field.
+    def packets_of(self, direction: str) -> tuple[PacketFormat, ...]:
+        """Return the packets of a direction."""
+        return tuple(each for each in self.packets if direction in each.directions)
+
+    def chosen(self, direction: str) -> dict[str, EnvelopeField]:
+        """Return the fields of a direction whose values the sender chooses, by role: of
+        several packets, the field of the first.
         """
-        return next((field for field in self.fields if field.role == role), None)
+        fields: dict[str, EnvelopeField] = {}
+        for packet in self.packets_of(direction):
+            for field in packet.fields:
+                if field.role in GIVEN:
+                    fields.setdefault(field.role, field)
+        return fields
 
     @property
     def longest_data(self) -> int:
@@ -147,19 +202,26 @@ class Stream:
     @property
     def longest_request(self) -> int:
         """Largest number of data bytes of a telecommand."""
-        return max((row.most for row in self.telecommands), default=0)
+        reserved = self.request.reserved if self.request else 0
+        return max([reserved, *(row.most for row in self.telecommands)])
 
     @property
     def longest(self) -> int:
         """Bytes of the longest message with header and trailer, without delimiters and
         byte stuffing.
         """
-        return self.header_bytes + self.longest_data + self.trailer_bytes
+        sizes = [each.overhead + each.reserved for each in self.packets]
+        for row in (*self.telecommands, *self.telemetry):
+            sizes.append(self.packets[row.packet].overhead + row.most)
+        if self.request:
+            packet = self.packets[self.request.packet]
+            sizes.append(packet.overhead + self.request.reserved)
+        return max(sizes)
 
     @property
     def sequences(self) -> int:
         """Number of sequence counters that a decoder stores to detect gaps."""
-        if self.of("sequence") is None:
+        if not any(packet.of("sequence") for packet in self.packets):
             return 0
         # A decoder handles one direction; its table has a row for each id.
         return max(1, len(self.telecommands), len(self.telemetry)) if self.per_id else 1

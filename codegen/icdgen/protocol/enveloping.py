@@ -4,23 +4,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
-from icdgen.icd.model import Node
+from icdgen.icd.enumeration import Enum
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.packets import (
+    Packet,
+    Packets,
+    declared_packets,
+    id_shifts,
+    is_requested,
+)
 from icdgen.icd.places import raw_fields_in
 from icdgen.icd.variants import Ids, Variant
 from icdgen.protocol.envelope import (
     DATA,
     DIRECTIONS,
+    MESSAGE,
+    NOTHING,
+    REQUEST,
     ROLES,
     Check,
     EnvelopeField,
+    PacketFormat,
     Stream,
     StreamRow,
+    TelemetryRequest,
 )
 from icdgen.protocol.exchange import Exchange
-from icdgen.protocol.responding import exchange_of
+from icdgen.protocol.responding import Sources, exchange_of, request_exchange
 from icdgen.protocol.sections import Crc
 
 Section = Mapping[str, Any]
@@ -34,8 +48,13 @@ def bytes_of(bits: Iterable[tuple[int, int]]) -> int:
     return -(-max((at + width for at, width in bits), default=0) // 8)
 
 
-def field_of(node: Node, row: Section, in_trailer: bool) -> EnvelopeField:
-    """Return the field of a row of the header or trailer."""
+def field_of(
+    node: Node, row: Section, in_trailer: bool, id_shift: int = 0
+) -> EnvelopeField:
+    """Return the field of a row of the header or trailer.
+
+    ``id_shift``: bits of the id below those in this field.
+    """
     at, bits = row["at"], row["bits"]
     first, last = at // 8, (at + bits - 1) // 8
     # Bits count from the first byte on. For msb0, bit 0 is the most significant bit of
@@ -45,7 +64,15 @@ def field_of(node: Node, row: Section, in_trailer: bool) -> EnvelopeField:
     role = "constant" if row["role"] == "sync" else row["role"]
     size = last - first + 1
     return EnvelopeField(
-        role, in_trailer, first, size, shift, bits, little, values_of(row, little)
+        role,
+        in_trailer,
+        first,
+        size,
+        shift,
+        bits,
+        little,
+        values_of(row, little),
+        id_shift,
     )
 
 
@@ -72,13 +99,17 @@ def _number(value: Any, little: bool) -> int:
 
 def rows_of(
     ids: Mapping[int, tuple[Variant, ...]],
+    direction: str,
+    packets: Packets,
     seeds: Mapping[str, int],
     exchanges: Mapping[str, Exchange],
+    requested: Container[int] = (),
 ) -> tuple[StreamRow, ...]:
     """Return the messages of a direction.
 
-    ``exchanges``: exchanges of telecommands, by name. Messages that share an id form
-    one row; rules ICD174 and ICD178 ensure that they agree in the packet format and in
+    ``exchanges``: exchanges of telecommands, by name. ``requested``: ids of telemetry
+    that the packet of `Stream.request` requests. Messages that share an id form one
+    row; rules ICD174 and ICD178 ensure that they agree in the packet format and in
     their responses.
     """
     rows = []
@@ -89,6 +120,7 @@ def rows_of(
             (exchanges[each.name] for each in messages if each.name in exchanges), None
         )
         is_blank = not first.layout.shortest or not raw_fields_in(first.layout)
+        packet, *_ = packets.of(first.name, direction)
         rows.append(
             StreamRow(
                 id,
@@ -100,21 +132,27 @@ def rows_of(
                 exchange,
                 all(message.repeat for message in messages),
                 exchange.reply if exchange and is_blank else None,
+                packets.all.index(packet),
+                id in requested,
             )
         )
     return tuple(rows)
 
 
-def place_of(rows: Iterable[Section], name: str, last: bool) -> Section | None:
-    """Return the first or last row of a role; None without such a row."""
-    matches = [row for row in rows if row.get("role") == name]
+def place_of(rows: Iterable[Section], role: str) -> Section | None:
+    """Return the first row of a role; None without such a row."""
+    return next((row for row in rows if row.get("role") == role), None)
+
+
+def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
+    """Return the first or last row with a role or name; None without such a row."""
+    matches = [row for row in rows if name in (row.get("role"), row.get("name"))]
     return matches[-1 if last else 0] if matches else None
 
 
-def check_of(section: Section, checksums: Section) -> Check | None:
+def check_of(packet: Packet, checksums: Section) -> Check | None:
     """Return the checksum that a checksum row refers to."""
-    header, trailer = section.get("header", ()), section.get("trailer", ())
-    row = place_of((*header, *trailer), "checksum", False)
+    row = place_of(packet.rows, "checksum")
     declaration = checksums.get(row.get("checksum", "")) if row else None
     if not declaration:
         return None
@@ -126,63 +164,119 @@ def check_of(section: Section, checksums: Section) -> Check | None:
         "reflect_out", False
     )
     crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
-    first = place_of(header, declaration["covers"]["from"], False)
-    last = place_of(trailer, declaration["covers"]["to"], True)
+    first = _covered(packet.header, declaration["covers"]["from"], False)
+    last = _covered(packet.trailer, declaration["covers"]["to"], True)
     return Check(
         kind,
         crc,
         (
             first["at"] // 8
             if first
-            else bytes_of((row["at"], row["bits"]) for row in header)
+            else bytes_of((row["at"], row["bits"]) for row in packet.header)
         ),
         bytes_of([(last["at"], last["bits"])]) if last else 0,
         bool(declaration.get("seeds")),
     )
 
 
-def stream_of(node: Node, section: Section, checksums: Section, ids: Ids) -> Stream:
-    """Return the packet format of a `stream` section."""
-    header, trailer = section.get("header", ()), section.get("trailer", ())
-    fields = [
-        field_of(node, row, row_in is trailer)
-        for row_in in (header, trailer)
-        for row in row_in
-    ]
+def packet_of(
+    node: Node, packets: Packets, packet: Packet, checksums: Section
+) -> PacketFormat:
+    """Return a packet format."""
     sizes = [
-        bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)
+        bytes_of((row["at"], row["bits"]) for row in rows)
+        for rows in (packet.header, packet.trailer)
     ]
-    # At most one field has each of these roles (checked by rules of the ICD).
-    length, sequence = (
-        place_of((*header, *trailer), role, False) or {}
-        for role in ("length", "sequence")
+    shifts = {id(row): shift for row, shift in id_shifts(packet.rows)}
+    fields = tuple(
+        field_of(node, row, in_trailer, shifts.get(id(row), 0))
+        for in_trailer, rows in ((False, packet.header), (True, packet.trailer))
+        for row in rows
     )
-    check = place_of((*header, *trailer), "checksum", False) or {}
-    seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
-    telemetry = {
-        variant.message.name: (id, variant.message)
-        for id, variants in ids.telemetry.items()
-        for variant in variants
-    }
-    commands = section.get("commands", {})
-    exchanges = {
-        variant.message.name: exchange
-        for variants in ids.telecommand.values()
-        for variant in variants
-        if (exchange := exchange_of(node, commands, variant.message, telemetry.get))
-    }
+    assert all(field.role in ROLES for field in fields)
+    length = place_of(packet.rows, "length") or {}
     # `counts: message` includes header and trailer in the length field.
     counts_all = length.get("counts", DATA) == "message"
-    assert all(field.role in ROLES for field in fields)
-    return Stream(
-        delimited_by=section["delimited_by"],
+    content = MESSAGE
+    if packet.name in packets.responding:
+        content = NOTHING
+    elif packets.only_requests(packet):
+        content = REQUEST
+    return PacketFormat(
+        name=packet.name,
+        directions=packet.directions,
+        content=content,
         header_bytes=sizes[0],
         trailer_bytes=sizes[1],
         # `plus`: the device's own offset, for example CCSDS 133.0-B: bytes minus 1.
         length_plus=length.get("plus", 0) + (sum(sizes) if counts_all else 0),
-        per_id=sequence.get("per", "link") == "id",
-        fields=tuple(fields),
-        check=check_of(section, checksums),
-        telecommands=rows_of(ids.telecommand, seeds, exchanges),
-        telemetry=rows_of(ids.telemetry, seeds, {}),
+        reserved=packets.reserved_in(packet),
+        fields=fields,
+        check=check_of(packet, checksums),
     )
+
+
+def stream_of(
+    node: Node,
+    section: Section,
+    checksums: Section,
+    ids: Ids,
+    enums: Mapping[str, Enum],
+) -> Stream:
+    """Return the packet formats and messages of a `stream` section.
+
+    ``enums``: enumerations of the node, by name.
+    """
+    sent, received = (
+        [variant.message for variants in of_id.values() for variant in variants]
+        for of_id in (ids.telecommand, ids.telemetry)
+    )
+    packets = declared_packets(section, sent)
+    telemetry = {
+        message.name: (message.telemetry_id, message)
+        for message in received
+        if message.telemetry_id is not None
+    }
+    formats = tuple(
+        packet_of(node, packets, packet, checksums) for packet in packets.all
+    )
+    sources = Sources(node, packets, formats, enums, telemetry)
+    commands = section.get("commands", {})
+    exchanges = {
+        message.name: exchange
+        for message in sent
+        if (exchange := exchange_of(sources, commands, message))
+    }
+    # At most one field has each of these roles in a packet (rule ICD171).
+    rows = [row for packet in packets.all for row in packet.rows]
+    sequence = place_of(rows, "sequence") or {}
+    check = place_of(rows, "checksum") or {}
+    seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
+    telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, seeds, exchanges)
+    requests = section.get("requests", {})
+    request = None
+    if packets.requesting is not None:
+        number = [packet.name for packet in packets.all].index(packets.requesting)
+        reserved = packets.requested_bytes
+        exchange = request_exchange(sources, requests)
+        request = TelemetryRequest(number, exchange, reserved)
+    stream = Stream(
+        delimited_by=section["delimited_by"],
+        per_id=sequence.get("per", "link") == "id",
+        packets=formats,
+        telecommands=telecommands,
+        telemetry=(),
+        request=request,
+    )
+    unrequested = {row.requests for row in telecommands if row.requests is not None}
+    unrequested |= {*stream.confirming}
+    requested = {
+        id
+        for id, variants in ids.telemetry.items()
+        if all(
+            is_requested(packets, variant.message, ids.telecommand, unrequested)
+            for variant in variants
+        )
+    }
+    rows_of_telemetry = rows_of(ids.telemetry, TELEMETRY, packets, seeds, {}, requested)
+    return replace(stream, telemetry=rows_of_telemetry)

@@ -8,6 +8,7 @@ decode messages.
 from __future__ import annotations
 
 from icdgen.frozen import dataclass
+from icdgen.icd.enumeration import Enum
 from icdgen.icd.responses import REPLY
 
 
@@ -39,9 +40,9 @@ class Echo:
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Telemetry that can end, refuse, defer or prolong a telecommand."""
+    """Telemetry or packet that can end, refuse, defer or prolong a telecommand."""
 
-    telemetry: int  # id
+    telemetry: int | None  # id; None: the requested telemetry, or a packet
     # Meaning; with `status`, the meaning of a status that `meanings` does not list
     verdict: str  # one of `icdgen.icd.responses.KINDS`
     echoes: tuple[Echo, ...]  # all must be equal to the telecommand
@@ -49,6 +50,10 @@ class Response:
     meanings: tuple[tuple[int, str], ...]  # verdict of each listed status
     reason: NumberPlace | None
     reasons: tuple[tuple[int, str], ...]  # values of the reason and their names
+    # Index of a packet without a message, whose places count from the first byte of the
+    # header; None: telemetry
+    packet: int | None = None
+    enum: Enum | None = None  # of the reason
 
     @property
     def is_reply(self) -> bool:

@@ -204,7 +204,15 @@ class Reader:
         if not section:
             return None
         return stream_of(
-            self.node, section, self.section("checksums"), ids_of(self.icd, self.node)
+            self.node,
+            section,
+            self.section("checksums"),
+            ids_of(self.icd, self.node),
+            {
+                enum.name: enum
+                for node in (*self.icd.included(self.node), self.node)
+                for enum in node.enums
+            },
         )
 
     def mask(self) -> LogMask | None:

@@ -5,79 +5,207 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
 
+from icdgen.icd.enumeration import Enum
 from icdgen.icd.model import Message, Node
+from icdgen.icd.packets import ID_ROLE, Packets
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
     ID,
     ID_BYTES,
     MOST_SOURCES,
     NAK,
+    REPLY,
     STATUS_SETS,
     Section,
     declared_responses,
     echoes_of,
     field_of,
     id_byte_of,
+    number_of,
     number_run,
-    raw_status,
     reason_of,
+    responses_in,
 )
+from icdgen.protocol.envelope import EnvelopeField, PacketFormat
 from icdgen.protocol.exchange import Echo, Exchange, NumberPlace, Response
 
-FindTelemetry = Callable[[str], tuple[int, Message] | None]
-"""Function that returns id and message of telemetry with a name."""
+
+class Number(NamedTuple):
+    """Number of a response: its place, and the enumeration of its values."""
+
+    place: NumberPlace
+    enum: Enum | None
+
+    def raw(self, value: object) -> int | None:
+        """Return a value, which is given as a number or as a member, without sign: as
+        clients compare it. None if there is no such member.
+        """
+        number = number_of(value, self.enum)
+        return None if number is None else number & (1 << self.place.bits) - 1
+
+    @property
+    def names(self) -> tuple[tuple[int, str], ...]:
+        """Return the values with names, without sign."""
+        mask = (1 << self.place.bits) - 1
+        return tuple(
+            (value & mask, member.name)
+            for member in (self.enum.members if self.enum else ())
+            for value in range(member.value, member.last + 1)
+        )
+
+
+class Sources(NamedTuple):
+    """Messages and packets of a link that respond."""
+
+    node: Node
+    packets: Packets
+    formats: tuple[PacketFormat, ...]  # of the packets, in the same order
+    enums: Mapping[str, Enum]
+    telemetry: Mapping[str, tuple[int, Message]]  # id and message, by name
+
+    def packet_of(self, row: Section) -> int | None:
+        """Return the index of the packet of a response; None for telemetry."""
+        names = [packet.name for packet in self.packets.all]
+        return names.index(row["packet"]) if row.get("packet") in names else None
+
+    def number(self, row: Section, name: str | None) -> Number | None:
+        """Return a number of a response; None without a name, or a field of it."""
+        index = self.packet_of(row)
+        if index is None:
+            _, message = self.telemetry[row["message"]]
+            field = field_of(message, name)
+            place = _place(self.node, field)
+            return Number(place, field.scalar.enum) if field and place else None
+        packet, form = self.packets.all[index], self.formats[index]
+        declared = packet.named(name or "")
+        if declared is None:
+            return None
+        (part,) = (
+            field
+            for field, each in zip(form.fields, packet.rows, strict=True)
+            if each is declared
+        )
+        enum = self.enums.get(declared.get("enum", ""))
+        return Number(_place_in_packet(form, part), enum)
+
+    def id_parts(self, packet: int, name: str) -> list[tuple[NumberPlace, NumberPlace]]:
+        """Return the place of each part of the id of a packet, with its place in
+        `Exchange.sources`; none if ``name`` is not a field of the id.
+        """
+        form = self.formats[packet]
+        declared = self.packets.all[packet].named(name) or {}
+        if declared.get("role") != ID_ROLE:
+            return []
+        return [
+            (
+                _place_in_packet(form, part),
+                NumberPlace(0, ID_BYTES, part.id_shift, part.bits, False),
+            )
+            for part in form.fields
+            if part.role == ID_ROLE
+        ]
+
+
+def _place_in_packet(form: PacketFormat, part: EnvelopeField) -> NumberPlace:
+    """Return the place of a field in a packet without a message."""
+    # The data have a fixed length.
+    start = form.header_bytes + form.reserved if part.in_trailer else 0
+    return NumberPlace(start + part.at, part.size, part.shift, part.bits, part.little)
 
 
 def exchange_of(
-    node: Node, commands: Section, message: Message, telemetry: FindTelemetry
+    sources: Sources, commands: Section, message: Message
 ) -> Exchange | None:
     """Return the exchange of a telecommand; None if nothing responds to it."""
-    sources: list[NumberPlace] = []
-    responses = []
-    for kind, row in declared_responses(commands, message).items():
-        declared = telemetry(row["message"])
-        if declared is None:
-            continue
-        id, response = declared
-        echoes = []
-        for name, repeated in echoes_of(row).items():
-            source = _source(node, message, repeated)
-            if source not in sources:
-                sources.append(source)
-            place = _place(node, field_of(response, name))
-            assert place is not None, f"rule ICD177 checks {name}"
-            echoes.append(Echo(place, sources.index(source)))
-        responses.append(
-            Response(
-                id,
-                # A status that no set lists refuses the telecommand.
-                NAK if "status" in row else kind,
-                tuple(echoes),
-                _place(node, field_of(response, row.get("status"))),
-                tuple(_meanings(kind, row, response)),
-                _place(node, field_of(response, reason_of(row))),
-                _names(field_of(response, reason_of(row))),
-            )
-        )
     # A model from the cache has plain mappings.
     own: Any = message.response
     timeout = own.get("timeout_ms", 0) if isinstance(own, Mapping) else 0
-    assert len(sources) <= MOST_SOURCES, "rule ICD177 checks the number"
-    return Exchange(tuple(sources), tuple(responses), timeout) if responses else None
+    rows = declared_responses(commands, message)
+    exchange = _exchange(
+        sources, rows, partial(_source, sources.node, message), timeout
+    )
+    return exchange if exchange.responses else None
 
 
-def _source(node: Node, message: Message, name: str) -> NumberPlace:
-    """Return the place of a number of a telecommand in `Exchange.sources`."""
+def request_exchange(sources: Sources, requests: Section) -> Exchange:
+    """Return the exchange of a request of telemetry by a packet with its id: the
+    requested telemetry, and what ``requests`` declares.
+    """
+    exchange = _exchange(
+        sources,
+        responses_in(requests),
+        partial(_id_source, sources.node),
+        requests.get("timeout_ms", 0),
+    )
+    requested = Response(None, REPLY, (), None, (), None, ())
+    return replace(exchange, responses=(requested, *exchange.responses))
+
+
+def _exchange(
+    sources: Sources,
+    rows: Mapping[str, Section],
+    source_of: Callable[[str], NumberPlace | None],
+    timeout: int,
+) -> Exchange:
+    """Return an exchange.
+
+    ``rows``: responses by kind. ``source_of`` returns the place of what a response
+    repeats.
+    """
+    places: list[NumberPlace] = []
+    responses = []
+    for kind, row in rows.items():
+        packet = sources.packet_of(row)
+        if packet is None and row.get("message") not in sources.telemetry:
+            continue  # a mistake that rule ICD176 reports
+        echoes = []
+        for name, repeated in echoes_of(row).items():
+            number, source = sources.number(row, name), source_of(repeated)
+            assert number and source, f"rule ICD177 checks {name} and {repeated}"
+            pairs = [(number.place, source)]
+            if packet is not None and repeated == ID:
+                pairs = sources.id_parts(packet, name) or pairs
+            for place, source in pairs:
+                if source not in places:
+                    places.append(source)
+                echoes.append(Echo(place, places.index(source)))
+        status = sources.number(row, row.get("status"))
+        reason = sources.number(row, reason_of(row))
+        responses.append(
+            Response(
+                None if packet is not None else sources.telemetry[row["message"]][0],
+                # A status that no set lists refuses the telecommand.
+                NAK if status else kind,
+                tuple(echoes),
+                status and status.place,
+                tuple(_meanings(kind, row, status)) if status else (),
+                reason and reason.place,
+                reason.names if reason else (),
+                packet,
+                reason.enum if reason else None,
+            )
+        )
+    assert len(places) <= MOST_SOURCES, "rule ICD177 checks the number"
+    return Exchange(tuple(places), tuple(responses), timeout)
+
+
+def _id_source(node: Node, name: str) -> NumberPlace | None:
+    """Return the place of the id, or of a byte of it, in `Exchange.sources`; None if the
+    name is neither.
+    """
     if name == ID:
         return NumberPlace(0, ID_BYTES, 0, 8 * ID_BYTES, False)
     byte = id_byte_of(node, name)
-    if byte is not None:
-        return NumberPlace(byte, 1, 0, 8, False)
-    place = _place(node, field_of(message, name), ID_BYTES)
-    assert place is not None, f"rule ICD177 checks {name}"
-    return place
+    return None if byte is None else NumberPlace(byte, 1, 0, 8, False)
+
+
+def _source(node: Node, message: Message, name: str) -> NumberPlace | None:
+    """Return the place of a number of a telecommand in `Exchange.sources`."""
+    return _id_source(node, name) or _place(node, field_of(message, name), ID_BYTES)
 
 
 def _place(node: Node, field: NodePlace | None, offset: int = 0) -> NumberPlace | None:
@@ -88,23 +216,10 @@ def _place(node: Node, field: NodePlace | None, offset: int = 0) -> NumberPlace 
     return NumberPlace(offset + run.byte, run.size, run.shift, field.bits, run.little)
 
 
-def _names(field: NodePlace | None) -> tuple[tuple[int, str], ...]:
-    """Return the values of a field with an enumeration, and their names."""
-    if field is None or field.scalar.enum is None:
-        return ()
-    mask = (1 << field.bits) - 1  # clients compare numbers without sign
-    return tuple(
-        (value & mask, member.name)
-        for member in field.scalar.enum.members
-        for value in range(member.value, member.last + 1)
-    )
-
-
-def _meanings(kind: str, row: Section, message: Message) -> Iterator[tuple[int, str]]:
+def _meanings(kind: str, row: Section, status: Number) -> Iterator[tuple[int, str]]:
     """Yield each listed value of the status, with its verdict."""
-    field = field_of(message, row.get("status"))
-    for key, verdict in STATUS_SETS.items() if field else ():
+    for key, verdict in STATUS_SETS.items():
         for value in row.get(key, ()):
-            raw = raw_status(field, value) if field else None
+            raw = status.raw(value)
             if raw is not None:
                 yield raw, verdict or kind

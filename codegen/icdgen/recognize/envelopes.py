@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from icdgen_runtime.wire.envelope import Direction
-from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
+from icdgen_runtime.wire.envelope import Direction, Exchange, Response, Stream
+from icdgen_runtime.wire.stream import ReceivedPacket, StreamDecoder, StreamEvent
 
 from icdgen.describe.ids import id_text
 from icdgen.recognize import faults, match
 from icdgen.recognize.faults import Fault
-from icdgen.recognize.reading import Endpoint, Reading
+from icdgen.recognize.reading import (
+    ACKNOWLEDGE,
+    REFUSAL,
+    REQUEST,
+    Endpoint,
+    Reading,
+)
 from icdgen.recognize.selection import Selection
 
 DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
@@ -23,6 +29,11 @@ class Span(NamedTuple):
 
     at: int
     end: int
+
+    @property
+    def size(self) -> int:
+        """Return the number of bytes."""
+        return self.end - self.at
 
     def mark(self, taken: bytearray) -> None:
         """Mark the bytes in a map of the input."""
@@ -55,14 +66,15 @@ class _RecordingDecoder(StreamDecoder):
         if (
             len(events) > before and len(events) - 1 not in self.packets
         ):  # the length field is invalid
-            header = self._buffer[at : at + self._form.header_bytes]
+            longest = max(packet.form.header_bytes for packet in self._packets)
+            header = self._buffer[at : at + longest]
             self.packets[len(events) - 1] = Span(at, at + 1), bytes(header)
         return count
 
     def _judge(
-        self, frame: bytes, events: list[StreamEvent]
+        self, packet: ReceivedPacket, frame: bytes, events: list[StreamEvent]
     ) -> Literal["message", "proven", "doubtful"]:
-        verdict = super()._judge(frame, events)
+        verdict = super()._judge(packet, frame, events)
         end = self._end if self._line else self._at + len(frame)
         self.packets[len(events) - 1] = Span(self._at, end), frame
         return verdict
@@ -96,6 +108,7 @@ def readings(
         for endpoint in endpoints
         if endpoint.facts.stream
         for direction in DIRECTIONS
+        if endpoint.facts.stream.packets_of(direction)
     ]
     usable = [
         result
@@ -114,6 +127,12 @@ def readings(
         result
         for result in usable
         if (result.lost, -len(result.readings)) == (least, fewer)
+    ]
+    # Packets of the opposite direction at other places are no alternatives.
+    best = [
+        result
+        for result in best
+        if result.spans == best[0].spans or result.endpoint is not best[0].endpoint
     ]
     chosen = {}
     for at in range(-fewer):
@@ -184,7 +203,9 @@ def sync_of(endpoint: Endpoint) -> str:
             filter(
                 None,
                 dict.fromkeys(
-                    faults.sync_text(form, direction) for direction in DIRECTIONS
+                    faults.sync_text(form.delimited_by, packet, direction)
+                    for direction in DIRECTIONS
+                    for packet in form.packets_of(direction)
                 ),
             )
         )
@@ -210,8 +231,9 @@ def _likeliest(results: Sequence[DirectionResult]) -> Fault | None:
 def _is_marked(endpoint: Endpoint) -> bool:
     """Return whether messages have a constant or a checksum."""
     form = endpoint.facts.stream
-    return form is not None and (
-        form.check is not None or form.of("constant") is not None
+    return form is not None and all(
+        packet.check is not None or packet.of("constant") is not None
+        for packet in form.packets
     )
 
 
@@ -221,16 +243,24 @@ def _decode_direction(
     """Decode the data as messages of one direction."""
     decoder = _RecordingDecoder(endpoint, direction)
     events = decoder.feed(data)
-    result = DirectionResult(endpoint, direction, decoder.discarded + decoder.pending)
+    readings = {
+        number: _reading(endpoint, direction, event)
+        for number, event in enumerate(events)
+        if event.event in ("message", "request", "packet")
+    }
+    # Packets of nothing in the ICD are valid for the decoder.
+    unread = sum(
+        decoder.packets[number][0].size
+        for number, reading in readings.items()
+        if reading is None
+    )
+    lost = decoder.discarded + decoder.pending + unread
+    result = DirectionResult(endpoint, direction, lost)
     for number, event in enumerate(events):
-        if event.event == "gap":
+        if event.event == "gap" or number not in decoder.packets:
             continue
-        span, packet = decoder.packets.get(number, (None, b""))
-        reading = (
-            _reading(endpoint, direction, event) if event.event == "message" else None
-        )
-        if span is None:
-            continue
+        span, packet = decoder.packets[number]
+        reading = readings.get(number)
         if reading is not None:
             result.readings.append(reading)
             result.spans.append(span)
@@ -252,7 +282,7 @@ def _fault(
     form = endpoint.link.stream
     return (
         fault
-        if fault and form and (fault.is_of_message or faults.has_sync(form))
+        if fault and form and (fault.is_of_message or faults.has_sync(form, direction))
         else None
     )
 
@@ -260,6 +290,11 @@ def _fault(
 def _reading(
     endpoint: Endpoint, direction: Direction, event: StreamEvent
 ) -> Reading | None:
+    """Return the message of an event; None if there is none."""
+    if event.event == "packet":
+        return _response(endpoint, event)
+    if event.event == "request":
+        return _request(endpoint, event)
     assert event.id is not None
     variants = getattr(endpoint.ids, direction)
     message = match.message_of(
@@ -272,18 +307,95 @@ def _reading(
         or match.counter_error(endpoint, message, event.data) is not None
     ):
         return None
-    form = endpoint.facts.stream
-    chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
-    note = f"envelope with id {id_text(form, event.id)} removed" + (
-        f"; it has {chosen}" if chosen else ""
-    )
-    checked = form is not None and form.check is not None
     return Reading(
         endpoint,
         direction,
         message,
         event.id,
         event.data,
-        checked=checked,
-        remarks=(note,),
+        checked=_is_checked(endpoint, direction, event.id),
+        remarks=(_note(endpoint, event),),
     )
+
+
+def _note(endpoint: Endpoint, event: StreamEvent) -> str:
+    """Return the text about header and trailer of a packet."""
+    chosen = ", ".join(f"{role} {value}" for role, value in event.values.items())
+    note = f"envelope with id {id_text(endpoint.facts.stream, event.id or 0)} removed"
+    return note + (f"; it has {chosen}" if chosen else "")
+
+
+def _is_checked(endpoint: Endpoint, direction: Direction, id: int) -> bool:
+    """Return whether the packet of a message has a checksum."""
+    form = endpoint.link.stream
+    row = form.row(direction, id) if form else None
+    return (
+        form is not None
+        and row is not None
+        and form.packets[row.packet].check is not None
+    )
+
+
+def _request(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
+    """Return the request of telemetry."""
+    form, id = endpoint.link.stream, event.id or 0
+    variants = endpoint.ids.telemetry.get(id, ())
+    if form is None or form.request is None or not variants:
+        return None
+    return Reading(
+        endpoint,
+        REQUEST,
+        variants[0].message,
+        id,
+        checked=form.packets[form.request.packet].check is not None,
+        remarks=(_note(endpoint, event),),
+    )
+
+
+def _response(endpoint: Endpoint, event: StreamEvent) -> Reading | None:
+    """Return the response that a packet without a message is, to the message with its
+    id; None if it responds to no message with this id.
+    """
+    form, id = endpoint.link.stream, event.id or 0
+    # A packet without id says nothing about a message.
+    if form is None or event.packet is None or not form.packets[event.packet].of("id"):
+        return None
+    packet, ids = form.packets[event.packet], endpoint.ids
+    for direction, response in _responses(form, event.packet, id):
+        is_refusal = faults.is_refusal(response, event.data)
+        code = response.reason.of(event.data) if response.reason else None
+        names = [f"reason {name}" for value, name in response.reasons if value == code]
+        variants = ids.telemetry if direction == "telemetry" else ids.telecommand
+        return Reading(
+            endpoint,
+            REFUSAL if is_refusal else ACKNOWLEDGE,
+            variants[id][0].message,
+            id,
+            error=code if is_refusal else None,
+            checked=packet.check is not None,
+            remarks=(f"packet `{packet.name}`", *(names if is_refusal else [])),
+        )
+    return None
+
+
+def _responses(
+    form: Stream, packet: int, id: int
+) -> Iterator[tuple[Direction, Response]]:
+    """Yield the responses that a packet with an id can be, and whether to telemetry or
+    to a telecommand: first those that the ICD declares for it.
+    """
+    telemetry, telecommand = form.row("telemetry", id), form.row("telecommand", id)
+    declared: list[tuple[Direction, Iterable[Exchange]]] = []
+    if form.request and telemetry and telemetry.is_requested:
+        declared.append(("telemetry", [form.exchanges[form.request.exchange]]))
+    if telecommand and telecommand.exchange is not None:
+        declared.append(("telecommand", [form.exchanges[telecommand.exchange]]))
+    if telemetry:
+        declared.append(("telemetry", form.exchanges))
+    if telecommand:
+        declared.append(("telecommand", form.exchanges))
+    for direction, exchanges in declared:
+        for exchange in exchanges:
+            for response in exchange.responses:
+                if response.packet == packet:
+                    yield direction, response

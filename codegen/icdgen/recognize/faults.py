@@ -6,8 +6,22 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from icdgen_runtime.wire.envelope import Direction, EnvelopeField, Stream, StreamRow
-from icdgen_runtime.wire.stream import _checksum, _get
+from icdgen_runtime.wire.envelope import (
+    Delimiter,
+    Direction,
+    EnvelopeField,
+    PacketForm,
+    Response,
+    Stream,
+    StreamRow,
+)
+from icdgen_runtime.wire.stream import (
+    ReceivedPacket,
+    _checksum,
+    _get,
+    _id_of,
+    _received_packets,
+)
 from icdgen_runtime.wire.stuffing import Unstuffer
 
 from icdgen.describe.ids import id_text
@@ -47,35 +61,42 @@ class Fault(NamedTuple):
         return BadLength(self.text, self.needed, self.given, self.help)
 
 
-def has_sync(form: Stream) -> bool:
+def has_sync(form: Stream, direction: Direction) -> bool:
     """Return whether packets begin with a delimiter or with at least 8 constant bits."""
-    constants = [
-        field
-        for field in form.fields
-        if field.role == "constant" and not field.in_trailer
-    ]
-    return (
-        form.delimited_by in (SLIP, HDLC)
-        or sum(field.bits for field in constants) >= _BITS_OF_SYNC
+    return form.delimited_by in (SLIP, HDLC) or all(
+        _sync_bits(packet) >= _BITS_OF_SYNC for packet in form.packets_of(direction)
     )
+
+
+def _sync_bits(packet: PacketForm) -> int:
+    """Return the number of constant bits of the header."""
+    constants = (
+        field
+        for field in packet.fields
+        if field.role == "constant" and not field.in_trailer
+    )
+    return sum(field.bits for field in constants)
 
 
 def begins_packet(form: Stream, direction: Direction, data: bytes) -> bool:
     """Return whether bytes begin with the delimiter or the constants of a direction."""
     if form.delimited_by in (SLIP, HDLC):
         return data[:1].hex().upper() == _ENDS[form.delimited_by]
-    return (
-        bool(data) and has_sync(form) and _bits_of_constants(form, direction, data) > 0
+    return any(
+        _sync_bits(packet) >= _BITS_OF_SYNC
+        and _bits_of_constants(packet, direction, data) > 0
+        for packet in form.packets_of(direction)
+        if data
     )
 
 
-def sync_text(form: Stream, direction: Direction) -> str:
+def sync_text(delimiter: Delimiter, form: PacketForm, direction: Direction) -> str:
     """Return the constant first bytes of packets, such as ``A5 5A``.
 
     It may be empty.
     """
-    if form.delimited_by in (SLIP, HDLC):
-        return _ENDS[form.delimited_by]
+    if delimiter in (SLIP, HDLC):
+        return _ENDS[delimiter]
     constants = {
         field.at: field
         for field in form.fields
@@ -90,7 +111,7 @@ def sync_text(form: Stream, direction: Direction) -> str:
     return constant_bytes.hex(" ").upper()
 
 
-def _bits_of_constants(form: Stream, direction: Direction, packet: bytes) -> int:
+def _bits_of_constants(form: PacketForm, direction: Direction, packet: bytes) -> int:
     """Return the number of matching constant bits in the header of a packet.
 
     Return -1 if a constant is wrong. The packet may be cut off.
@@ -121,42 +142,54 @@ def fault_of(
     Return None if it does not begin like a packet. ``is_whole``: its end was received,
     as far as this can be detected.
     """
-    form, declared = endpoint.link.stream, endpoint.facts.stream
+    form = endpoint.link.stream
     assert form
-    longest = endpoint.link.longest
+    faults = [
+        _fault_in(endpoint, direction, received, packet, is_whole)
+        for received in _received_packets(form, direction)
+    ]
+    return max(filter(None, faults), key=lambda fault: fault.rank, default=None)
+
+
+def is_refusal(response: Response, frame: bytes) -> bool:
+    """Return whether a packet refuses the telecommand or request, also for a time."""
+    return response.verdict_of(frame) not in ("ack", "progress")
+
+
+def reason_text(response: Response, frame: bytes) -> str:
+    """Return the reason of a refusal; empty if the packet has none."""
+    if response.reason is None or not is_refusal(response, frame):
+        return ""
+    code = response.reason.of(frame)
+    return dict(response.reasons).get(code, str(code))
+
+
+def _fault_in(
+    endpoint: Endpoint,
+    direction: Direction,
+    received: ReceivedPacket,
+    packet: bytes,
+    is_whole: bool,
+) -> Fault | None:
+    """Return the reason why the bytes are not a packet of a format; None if they do not
+    begin like one.
+    """
+    stream, form = endpoint.link.stream, received.form
+    assert stream
+    delimiter, longest = stream.delimited_by, endpoint.link.longest
     node, count = endpoint.node.name, len(packet)
     bits = _bits_of_constants(form, direction, packet)
     if bits < 0:
         return None
-    field = form.of("id")
-    rows = form.rows(direction)
-    if field is None:  # a format without id has one message
-        id = rows[0].id if rows else None
-    else:
-        id = _value(form, field, packet, is_whole)
-    messages = (
-        [variant.message for variant in getattr(endpoint.ids, direction).get(id, ())]
-        if id is not None
-        else []
-    )
-    row = next((row for row in rows if row.id == id), None)
-    rank, title = bits, f"packet of {node}"
-    if id is not None and field is not None:
-        title += f" with the id {id_text(declared, id)}"
+    has_id = form.of("id") is not None
+    id = _id(form, packet, is_whole)
+    row = received.row(id) if id is not None or not has_id else None
+    title = _title(endpoint, direction, received, id, row)
     # Ranks: constant bits of the header, plus 100 for a known id, 200 if only the
     # checksum is wrong, 300 if only the message is.
-    if messages:
-        rank += 100
-        names = " or ".join(
-            f"`{message.name}` ({direction} {id_text(declared, id or 0)})"
-            for message in messages
-        )
-        title = f"packet of {node}, {names}"
-    needed = _size(form, packet)
-    if (
-        needed is not None
-        and not form.header_bytes + form.trailer_bytes <= needed <= longest
-    ):
+    rank = bits + (100 if row else 0)
+    needed = packet_size(stream, received, packet)
+    if needed is not None and not form.overhead <= needed <= longest:
         text = f"a {title} says that it has {byte_count(needed)}; packets have up to {longest}"
         return Fault(
             rank,
@@ -164,22 +197,24 @@ def fault_of(
             "a byte of the header is damaged, or bytes are missing",
             longest,
             count,
-            is_of_message=bool(messages),
+            is_of_message=row is not None,
         )
-    is_of_row = bool(
-        row
-        and needed
-        and row.least <= needed - form.header_bytes - form.trailer_bytes <= row.most
-    )
-    is_certain = bool(messages) and (
-        is_of_row or (needed is None and form.delimited_by in (SLIP, HDLC))
-    )
+    least, most = data_bounds(stream, received, row)
+    if received.length and needed is not None:
+        is_certain = row is not None and least <= needed - form.overhead <= most
+    else:
+        is_certain = row is not None and delimiter in (SLIP, HDLC)
+    # Without a length field, only the message of the id says where the packet ends.
+    is_unmeasured = delimiter == LENGTH and received.length is None
+    if is_unmeasured and row is None and form.content != "none":
+        if id is not None or not has_id:
+            return _no_message(endpoint, direction, packet, title, id, rank, None)
     if not is_whole or (needed is not None and count < needed):
         expected = (
             f"{needed} are needed" if needed else f"its header has {form.header_bytes}"
         )
-        if needed is None and count >= form.header_bytes and form.delimited_by in _ENDS:
-            expected = f"the byte {_ENDS[form.delimited_by]} that ends it is missing"
+        if needed is None and count >= form.header_bytes and delimiter in _ENDS:
+            expected = f"the byte {_ENDS[delimiter]} that ends it is missing"
         text = f"a {title} is cut off: {byte_count(count)} came, {expected}"
         help = f"check that the capture is complete; {_DATA_ALONE.format(node)}"
         return Fault(
@@ -189,103 +224,181 @@ def fault_of(
             needed or form.header_bytes,
             count,
             False,
-            bool(messages),
+            row is not None,
             is_certain,
         )
-    fault = _fault_of_whole(endpoint, direction, packet, title, row, rank, is_certain)
-    return fault._replace(is_of_message=bool(messages))
+    fault = _fault_of_whole(
+        endpoint, direction, received, packet, title, id, row, rank, is_certain
+    )
+    return fault._replace(is_of_message=row is not None)
+
+
+def _title(
+    endpoint: Endpoint,
+    direction: Direction,
+    received: ReceivedPacket,
+    id: int | None,
+    row: StreamRow | None,
+) -> str:
+    """Return what a packet is called in a report."""
+    node, declared = endpoint.node.name, endpoint.facts.stream
+    title = f"packet of {node}"
+    if received.form.content == "none":
+        title = f"packet `{received.form.name}` of {node}"
+    if row is None:
+        return title + (
+            f" with the id {id_text(declared, id)}" if id is not None else ""
+        )
+    is_request = received.requested.get(row.id) is row
+    sent: Direction = "telemetry" if is_request else direction
+    names = " or ".join(
+        f"`{variant.message.name}` ({sent} {id_text(declared, row.id)})"
+        for variant in getattr(endpoint.ids, sent).get(row.id, ())
+    )
+    return f"{title}, {'request of ' if is_request else ''}{names}"
+
+
+def data_bounds(
+    stream: Stream, received: ReceivedPacket, row: StreamRow | None
+) -> tuple[int, int]:
+    """Return the smallest and largest number of data bytes of a packet with the message
+    of a row, or without a message.
+    """
+    if row is None:
+        return received.form.reserved, received.form.reserved
+    if stream.request and received.requested.get(row.id) is row:
+        return stream.request.reserved, stream.request.reserved
+    return row.least, row.most
 
 
 def _fault_of_whole(
     endpoint: Endpoint,
     direction: Direction,
+    received: ReceivedPacket,
     packet: bytes,
     title: str,
+    id: int | None,
     row: StreamRow | None,
     rank: int,
     is_certain: bool,
 ) -> Fault:
     """Return the fault of a packet that is not cut off."""
-    form, node = endpoint.link.stream, endpoint.node.name
-    assert form
-    size, count = len(packet) - form.header_bytes - form.trailer_bytes, len(packet)
+    form, count = received.form, len(packet)
+    stream = endpoint.link.stream
+    assert stream
+    size = count - form.overhead
     if size < 0:
-        least = form.header_bytes + form.trailer_bytes
+        least = form.overhead
         text = f"a {title} is cut off: {byte_count(count)} came, header and trailer have {least}"
         return Fault(rank, text, "check that the capture is complete", least, count)
-    needed = _size(form, packet)
+    needed = packet_size(stream, received, packet)
     if needed is not None and needed != count:
         text = f"a {title} has {byte_count(count)}, its length says {needed}"
         return Fault(
             rank, text, "bytes are missing, or too many, or damaged", needed, count
         )
-    for field in form.fields:
-        if field.role == "constant" and field.in_trailer:
-            value, expected = (
-                _get(form, field, packet, len(packet)),
-                field.values[direction == "telemetry"],
-            )
-            if value != expected:
-                text = f"a {title} ends with {_bytes_text(field, value)}, expected {_bytes_text(field, expected)}"
-                return Fault(
-                    rank,
-                    text,
-                    "bytes are missing, or too many, or damaged",
-                    count,
-                    count,
-                )
-    place = form.of("checksum")
-    if place and form.check and (row is not None or not form.check.is_seeded):
-        received, expected = _get(form, place, packet, len(packet)), _checksum(
-            form, row, packet
-        )
-        if received != expected:
-            text = f"a {title} has a wrong checksum: it is {_bytes_text(place, received)}, expected {_bytes_text(place, expected)}"
+    for field, expected in received.constants:
+        value = _get(form, field, packet, count)
+        if field.in_trailer and value != expected:
+            text = f"a {title} ends with {_bytes_text(field, value)}, expected {_bytes_text(field, expected)}"
+            help = "bytes are missing, or too many, or damaged"
+            return Fault(rank, text, help, count, count)
+    place, has_message = received.checksum, form.content != "none"
+    if (
+        place
+        and form.check
+        and (row is not None or not form.check.is_seeded or not has_message)
+    ):
+        sent, expected = _get(form, place, packet, count), _checksum(form, row, packet)
+        if sent != expected:
+            text = f"a {title} has a wrong checksum: it is {_bytes_text(place, sent)}, expected {_bytes_text(place, expected)}"
             help = (
                 "a byte of it is damaged or missing, or the packet is of another node"
             )
             return Fault(rank + 200, text, help, count, count, is_certain=is_certain)
-    if row is None:
-        other: Direction = "telemetry" if direction == "telecommand" else "telecommand"
-        place = form.of("id")
-        id = _get(form, place, packet, count) if place else 0
-        names = [
-            f"`{variant.message.name}`"
-            for variant in getattr(endpoint.ids, other).get(id, ())
-        ]
-        absence = (
-            f"no {direction} with this id, but {other} {' or '.join(names)}"
-            if names
-            else "no message with this id"
-        )
-        text = f"a {title} and {byte_count(size)} of data is no message: {node} has {absence}"
-        return Fault(
-            rank + 300,
-            text,
-            f"`icdgen show {node}` lists its messages",
-            0,
-            count,
-            is_unknown=True,
-        )
-    if not row.least <= size <= row.most:
-        lengths = (
-            f"{row.least}" if row.least == row.most else f"{row.least} to {row.most}"
-        )
+    if row is None and has_message:
+        return _no_message(endpoint, direction, packet, title, id, rank, size)
+    least, most = data_bounds(stream, received, row)
+    if not least <= size <= most:
+        lengths = f"{least}" if least == most else f"{least} to {most}"
         text = f"a {title} has {byte_count(size)} of data, the ICD says {lengths}"
         return Fault(
             rank + 300,
             text,
             "bytes are missing, or too many",
-            row.most,
+            most,
             size,
             is_certain=True,
         )
+    if row is None:
+        return _unrelated_response(endpoint, received, packet, title, rank)
     text = (
         f"a {title} has data that do not match the length and constants of the message"
     )
     return Fault(
         rank + 300, text, "a byte was damaged, or there are too many", size, size
     )
+
+
+def _no_message(
+    endpoint: Endpoint,
+    direction: Direction,
+    packet: bytes,
+    title: str,
+    id: int | None,
+    rank: int,
+    size: int | None,
+) -> Fault:
+    """Return the fault of a packet whose id no message of the direction has in it.
+
+    ``size``: bytes of its data; None if they are unknown.
+    """
+    node = endpoint.node.name
+    other: Direction = "telemetry" if direction == "telecommand" else "telecommand"
+    names = [
+        f"`{variant.message.name}`"
+        for variant in getattr(endpoint.ids, other).get(id, ())
+    ]
+    absence = (
+        f"no {direction} with this id, but {other} {' or '.join(names)}"
+        if names
+        else "no message with this id"
+    )
+    data = "" if size is None else f"and {byte_count(size)} of data "
+    text = f"a {title} {data}is no message: {node} has {absence}"
+    help = f"`icdgen show {node}` lists its messages"
+    return Fault(rank + 300, text, help, 0, len(packet), is_unknown=True)
+
+
+def _unrelated_response(
+    endpoint: Endpoint,
+    received: ReceivedPacket,
+    packet: bytes,
+    title: str,
+    rank: int,
+) -> Fault:
+    """Return the fault of a packet without a message that responds to no message of the
+    ICD: its meaning.
+    """
+    node, form = endpoint.node.name, endpoint.link.stream
+    assert form
+    responses = (
+        response
+        for exchange in form.exchanges
+        for response in exchange.responses
+        if response.packet == received.number
+    )
+    response = next(responses, None)
+    meaning = "response"
+    if response is not None:
+        meaning = "refusal" if is_refusal(response, packet) else "acknowledge"
+        reason = reason_text(response, packet)
+        meaning += f", reason {reason}" if reason else ""
+    text = f"a {title} is a {meaning}: no message has this id"
+    if not received.form.of("id"):
+        text = f"a {title} is a {meaning}: without an id, it names no message"
+    help = f"`icdgen show {node}` lists its messages"
+    return Fault(rank + 300, text, help, 0, len(packet), is_unknown=True)
 
 
 def packet_begun(
@@ -297,7 +410,12 @@ def packet_begun(
     if form.delimited_by == PACKET:
         return data, True
     if form.delimited_by == LENGTH:
-        needed = _size(form, data)
+        sizes = (
+            packet_size(form, packet, data)
+            for packet in _received_packets(form, direction)
+            if _bits_of_constants(packet.form, direction, data) >= 0
+        )
+        needed = next(sizes, None)
         return data[:needed], needed is not None and len(data) >= needed
     end = bytes.fromhex(_ENDS[form.delimited_by])
     line = Unstuffer(form.delimited_by, endpoint.link.longest)
@@ -308,30 +426,34 @@ def packet_begun(
     return (frames[0].bytes if frames else b""), False
 
 
-def _size(form: Stream, packet: bytes) -> int | None:
-    """Return the length of the packet in its header, or None if it is missing."""
-    field = form.of("length")
-    if field is None or len(packet) < form.header_bytes:
+def packet_size(stream: Stream, received: ReceivedPacket, packet: bytes) -> int | None:
+    """Return the length of the packet by its header, or None if it does not say it."""
+    form = received.form
+    if len(packet) < form.header_bytes:
         return None
-    return (
-        form.header_bytes
-        + _get(form, field, packet, len(packet))
-        - form.length_plus
-        + form.trailer_bytes
-    )
+    if received.length:
+        count = _get(form, received.length, packet, len(packet)) - form.length_plus
+        return form.overhead + count
+    if stream.delimited_by != LENGTH:
+        return None
+    row = received.row(_id_of(form, packet, len(packet)))
+    if row is None and form.content == "message":
+        return None
+    return form.overhead + data_bounds(stream, received, row)[1]
 
 
-def _value(
-    form: Stream, field: EnvelopeField, packet: bytes, is_whole: bool
-) -> int | None:
-    """Return the value of a field, or None if the packet is too short."""
-    if field.in_trailer and not is_whole:
-        return None
-    if field.at + field.size > len(packet) or (
-        field.in_trailer and len(packet) < form.trailer_bytes
-    ):
-        return None
-    return _get(form, field, packet, len(packet))
+def _id(form: PacketForm, packet: bytes, is_whole: bool) -> int | None:
+    """Return the id, or None if the packet is too short."""
+    size = len(packet)
+    for field in form.fields:
+        if field.role != "id":
+            continue
+        is_cut = field.at + field.size > size
+        if field.in_trailer:
+            is_cut = is_cut or not is_whole or size < form.trailer_bytes
+        if is_cut:
+            return None
+    return _id_of(form, packet, size)
 
 
 def _bytes_text(field: EnvelopeField, value: int) -> str:

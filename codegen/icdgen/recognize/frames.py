@@ -7,11 +7,13 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
+from icdgen_runtime.wire.envelope import Stream
 from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 from icdgen.recognize import bus, envelopes, faults, match
+from icdgen.recognize.envelopes import DIRECTIONS
 from icdgen.recognize.pasted import Pasted, read
 from icdgen.recognize.reading import Endpoint, Reading, all_endpoints, endpoint_of
 from icdgen.recognize.selected import selected_message
@@ -249,11 +251,15 @@ def _message_of_bytes(
         endpoint
         for endpoint in endpoints
         if endpoint.link.stream is None
-        or (selection.kind and faults.has_sync(endpoint.link.stream))
+        or (selection.kind and _has_sync(endpoint.link.stream))
     ]
     if not plainly:
         raise _no_packet_error(endpoints, data, selection)
     return _by_id_or_length(plainly, data, selection)
+
+
+def _has_sync(form: Stream) -> bool:
+    return all(faults.has_sync(form, direction) for direction in DIRECTIONS)
 
 
 def _no_packet_error(

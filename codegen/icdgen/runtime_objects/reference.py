@@ -66,13 +66,16 @@ def stream_encode(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any]
         )
     chosen = {role: number(values, role) for role in values}
     with _errors_of_reference():
-        line = stream.stream_encode(link, id, data, _direction(request), **chosen)
+        if request.get("direction") == "request":
+            line = stream.stream_encode_request(link, id, **chosen)
+        else:
+            line = stream.stream_encode(link, id, data, _direction(request), **chosen)
     return {"bytes": line.hex()}
 
 
 def stream_events(link: Link[Any], facts: Facts, request: Row) -> dict[str, Any]:
     direction, form = _direction(request), need(link.stream, "stream")
-    least = form.header_bytes + form.trailer_bytes
+    least = max(packet.overhead for packet in form.packets)
     limit = number(request, "limit", least, link.longest, link.longest)
     decoder = stream.StreamDecoder(link, direction, limit)
     chunks = [hex_bytes(chunk) for chunk in rows(request, "chunks")]
@@ -97,8 +100,11 @@ def _stream_row(event: stream.StreamEvent) -> Row:
     row: Row = {"event": event.event}
     if event.id is not None:
         row["id"] = event.id
-    if event.event == "message":
-        row |= {"bytes": event.data.hex(), **event.values}
+    if event.packet is not None:
+        row["packet"] = event.packet
+    if event.event in ("message", "packet"):
+        row["bytes"] = event.data.hex()
+    row |= event.values
     if event.event == "gap":
         row["missing"] = event.missing
     return row
@@ -192,7 +198,9 @@ def _event_row(event: events.Event) -> Row:
         case events.Gap(id, missing):
             return {"event": "gap", "id": id, "missing": missing}
         case events.Done(id, attempts, data, _, reply):
-            row = {"id": id, "attempts": attempts, "reply": reply, "bytes": data.hex()}
+            # A packet without a message has no id of telemetry.
+            named = {} if reply is None else {"reply": reply}
+            row = {"id": id, "attempts": attempts, **named, "bytes": data.hex()}
         case events.Refused(id, attempts, code) | events.Busy(id, attempts, code):
             row = {"id": id, "attempts": attempts, "code": code}
         case events.Timeout(id, attempts) | events.Sent(id, attempts):

@@ -272,7 +272,10 @@ def _outcomes(icd: Icd, selected: Node, message: Message) -> list[str]:
         return ["restarts instead of acknowledging" if restarts else "not acknowledged"]
     commands = protocol["stream"].get("commands", {})
     responses = declared_responses(commands, message)
-    texts = [f"{_RESPONSES[kind]} {row['message']}" for kind, row in responses.items()]
+    texts = [
+        f"{_RESPONSES[kind]} {row.get('message') or 'packet ' + row['packet']}"
+        for kind, row in responses.items()
+    ]
     repeat = ["may be sent again after a time-out"] if message.repeat else []
     return [", ".join(texts) or "no response", *repeat]
 

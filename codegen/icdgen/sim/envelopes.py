@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from icdgen_runtime.wire.device import response_of, response_to
+from icdgen_runtime.wire.device import PacketData, response_of, response_to
 from icdgen_runtime.wire.envelope import Response, Stream, Verdict
 from icdgen_runtime.wire.sender import Sender
 from icdgen_runtime.wire.stream import StreamDecoder
@@ -46,6 +46,8 @@ class EnvelopeLine(DeviceLine):
         program = computer.program
         self.form: Stream = need(program.link.stream, "stream")
         self.keeps_packets = self.form.delimited_by == PACKET
+        packets = self.form.packets_of("telecommand")
+        self._is_checked = any(packet.check for packet in packets)
         self.sender = Sender(program.link, "telemetry", chosen)
         self.decoder = StreamDecoder(program.link, "telecommand")
         self.ids = ids_of(program.icd, program.node)
@@ -75,11 +77,12 @@ class EnvelopeLine(DeviceLine):
                 "in the `reasons` of refusals"
             )
         responding = {response.telemetry for response in responses}
+        requested = {row.id: row.is_requested for row in self.form.telemetry}
         self.unsolicited = [
             variant.message
             for id, variants in self.ids.telemetry.items()
             for variant in variants
-            if id not in responding
+            if id not in responding and not requested.get(id)
         ]
         self._every = computer.settings.every_ms
         self._next = 0
@@ -110,6 +113,9 @@ class EnvelopeLine(DeviceLine):
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
         for event in self.decoder.feed(data):
+            if event.event == "request" and event.id is not None:
+                self._request(now, event.id)
+                continue
             if event.event != "message" or event.id is None:
                 self.computer.program.count(event.event)
                 cause = _CAUSES.get(event.event)
@@ -117,7 +123,7 @@ class EnvelopeLine(DeviceLine):
                     self._refuse(now, event.id, b"", cause)
                 continue
             for _, received_data in self.faults.apply("telecommand", event.data):
-                if received_data == event.data or self.form.check is None:
+                if received_data == event.data or not self._is_checked:
                     self._telecommand(now, event.id, received_data)
                 else:
                     self._refuse(now, event.id, received_data, "checksum")
@@ -165,6 +171,20 @@ class EnvelopeLine(DeviceLine):
         for verdict in _SUCCESS:
             self._respond(now + settings.processing_ms, id, data, verdict)
 
+    def _request(self, now: int, id: int) -> None:
+        """Respond to the request of telemetry."""
+        program = self.computer.program
+        fault = self.faults.fault("nak", "request")
+        if fault is not None:
+            self._refuse(now, id, b"", "value", fault.reason, is_request=True)
+            return
+        is_busy = now < program.free_at or self.faults.hits("busy", "request")
+        if is_busy and self._defer(now, id, b"", is_request=True):
+            return
+        program.count("requests")
+        if not self.faults.hits("silence", "request"):
+            self._respond(now, id, b"", "reply", is_request=True)
+
     def _message(self, id: int, data: bytes) -> Message | Cause:
         """Return the telecommand, or the cause why it is refused."""
         program = self.computer.program
@@ -200,10 +220,16 @@ class EnvelopeLine(DeviceLine):
         return other.id, bytes(other.least)
 
     def _refuse(
-        self, now: int, id: int, data: bytes, cause: Cause, reason: str | None = None
+        self,
+        now: int,
+        id: int,
+        data: bytes,
+        cause: Cause,
+        reason: str | None = None,
+        is_request: bool = False,
     ) -> None:
-        """Refuse a telecommand with the reason of the ICD for a cause, or with
-        ``reason``.
+        """Refuse a telecommand, or the request of telemetry, with the reason of the ICD
+        for a cause, or with ``reason``.
         """
         name = self._names_of_causes.get(cause) if reason is None else reason
         if cause == "checksum" and name is None:
@@ -211,19 +237,20 @@ class EnvelopeLine(DeviceLine):
         self.computer.program.count("refused")
         if self.faults.hits("silence", "telecommand"):
             return
-        response = response_of(self.form, id, "nak")
+        response = response_of(self.form, id, "nak", is_request)
         if response is not None:
             number = None if name is None else _reason(response, name)
-            self._respond(now, id, data, "nak", number)
+            self._respond(now, id, data, "nak", number, is_request)
 
-    def _defer(self, now: int, id: int, data: bytes) -> bool:
+    def _defer(self, now: int, id: int, data: bytes, is_request: bool = False) -> bool:
         """Respond that the device is busy. Return whether there is such a response."""
-        if response_of(self.form, id, "busy") is not None:
-            self._respond(now, id, data, "busy")
+        if response_of(self.form, id, "busy", is_request) is not None:
+            self._respond(now, id, data, "busy", is_request=is_request)
             return True
-        if "busy" not in self._names_of_causes or not response_of(self.form, id, "nak"):
+        can_refuse = response_of(self.form, id, "nak", is_request) is not None
+        if "busy" not in self._names_of_causes or not can_refuse:
             return False
-        self._refuse(now, id, data, "busy")
+        self._refuse(now, id, data, "busy", is_request=is_request)
         return True
 
     def _respond(
@@ -233,17 +260,24 @@ class EnvelopeLine(DeviceLine):
         data: bytes,
         verdict: Verdict,
         reason: int | None = None,
+        is_request: bool = False,
     ) -> None:
         """Send a response, if there is one."""
         program = self.computer.program
-        response = response_of(self.form, id, verdict)
+        response = response_of(self.form, id, verdict, is_request)
         if response is None:
             return
-        message = self.ids.telemetry[response.telemetry][0].message
-        frames = {response.telemetry: program.current(now, message)}
-        telemetry = response_to(program.link, id, data, verdict, reason, frames)
-        assert telemetry is not None
-        self._send(now, "reply" if verdict == "reply" else "acknowledge", *telemetry)
+        frames = {}
+        if response.packet is None:
+            telemetry = id if response.telemetry is None else response.telemetry
+            message = self.ids.telemetry[telemetry][0].message
+            frames[telemetry] = program.current(now, message)
+        sent = response_to(program.link, id, data, verdict, reason, frames, is_request)
+        on = "reply" if verdict == "reply" else "acknowledge"
+        if isinstance(sent, PacketData):
+            self.queue(now, on, self.sender.encode_packet(*sent))
+        elif sent is not None:
+            self._send(now, on, *sent)
 
     def _send(self, now: int, on: str, id: int, data: bytes) -> None:
         self.queue(now, on, self.sender.encode(id, data))

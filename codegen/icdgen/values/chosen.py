@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from icdgen.errors import UserError
-from icdgen.protocol.envelope import GIVEN
 from icdgen.protocol.facts import Facts
 from icdgen.values import numbers
 
@@ -15,11 +14,7 @@ def values_of(facts: Facts, chosen: Sequence[str]) -> dict[str, int]:
 
     Raises `icdgen.errors.UserError`.
     """
-    fields = (
-        {field.role: field for field in facts.stream.fields if field.role in GIVEN}
-        if facts.stream
-        else {}
-    )
+    fields = facts.stream.chosen("telecommand") if facts.stream else {}
     values = {}
     for text in chosen:
         role, _, number = text.partition("=")

@@ -12,12 +12,19 @@ static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
     return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
 }
 
-/* Return the field with this role; NULL if there is none. */
-static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
+/* Return the number of bytes of header and trailer. */
+static inline size_t icdgen_packet_around(const icd_packet_form_t *packet)
 {
-    for (size_t i = 0; i < form->field_count; ++i) {
-        if (form->fields[i].role == role) {
-            return &form->fields[i];
+    return ICDGEN_SIZE(packet->header_bytes) + packet->trailer_bytes;
+}
+
+/* Return the field with this role; NULL if there is none. */
+static inline const icd_envelope_field_t *icdgen_envelope_field(
+    const icd_packet_form_t *packet, icd_envelope_role_t role)
+{
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        if (packet->fields[i].role == role) {
+            return &packet->fields[i];
         }
     }
     return NULL;
@@ -31,6 +38,20 @@ static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, co
         number = (number << 8) | bytes[field->at + (field->little ? field->size - 1u - i : i)];
     }
     return (number >> field->shift) & icdgen_envelope_mask(field);
+}
+
+/* Return the id of a packet whose id is in the header. */
+static inline uint32_t icdgen_envelope_id(
+    const icd_packet_form_t *packet, icd_direction_t direction, const uint8_t *header)
+{
+    uint32_t id = packet->ids[direction];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
+        if (field->role == ICD_ENVELOPE_ID && !field->in_trailer) {
+            id |= icdgen_envelope_get(field, header) << field->values[0];
+        }
+    }
+    return id;
 }
 
 static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
@@ -96,19 +117,19 @@ static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
     }
 }
 
-/* Return the checksum of header, data and trailer. `row` may be NULL if the checksum has no seed. */
+/* Return the checksum of header, data and trailer. `row` is NULL if there is no message and so no seed. */
 static inline uint32_t icdgen_envelope_check(
-    const icd_stream_form_t *form,
+    const icd_packet_form_t *packet,
     const icd_stream_row_t *row,
     const uint8_t *header,
     const uint8_t *data,
     size_t length,
     const uint8_t *trailer)
 {
-    const icd_check_form_t *const given = form->check;
+    const icd_check_form_t *const given = packet->check;
     icdgen_check_t check;
     icdgen_check_begin(&check, given);
-    icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(form->header_bytes) - given->covered_from);
+    icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(packet->header_bytes) - given->covered_from);
     icdgen_check_feed(&check, data, length);
     icdgen_check_feed(&check, trailer, given->covered_trailer);
     if (given->is_seeded && row != NULL) {

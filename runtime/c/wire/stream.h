@@ -13,7 +13,13 @@ typedef struct {
     uint32_t of[ICD_ENVELOPE_VALUES];
 } icd_envelope_values_t;
 
-/** Return the values of the ICD for this direction. Fields without a value in the ICD are 0. */
+/** A value that stands for the default of the packet format, in fields of less than 32 bits. */
+#define ICD_ENVELOPE_DEFAULT UINT32_C(0xFFFFFFFF)
+
+/**
+ * Return the values of the ICD for this direction. Fields without a value in the ICD are 0. If packet formats have
+ * different values, the value is ICD_ENVELOPE_DEFAULT; for fields of 32 bits, it is that of the first format.
+ */
 ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction);
 
 /**
@@ -28,6 +34,19 @@ ICDGEN_API icd_status_t icd_stream_encode(
     uint32_t id,
     const uint8_t *data,
     size_t length,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
+/**
+ * Encode the packet that requests telemetry. For the other parameters see icd_stream_encode().
+ * Return ICD_ERROR_UNSUPPORTED if no packet requests telemetry, ICD_ERROR_UNKNOWN_ID if it cannot request this
+ * telemetry, ICD_ERROR_LENGTH if the buffer is too small, ICD_ERROR_RANGE if a value does not fit into its field.
+ */
+ICDGEN_API icd_status_t icd_stream_encode_request(
+    const icd_link_t *link,
+    uint32_t telemetry,
     const icd_envelope_values_t *values,
     uint8_t *buffer,
     size_t capacity,
@@ -64,6 +83,13 @@ ICDGEN_API icd_status_t icd_stream_send(
     size_t capacity,
     size_t *written);
 
+/**
+ * Encode the packet that requests telemetry, with the next sequence number. For the other parameters and errors see
+ * icd_stream_encode_request().
+ */
+ICDGEN_API icd_status_t icd_stream_send_request(
+    icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written);
+
 typedef enum {
     ICD_STREAM_MESSAGE = 0,
     ICD_STREAM_GAP = 1,        /**< `missing` messages were lost before this one; 0: this message is a repetition. */
@@ -80,7 +106,9 @@ typedef enum {
     ICD_STREAM_PROGRESS = 12,  /**< Client: the request is still in progress. */
     ICD_STREAM_REPLY = 13,     /**< Client: the requested telemetry; the acknowledge is still to come. */
     ICD_STREAM_LATE = 14,      /**< Client: a response to a request that has ended. */
-    ICD_STREAM_STRAY = 15      /**< Client: a response without a request. */
+    ICD_STREAM_STRAY = 15,     /**< Client: a response without a request. */
+    ICD_STREAM_REQUEST = 16,   /**< Decoder of telecommands: a packet that requests telemetry. */
+    ICD_STREAM_PACKET = 17     /**< Decoder: a packet without a message. `data` are all its bytes. */
 } icd_stream_kind_t;
 
 /**
@@ -102,6 +130,8 @@ typedef struct {
     uint32_t attempts; /**< Outcomes: number of times the request was sent. */
     bool has_reply;    /**< Events of a request: whether a response led to the event. */
     uint32_t reply;    /**< Id of this response. */
+    bool is_packet;    /**< Whether the packet or the response contains no message. `data` are all its bytes. */
+    uint8_t packet;    /**< MESSAGE, REQUEST, PACKET: index of the packet format. */
     bool has_code;     /**< REFUSED, BUSY: whether the response has a reason. */
     uint32_t code;     /**< The reason. */
 } icd_stream_event_t;

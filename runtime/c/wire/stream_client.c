@@ -5,10 +5,10 @@
 #include "events.c"
 #include "stream_decode.c"
 
-/* Return the largest number of data bytes of a telecommand. */
+/* Return the largest number of data bytes of a request. */
 static inline size_t icdgen_request_bytes(const icd_stream_form_t *form)
 {
-    size_t most = 0;
+    size_t most = form->request != NULL ? form->packets[form->request->packet].reserved : 0u;
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
         const size_t bytes = form->rows[ICD_TELECOMMAND][i].most;
         most = bytes > most ? bytes : most;
@@ -35,7 +35,6 @@ ICDGEN_API icd_status_t icd_stream_client_init(
     const size_t half = sequence_count / 2u;
     icd_status_t status;
     (void)memset(client, 0, sizeof *client);
-    client->link = link;
     client->settings = link->client;
     status = icd_stream_sender_init(&client->sender, link, ICD_TELECOMMAND, sequences, half);
     if (status == ICD_OK && size < icd_stream_client_bytes(link, slot_count)) {
@@ -90,9 +89,9 @@ static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_n
     return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
 }
 
-/* The reply that the caller specified. Its id is in icd_stream_awaited_t. */
+/* The reply that the caller specified, or the requested telemetry. Its id is in icd_stream_awaited_t. */
 static const icd_response_t icdgen_specified_reply = {
-    0u, ICD_VERDICT_REPLY, 0u, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
+    0u, ICD_VERDICT_REPLY, 0u, false, 0u, NULL, NULL, {0u, 0u, 0u, 0u, false}, {0u, 0u, 0u, 0u, false}};
 
 /* Return what a response can mean, as a mask of verdicts. */
 static inline uint32_t icdgen_verdicts(const icd_response_t *response)
@@ -110,53 +109,59 @@ static inline bool icdgen_can_be_reply(const icd_response_t *response)
 }
 
 /*
- * Return the possible response to a request after `last`, or the first one after NULL. NULL if there is none. The last
- * is the reply that the caller specified, which takes the place of those in the ICD.
+ * Return the possible response to a request at a position or after it, and advance the position. NULL if there is none.
+ * The reply that the caller specified takes the place of those in the ICD, and is the last; requested telemetry is the
+ * first.
  */
-static inline const icd_response_t *icdgen_next_response(
-    const icd_stream_awaited_t *awaited, const icd_response_t *last)
+static inline const icd_response_t *icdgen_next_response(const icd_stream_awaited_t *awaited, size_t *position)
 {
     const icd_exchange_t *const exchange = awaited->exchange;
     const bool has_reply = awaited->reply != NULL;
-    if (last == &icdgen_specified_reply) {
-        return NULL;
-    }
-    if (exchange != NULL) {
-        size_t next = last == NULL ? ICDGEN_SIZE(0) : ICDGEN_SIZE(last - exchange->responses) + 1u;
-        while (next < exchange->response_count && has_reply && icdgen_can_be_reply(&exchange->responses[next])) {
-            next++;
+    const size_t own = exchange->is_request ? ICDGEN_SIZE(0) : exchange->response_count;
+    while (*position <= exchange->response_count) {
+        const size_t i = *position;
+        (*position)++;
+        if (i == own) {
+            if (has_reply) {
+                return &icdgen_specified_reply;
+            }
+        } else {
+            const icd_response_t *const response = &exchange->responses[i - (i > own ? 1u : 0u)];
+            if (!has_reply || !icdgen_can_be_reply(response)) {
+                return response;
+            }
         }
-        if (next < exchange->response_count) {
-            return &exchange->responses[next];
-        }
     }
-    return has_reply ? &icdgen_specified_reply : NULL;
+    return NULL;
 }
 
-static inline uint32_t icdgen_response_id(const icd_stream_awaited_t *awaited, const icd_response_t *response)
+static inline uint32_t icdgen_response_source(const icd_stream_awaited_t *awaited, const icd_response_t *response)
 {
-    return response == &icdgen_specified_reply ? awaited->reply->id : response->telemetry;
+    return response == &icdgen_specified_reply ? awaited->reply->id : response->source;
 }
 
 /* Return the verdicts without which a request is not done, as a mask. */
 static inline uint32_t icdgen_needed(const icd_stream_awaited_t *awaited)
 {
     uint32_t verdicts = 0;
-    const icd_response_t *response = icdgen_next_response(awaited, NULL);
+    size_t position = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, &position);
     while (response != NULL) {
         verdicts |= icdgen_verdicts(response);
-        response = icdgen_next_response(awaited, response);
+        response = icdgen_next_response(awaited, &position);
     }
     return verdicts & (icdgen_verdict_bit(ICD_VERDICT_ACK) | icdgen_verdict_bit(ICD_VERDICT_REPLY));
 }
 
-/* Return the response to a request that telemetry is; NULL if it is none of them. */
+/* Return the response to a request that telemetry or a packet is; NULL if it is none of them. */
 static inline const icd_response_t *icdgen_matching(
     const icd_stream_awaited_t *awaited, const icd_stream_event_t *event)
 {
-    const icd_response_t *response = icdgen_next_response(awaited, NULL);
+    const uint32_t source = event->is_packet ? event->packet : event->id;
+    size_t position = 0;
+    const icd_response_t *response = icdgen_next_response(awaited, &position);
     while (response != NULL) {
-        bool matches = icdgen_response_id(awaited, response) == event->id;
+        bool matches = icdgen_response_source(awaited, response) == source && response->is_packet == event->is_packet;
         for (size_t i = 0; matches && i < response->echo_count; ++i) {
             const icd_echo_t *const echo = &response->echoes[i];
             matches = icdgen_stream_number(&echo->place, event->id, event->data, event->length) ==
@@ -165,7 +170,7 @@ static inline const icd_response_t *icdgen_matching(
         if (matches) {
             break;
         }
-        response = icdgen_next_response(awaited, response);
+        response = icdgen_next_response(awaited, &position);
     }
     return response;
 }
@@ -193,17 +198,20 @@ static inline bool icdgen_differs_in_echo(
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_stream_awaited_t *b)
 {
-    const icd_response_t *of_a = icdgen_next_response(a, NULL);
+    size_t position_a = 0;
+    const icd_response_t *of_a = icdgen_next_response(a, &position_a);
     while (of_a != NULL) {
-        const icd_response_t *of_b = icdgen_next_response(b, NULL);
+        size_t position_b = 0;
+        const icd_response_t *of_b = icdgen_next_response(b, &position_b);
         while (of_b != NULL) {
-            if (icdgen_response_id(a, of_a) == icdgen_response_id(b, of_b) &&
-                !icdgen_differs_in_echo(a, of_a, b, of_b)) {
+            const bool is_same = icdgen_response_source(a, of_a) == icdgen_response_source(b, of_b) &&
+                of_a->is_packet == of_b->is_packet;
+            if (is_same && !icdgen_differs_in_echo(a, of_a, b, of_b)) {
                 return true;
             }
-            of_b = icdgen_next_response(b, of_b);
+            of_b = icdgen_next_response(b, &position_b);
         }
-        of_a = icdgen_next_response(a, of_a);
+        of_a = icdgen_next_response(a, &position_a);
     }
     return false;
 }
@@ -239,8 +247,7 @@ static inline void icdgen_settle(icd_stream_awaited_t *awaited, icd_verdict_t ve
 
 static inline uint32_t icdgen_stream_timeout(const icd_stream_client_t *client, const icd_stream_awaited_t *awaited)
 {
-    const bool is_own = awaited->exchange != NULL && awaited->exchange->timeout != 0u;
-    return is_own ? awaited->exchange->timeout : client->settings.reply_timeout;
+    return awaited->exchange->timeout != 0u ? awaited->exchange->timeout : client->settings.reply_timeout;
 }
 
 /* Return the time at which a late response to a request can no longer arrive. */
@@ -283,10 +290,16 @@ static inline void icdgen_stream_set_time(icd_stream_client_t *client, uint32_t 
     }
 }
 
+/* Return whether the packet of requests is sent for a request, and `row` is the requested telemetry. */
+static inline bool icdgen_is_by_packet(const icd_stream_slot_t *slot)
+{
+    return (slot->row->flags & ICD_STREAM_REQUESTED) != 0u;
+}
+
 /* Return the id with which a request was started. */
 static inline uint32_t icdgen_request_id(const icd_stream_slot_t *slot)
 {
-    return slot->direction == ICD_TELEMETRY ? slot->row->requested : slot->row->id;
+    return slot->direction == ICD_TELEMETRY && !icdgen_is_by_packet(slot) ? slot->row->requested : slot->row->id;
 }
 
 /* End a request, and remember the responses that may still arrive. */
@@ -351,45 +364,57 @@ ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, ui
     return earliest.exists;
 }
 
-/* Return the telecommand that requests telemetry: the first one; NULL if there is none. */
+/*
+ * Return what is sent to request telemetry: the first telecommand that requests it, or the telemetry itself for the
+ * packet of requests. NULL if nothing requests it.
+ */
 static inline const icd_stream_row_t *icdgen_stream_asking(const icd_stream_form_t *form, uint32_t id)
 {
     for (size_t i = 0; i < form->row_counts[ICD_TELECOMMAND]; ++i) {
         const icd_stream_row_t *const row = &form->rows[ICD_TELECOMMAND][i];
-        if (row->is_request && row->requested == id) {
+        if ((row->flags & ICD_STREAM_REQUESTS) != 0u && row->requested == id) {
             return row;
         }
     }
-    return NULL;
+    const icd_stream_row_t *const telemetry = icdgen_stream_row(form, ICD_TELEMETRY, id);
+    return telemetry != NULL && (telemetry->flags & ICD_STREAM_REQUESTED) != 0u ? telemetry : NULL;
 }
 
 /* Return whether telemetry is a possible reply in the ICD. */
 static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 {
-    for (size_t i = 0; exchange != NULL && i < exchange->response_count; ++i) {
+    for (size_t i = 0; i < exchange->response_count; ++i) {
         const icd_response_t *const response = &exchange->responses[i];
-        if (response->telemetry == id && icdgen_can_be_reply(response)) {
+        if (!response->is_packet && response->source == id && icdgen_can_be_reply(response)) {
             return true;
         }
     }
     return false;
 }
 
+/* Return the packet that is sent for a request. */
+static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
+{
+    const icdgen_outgoing_t outgoing = {
+        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length};
+    return outgoing;
+}
+
 ICDGEN_API icd_status_t
 icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request)
 {
+    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, false, 0u};
     const bool asks = request->direction == ICD_TELEMETRY;
     if (!client->ready) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    const icd_stream_form_t *const form = client->link->stream;
+    const icd_stream_form_t *const form = client->sender.link->stream;
     const icd_stream_row_t *const row =
         asks ? icdgen_stream_asking(form, request->id) : icdgen_stream_row(form, ICD_TELECOMMAND, request->id);
     if (row == NULL) {
         const bool is_known = asks && icdgen_stream_row(form, ICD_TELEMETRY, request->id) != NULL;
         return is_known ? ICD_ERROR_UNSUPPORTED : ICD_ERROR_UNKNOWN_ID;
     }
-    const size_t length = asks ? row->least : request->length;
     const bool has_reply = request->has_reply && !asks;
     const icd_stream_row_t *const reply = has_reply ? icdgen_stream_row(form, ICD_TELEMETRY, request->reply) : NULL;
     if (has_reply && reply == NULL) {
@@ -398,34 +423,48 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     if (client->started == client->slot_count) {
         return ICD_ERROR_BUSY;
     }
-    if (length < row->least || length > row->most) {
-        return ICD_ERROR_LENGTH;
-    }
     icd_stream_slot_t *const slot = &client->slots[client->started];
     uint8_t *const data = slot->data;
-    for (size_t i = 0; i < length; ++i) {
-        data[i] = asks ? 0u : request->data[i];
-    }
-    /* Without a buffer, this checks whether header and trailer values fit into their fields. */
-    size_t written = 0;
-    if (icd_stream_encode(
-            client->link, ICD_TELECOMMAND, row->id, data, length, &client->sender.values, NULL, 0, &written) ==
-        ICD_ERROR_RANGE) {
-        return ICD_ERROR_RANGE;
-    }
     (void)memset(slot, 0, sizeof *slot);
     slot->row = row;
     slot->data = data;
-    slot->length = length;
-    slot->repeat = request->repeat || asks || row->repeats;
     slot->direction = request->direction;
-    slot->state = ICD_STREAM_SLOT_QUEUED;
-    slot->awaited.exchange = row->exchange;
-    if (reply != NULL && !icdgen_has_reply(row->exchange, reply->id)) {
-        slot->awaited.reply = reply;
+    const bool by_packet = icdgen_is_by_packet(slot);
+    slot->length = request->length;
+    if (by_packet) {
+        slot->length = form->packets[form->request->packet].reserved;
+    } else if (asks) {
+        slot->length = row->least;
+    } else if (request->length < row->least || request->length > row->most) {
+        return ICD_ERROR_LENGTH;
+    } else {
+        /* the length fits */
     }
-    for (size_t i = 0; row->exchange != NULL && i < row->exchange->source_count; ++i) {
-        slot->awaited.sources[i] = icdgen_stream_number(&row->exchange->sources[i], row->id, data, length);
+    for (size_t i = 0; i < slot->length; ++i) {
+        data[i] = asks ? 0u : request->data[i];
+    }
+    /* Without a buffer, this only checks whether header and trailer values fit into their fields. */
+    size_t written = 0;
+    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    if (icdgen_outgoing_encode(&outgoing, &client->sender.values, NULL, 0, &written) == ICD_ERROR_RANGE) {
+        return ICD_ERROR_RANGE;
+    }
+    slot->repeat = request->repeat || asks || (row->flags & ICD_STREAM_REPEATS) != 0u;
+    slot->state = ICD_STREAM_SLOT_QUEUED;
+    const icd_exchange_t *exchange = by_packet ? form->request->exchange : row->exchange;
+    if (exchange == NULL) {
+        exchange = &no_exchange;
+    }
+    slot->awaited.exchange = exchange;
+    if (by_packet) {
+        slot->awaited.reply = row;
+    } else if (reply != NULL && !icdgen_has_reply(exchange, reply->id)) {
+        slot->awaited.reply = reply;
+    } else {
+        /* as in the ICD */
+    }
+    for (size_t i = 0; i < exchange->source_count; ++i) {
+        slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
     }
     client->started++;
     icdgen_stream_set_time(client, now);
@@ -480,7 +519,8 @@ static inline bool icdgen_stream_may_be_sent(const icd_stream_client_t *client, 
     if (client->in_gap) {
         return false;
     }
-    if (icdgen_next_response(&slot->awaited, NULL) == NULL) {
+    size_t position = 0;
+    if (icdgen_next_response(&slot->awaited, &position) == NULL) {
         return true;
     }
     for (size_t i = 0; i < client->started; ++i) {
@@ -510,9 +550,11 @@ static inline bool icdgen_stream_may_be_sent(const icd_stream_client_t *client, 
 ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)
 {
     icd_stream_slot_t *const slot = icdgen_stream_queued(client);
-    if (slot == NULL || !icdgen_stream_may_be_sent(client, slot) ||
-        icd_stream_send(&client->sender, slot->row->id, slot->data, slot->length, buffer, capacity, written) !=
-            ICD_OK) {
+    if (slot == NULL || !icdgen_stream_may_be_sent(client, slot)) {
+        return false;
+    }
+    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    if (icdgen_outgoing_send(&outgoing, &client->sender, buffer, capacity, written) != ICD_OK) {
         return false;
     }
     icd_stream_awaited_t *const awaited = &slot->awaited;
@@ -545,7 +587,7 @@ static inline void icdgen_stream_report(
     event->kind = kind;
     event->has_id = true;
     event->id = icdgen_request_id(slot);
-    event->link = call->client->link;
+    event->link = call->client->sender.link;
     event->direction = slot->direction;
     event->attempts = slot->attempts;
     if (kind != ICD_STREAM_PROGRESS && kind != ICD_STREAM_REPLY) {
@@ -584,7 +626,7 @@ static inline void icdgen_stream_responded(
     icd_stream_slot_t *const slot = &client->slots[index];
     const icd_verdict_t verdict = icdgen_verdict(response, event);
     icd_stream_kind_t kind = ICD_STREAM_PROGRESS;
-    event->has_reply = true;
+    event->has_reply = !event->is_packet;
     event->reply = event->id;
     icdgen_settle(&slot->awaited, verdict);
     if (verdict == ICD_VERDICT_PROGRESS) {
@@ -651,9 +693,9 @@ static inline void icdgen_stream_on_event(void *context, const icd_stream_event_
     const icdgen_stream_call_t *const call = ICDGEN_CAST(const icdgen_stream_call_t *, context);
     icd_stream_client_t *const client = call->client;
     icd_stream_event_t reported = *event;
-    reported.link = client->link;
+    reported.link = client->sender.link;
     reported.direction = ICD_TELEMETRY;
-    if (event->kind == ICD_STREAM_MESSAGE) {
+    if (event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_PACKET) {
         for (size_t i = 0; i < client->started; ++i) {
             const icd_stream_slot_t *const slot = &client->slots[i];
             const bool is_awaited = slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited);
@@ -665,7 +707,7 @@ static inline void icdgen_stream_on_event(void *context, const icd_stream_event_
         }
         if (icdgen_stream_is_late(client, event)) {
             reported.kind = ICD_STREAM_LATE;
-        } else if (icdgen_stream_confirms(client->link->stream, event->id)) {
+        } else if (event->is_packet || icdgen_stream_confirms(client->sender.link->stream, event->id)) {
             reported.kind = ICD_STREAM_STRAY;
         } else {
             /* unsolicited */
@@ -716,7 +758,7 @@ ICDGEN_API bool icd_is_telemetry(const icd_stream_event_t *event, const char *no
 {
     const bool arrived =
         event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_LATE || event->kind == ICD_STREAM_STRAY;
-    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY);
+    const bool brings = event->has_reply || (arrived && event->direction == ICD_TELEMETRY && !event->is_packet);
     return brings && (event->has_reply ? event->reply : event->id) == id && event->link != NULL &&
         icd_has_messages_of(event->link, node);
 }

@@ -39,7 +39,7 @@ typedef enum {
 /* The responses that may arrive for a request that was sent. */
 typedef struct {
     const icd_exchange_t *exchange;
-    const icd_stream_row_t *reply;         /* the reply that the caller specified; NULL: as in the ICD */
+    const icd_stream_row_t *reply;         /* specified by the caller, or requested; NULL: as in the ICD */
     uint32_t sources[ICD_MOST_SOURCES];    /* numbers that responses must repeat */
     uint32_t latest;                       /* time until which a response is not late */
     uint16_t owed[ICDGEN_NEEDED_VERDICTS]; /* numbers of responses that may still arrive, by verdict */
@@ -48,7 +48,7 @@ typedef struct {
 /** Memory for a request. */
 typedef struct {
     icd_stream_awaited_t awaited;
-    const icd_stream_row_t *row; /* the telecommand */
+    const icd_stream_row_t *row; /* the telecommand, or telemetry that a packet requests */
     uint8_t *data;
     size_t length;
     uint32_t sent_at; /* time of the last transmission */
@@ -67,7 +67,6 @@ typedef struct {
  * device handles, or while a response to another request could be taken for a response to it.
  */
 typedef struct {
-    const icd_link_t *link;
     icd_client_settings_t
         settings; /**< Times and retries. They and `sender.values` may be changed while no request is in progress. */
     icd_stream_sender_t sender;
@@ -115,13 +114,16 @@ ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, ui
  * Start a request, which icd_stream_client_output() sends. The data are copied. `now` is in milliseconds.
  * Return ICD_ERROR_UNKNOWN_ID if the node has no such message, ICD_ERROR_BUSY if no slot is free, ICD_ERROR_LENGTH if
  * the data have the wrong length, ICD_ERROR_RANGE if a header or trailer value does not fit into its field, or
- * ICD_ERROR_UNSUPPORTED if no telecommand without parameters requests this telemetry or the client is not initialized.
+ * ICD_ERROR_UNSUPPORTED if nothing requests this telemetry without parameters or the client is not initialized.
  * After an error the client is unchanged.
  */
 ICDGEN_API icd_status_t
 icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request);
 
-/** Request telemetry by sending the telecommand that it replies to. Errors: see icd_stream_client_start(). */
+/**
+ * Request telemetry by the telecommand that it replies to, or by a packet with its id. Errors: see
+ * icd_stream_client_start().
+ */
 ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id);
 
 /** Send a telecommand. The ICD decides which responses it has. Errors: see icd_stream_client_start(). */

@@ -54,14 +54,15 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     size_t sequence_count)
 {
     (void)memset(decoder, 0, sizeof *decoder);
-    if (link->stream == NULL) {
+    const icd_stream_form_t *const form = link->stream;
+    if (form == NULL || form->around[direction] < 0) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (capacity < ICDGEN_SIZE(link->stream->header_bytes) + link->stream->trailer_bytes) {
+    if (capacity < ICDGEN_SIZE(form->around[direction])) {
         return ICD_ERROR_LENGTH;
     }
     decoder->link = link;
-    decoder->form = link->stream;
+    decoder->form = form;
     decoder->direction = direction;
     decoder->buffer = buffer;
     decoder->capacity = capacity < link->longest ? capacity : ICDGEN_SIZE(link->longest);
@@ -73,74 +74,122 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     return ICD_OK;
 }
 
-/* Report missing sequence numbers. */
-static inline void icdgen_stream_count(
-    icd_stream_decoder_t *decoder, const icd_stream_row_t *row, uint32_t number, const icdgen_listener_t *listener)
+/* What a packet contains. */
+typedef struct {
+    icd_stream_kind_t kind;      /* of its event; ICD_STREAM_UNKNOWN_ID if there is no message with its id */
+    const icd_stream_row_t *row; /* the message, or the requested telemetry; otherwise NULL */
+    size_t least;                /* bounds of the number of data bytes */
+    size_t most;
+} icdgen_incoming_t;
+
+/* Return what a packet with this id contains. */
+static inline icdgen_incoming_t icdgen_incoming(
+    const icd_stream_decoder_t *decoder, const icd_packet_form_t *packet, uint32_t id)
 {
     const icd_stream_form_t *const form = decoder->form;
-    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
-    const size_t key = form->per_id ? ICDGEN_SIZE(row - form->rows[decoder->direction]) : 0u;
-    if (field == NULL || key >= decoder->sequence_count) {
+    const size_t index = ICDGEN_SIZE(packet - form->packets);
+    icdgen_incoming_t incoming = {ICD_STREAM_PACKET, NULL, packet->reserved, packet->reserved};
+    if (packet->content == ICD_PACKET_NOTHING) {
+        return incoming;
+    }
+    const icd_stream_row_t *row = icdgen_stream_row(form, decoder->direction, id);
+    if (row != NULL && row->packet == index) {
+        incoming.kind = ICD_STREAM_MESSAGE;
+        incoming.row = row;
+        incoming.least = row->least;
+        incoming.most = row->most;
+        return incoming;
+    }
+    incoming.kind = ICD_STREAM_UNKNOWN_ID;
+    if (decoder->direction == ICD_TELECOMMAND && form->request != NULL && form->request->packet == index) {
+        row = icdgen_stream_row(form, ICD_TELEMETRY, id);
+        if (row != NULL && (row->flags & ICD_STREAM_REQUESTED) != 0u) {
+            incoming.kind = ICD_STREAM_REQUEST;
+            incoming.row = row;
+        }
+    }
+    return incoming;
+}
+
+/* Report missing sequence numbers. `field`: field of the sequence number; NULL if the packet has none. */
+static inline void icdgen_stream_count(
+    icd_stream_decoder_t *decoder,
+    const icdgen_incoming_t *incoming,
+    const icd_envelope_field_t *field,
+    const icd_stream_event_t *message,
+    const icdgen_listener_t *listener)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    /* With a sequence for each id, other packets than messages have no counter. */
+    if (field == NULL || (form->per_id && incoming->kind != ICD_STREAM_MESSAGE)) {
         return;
     }
+    const size_t key = form->per_id ? ICDGEN_SIZE(incoming->row - form->rows[decoder->direction]) : 0u;
+    if (key >= decoder->sequence_count) {
+        return;
+    }
+    const uint32_t number = message->values.of[ICD_ENVELOPE_SEQUENCE];
     const uint32_t last = decoder->sequences[key];
     const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
     decoder->sequences[key] = number;
     if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
         icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_GAP);
         event.has_id = true;
-        event.id = row->id;
+        event.id = message->id;
         event.missing = number == last ? 0u : missing;
         listener->on_event(listener->context, &event);
     }
 }
 
-static inline void icdgen_stream_message(
-    icd_stream_decoder_t *decoder,
-    const icd_stream_row_t *row,
-    const uint8_t *frame,
-    size_t length,
-    const icdgen_listener_t *listener)
-{
-    const icd_stream_form_t *const form = decoder->form;
-    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
-    event.has_id = true;
-    event.id = row->id;
-    event.data = frame + form->header_bytes;
-    event.length = length;
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
-        if (field->role < ICD_ENVELOPE_CONSTANT) {
-            event.values.of[field->role] = icdgen_envelope_get(field, field->in_trailer ? event.data + length : frame);
-        }
-    }
-    icdgen_stream_count(decoder, row, event.values.of[ICD_ENVELOPE_SEQUENCE], listener);
-    listener->on_event(listener->context, &event);
-}
-
 /* Return whether the constants are correct in the received part of the header and, unless NULL, in the trailer. */
 static inline bool icdgen_stream_constants(
-    const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const uint8_t *trailer)
+    const icd_packet_form_t *packet,
+    icd_direction_t direction,
+    const uint8_t *frame,
+    size_t count,
+    const uint8_t *trailer)
 {
-    const icd_stream_form_t *const form = decoder->form;
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
         const uint8_t *const bytes = field->in_trailer ? trailer : frame;
         const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
         if (field->role == ICD_ENVELOPE_CONSTANT && came &&
-            icdgen_envelope_get(field, bytes) != field->values[decoder->direction]) {
+            icdgen_envelope_get(field, bytes) != field->values[direction]) {
             return false;
         }
     }
     return true;
 }
 
-/* Return the number of header bytes needed for the next check after `left` bytes: up to the next constant, or all. */
-static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t left)
+/*
+ * Return the first packet format that fits. `is_whole`: whether the bytes are a whole frame; if no format fits it,
+ * return the first one, which tells the fault. Otherwise, constants that have not arrived may still be correct; return
+ * NULL if no format fits.
+ */
+static inline const icd_packet_form_t *icdgen_stream_format(
+    const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, bool is_whole)
 {
-    size_t next = form->header_bytes;
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
+    const icd_packet_form_t *first = NULL;
+    for (size_t i = 0; i < decoder->form->packet_count; ++i) {
+        const icd_packet_form_t *const packet = &decoder->form->packets[i];
+        if (packet->is_sent[decoder->direction]) {
+            const bool fits = !is_whole || count >= icdgen_packet_around(packet);
+            const uint8_t *const trailer = is_whole && fits ? frame + count - packet->trailer_bytes : NULL;
+            if (fits && icdgen_stream_constants(packet, decoder->direction, frame, count, trailer)) {
+                return packet;
+            }
+            first = is_whole && first == NULL ? packet : first;
+        }
+    }
+    return first;
+}
+
+/* Return the number of header bytes needed for the next check after `left` bytes: up to the next constant, or all. */
+static inline size_t icdgen_stream_next(const icd_packet_form_t *packet, size_t left)
+{
+    size_t next = packet->header_bytes;
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
         const size_t end = ICDGEN_SIZE(field->at) + field->size;
         if (field->role == ICD_ENVELOPE_CONSTANT && !field->in_trailer && end > left && end < next) {
             next = end;
@@ -149,103 +198,152 @@ static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t le
     return next;
 }
 
-/* Return the data length according to the length field; negative if it is invalid. */
-static inline int64_t icdgen_stream_length(
-    const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
-{
-    return ICDGEN_I64(icdgen_envelope_get(field, field->in_trailer ? trailer : frame)) - form->length_plus;
-}
-
 /* Report a frame. */
 static inline icdgen_verdict_t icdgen_stream_judge(
-    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
+    icd_stream_decoder_t *decoder,
+    const icd_packet_form_t *packet,
+    const uint8_t *frame,
+    size_t count,
+    const icdgen_listener_t *listener)
 {
-    const icd_stream_form_t *const form = decoder->form;
-    const size_t around = ICDGEN_SIZE(form->header_bytes) + form->trailer_bytes;
+    const size_t around = icdgen_packet_around(packet);
     if (count < around) {
         icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
         return ICDGEN_DOUBTFUL;
     }
     const size_t length = count - around;
-    const uint8_t *const trailer = frame + form->header_bytes + length;
-    if (!icdgen_stream_constants(decoder, frame, count, trailer)) {
-        icdgen_stream_tell(listener, ICD_STREAM_FRAMING);
+    const uint8_t *const data = frame + packet->header_bytes;
+    const uint8_t *const trailer = data + length;
+    const icd_envelope_field_t *sequence = NULL;
+    int64_t stated = ICDGEN_I64(length);
+    uint32_t sum = 0;
+    bool is_framed = true;
+    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
+    event.id = packet->ids[decoder->direction];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
+        const uint32_t value = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
+        switch (field->role) {
+        case ICD_ENVELOPE_CONSTANT:
+            is_framed = is_framed && value == field->values[decoder->direction];
+            break;
+        case ICD_ENVELOPE_ID:
+            event.id |= value << field->values[0];
+            break;
+        case ICD_ENVELOPE_LENGTH:
+            stated = ICDGEN_I64(value) - packet->length_plus;
+            break;
+        case ICD_ENVELOPE_CHECKSUM:
+            sum = value;
+            break;
+        case ICD_ENVELOPE_SEQUENCE:
+        case ICD_ENVELOPE_SOURCE:
+        case ICD_ENVELOPE_DESTINATION:
+        case ICD_ENVELOPE_TYPE:
+        case ICD_ENVELOPE_FLAGS:
+        case ICD_ENVELOPE_TIME:
+        case ICD_ENVELOPE_STATUS:
+        case ICD_ENVELOPE_REASON:
+        default:
+            sequence = field->role == ICD_ENVELOPE_SEQUENCE ? field : sequence;
+            event.values.of[field->role] = value;
+            break;
+        }
+    }
+    if (!is_framed || stated != ICDGEN_I64(length)) {
+        icdgen_stream_tell(listener, is_framed ? ICD_STREAM_LENGTH : ICD_STREAM_FRAMING);
         return ICDGEN_DOUBTFUL;
     }
-    const icd_envelope_field_t *field = icdgen_envelope_field(form, ICD_ENVELOPE_LENGTH);
-    if (field != NULL && icdgen_stream_length(form, field, frame, trailer) != ICDGEN_I64(length)) {
-        icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
-        return ICDGEN_DOUBTFUL;
-    }
-    field = icdgen_envelope_field(form, ICD_ENVELOPE_ID);
-    uint32_t id = 0;
-    if (field != NULL) {
-        id = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
-    } else if (form->row_counts[decoder->direction] != 0u) {
-        id = form->rows[decoder->direction][0].id;
-    } else {
-        /* there is no message in this direction */
-    }
-    const icd_stream_row_t *const row = icdgen_stream_row(form, decoder->direction, id);
-    field = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
-    if (field != NULL && form->check != NULL) {
-        if (form->check->is_seeded && row == NULL) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
-            return ICDGEN_DOUBTFUL;
-        }
-        const uint32_t sum = icdgen_envelope_check(form, row, frame, frame + form->header_bytes, length, trailer);
-        if (icdgen_envelope_get(field, field->in_trailer ? trailer : frame) != sum) {
-            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, true, id);
-            return ICDGEN_DOUBTFUL;
+    const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, event.id);
+    icdgen_verdict_t verdict = ICDGEN_PROVEN;
+    event.kind = incoming.kind;
+    if (packet->check != NULL) {
+        if (packet->check->is_seeded && incoming.kind == ICD_STREAM_UNKNOWN_ID) {
+            verdict = ICDGEN_DOUBTFUL;
+        } else if (icdgen_envelope_check(packet, incoming.row, frame, data, length, trailer) != sum) {
+            event.kind = ICD_STREAM_CHECKSUM;
+            verdict = ICDGEN_DOUBTFUL;
+        } else {
+            /* the checksum is correct */
         }
     }
-    if (row == NULL) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
-        return ICDGEN_PROVEN;
+    if (verdict == ICDGEN_PROVEN && event.kind != ICD_STREAM_UNKNOWN_ID &&
+        (length < incoming.least || length > incoming.most)) {
+        event.kind = ICD_STREAM_LENGTH;
     }
-    if (length < row->least || length > row->most) {
-        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, true, id);
-        return ICDGEN_PROVEN;
+    if (event.kind != incoming.kind || event.kind == ICD_STREAM_UNKNOWN_ID) {
+        icdgen_stream_tell_of(listener, event.kind, true, event.id);
+        return verdict;
     }
-    icdgen_stream_message(decoder, row, frame, length, listener);
+    event.has_id = true;
+    event.packet = ICDGEN_U8(packet - decoder->form->packets);
+    event.is_packet = incoming.kind == ICD_STREAM_PACKET;
+    event.data = event.is_packet ? frame : data;
+    event.length = event.is_packet ? count : length;
+    icdgen_stream_count(decoder, &incoming, sequence, &event, listener);
+    listener->on_event(listener->context, &event);
     return ICDGEN_TAKEN;
+}
+
+/* Report a frame that is delimited on both sides. Return whether it is correct. */
+static inline bool icdgen_stream_frame(
+    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
+{
+    const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, count, true);
+    return icdgen_stream_judge(decoder, packet, frame, count, listener) == ICDGEN_TAKEN;
+}
+
+/* Drop the first byte. Return the number of bytes to advance. */
+static inline size_t icdgen_stream_skip(icd_stream_decoder_t *decoder)
+{
+    decoder->discarded++;
+    return 1;
 }
 
 /* Check the buffer from `at` on. Return the number of bytes to advance; 0 if more bytes are needed. */
 static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
 {
-    const icd_stream_form_t *const form = decoder->form;
     const size_t left = decoder->length - at;
     const uint8_t *const frame = decoder->buffer + at;
-    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_LENGTH);
-    if (left != 0u && !icdgen_stream_constants(decoder, frame, left, NULL)) {
-        decoder->discarded++;
-        return 1;
+    const icd_packet_form_t *const packet = icdgen_stream_format(decoder, frame, left, false);
+    if (packet == NULL) {
+        return icdgen_stream_skip(decoder);
     }
-    if (left < form->header_bytes || field == NULL) {
-        decoder->needed = icdgen_stream_next(form, left);
+    if (left < packet->header_bytes) {
+        decoder->needed = icdgen_stream_next(packet, left);
         return 0;
     }
-    const int64_t length = icdgen_stream_length(form, field, frame, frame);
-    const int64_t size = length + form->header_bytes + form->trailer_bytes;
+    const icd_envelope_field_t *const field = icdgen_envelope_field(packet, ICD_ENVELOPE_LENGTH);
+    int64_t length;
+    if (field != NULL) {
+        length = ICDGEN_I64(icdgen_envelope_get(field, frame)) - packet->length_plus;
+    } else {
+        const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
+        const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
+        if (incoming.kind == ICD_STREAM_UNKNOWN_ID && packet->content == ICD_PACKET_MESSAGE) {
+            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, true, id);
+            return icdgen_stream_skip(decoder);
+        }
+        length = ICDGEN_I64(incoming.most);
+    }
+    const int64_t size = length + ICDGEN_I64(icdgen_packet_around(packet));
     if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
         const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
         icdgen_stream_tell(listener, fits ? ICD_STREAM_OVERRUN : ICD_STREAM_LENGTH);
-        decoder->discarded++;
-        return 1;
+        return icdgen_stream_skip(decoder);
     }
     const size_t whole = ICDGEN_SIZE(size);
     if (left < whole) {
         decoder->needed = whole;
         return 0;
     }
-    const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, frame, whole, listener);
+    const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, packet, frame, whole, listener);
     const size_t taken = verdict == ICDGEN_DOUBTFUL ? 1u : whole;
     decoder->discarded += verdict == ICDGEN_TAKEN ? 0u : taken;
     return taken;
 }
 
-/* Process bytes of a stream with a length field. There is always room: a full buffer can always be decided. */
+/* Process bytes of a stream without delimiters. There is always room: a full buffer can always be decided. */
 static inline void icdgen_stream_append(
     icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
@@ -334,7 +432,7 @@ static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen
     if (decoder->faulty) {
         icdgen_stream_tell(listener, decoder->fault);
     } else if (decoder->length != 0u) {
-        taken = icdgen_stream_judge(decoder, decoder->buffer, decoder->length, listener) == ICDGEN_TAKEN;
+        taken = icdgen_stream_frame(decoder, decoder->buffer, decoder->length, listener);
     } else {
         taken = true; /* empty frame between two delimiters */
     }
@@ -352,7 +450,7 @@ ICDGEN_API void icd_stream_feed(
         if (count > decoder->capacity) {
             icdgen_stream_tell(&listener, ICD_STREAM_OVERRUN);
             decoder->discarded += count;
-        } else if (icdgen_stream_judge(decoder, bytes, count, &listener) != ICDGEN_TAKEN) {
+        } else if (!icdgen_stream_frame(decoder, bytes, count, &listener)) {
             decoder->discarded += count;
         } else {
             /* the frame was a message */

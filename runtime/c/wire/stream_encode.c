@@ -102,22 +102,40 @@ static inline void icdgen_line_write(icdgen_line_t *line, const uint8_t *bytes, 
 
 ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction)
 {
+    const icd_stream_form_t *const form = link->stream;
     icd_envelope_values_t values;
+    uint32_t seen = 0; /* roles, as a mask */
     (void)memset(&values, 0, sizeof values);
-    if (link->stream != NULL) {
-        for (size_t i = 0; i < link->stream->field_count; ++i) {
-            const icd_envelope_field_t *const field = &link->stream->fields[i];
+    for (size_t i = 0; form != NULL && i < form->packet_count; ++i) {
+        const icd_packet_form_t *const packet = &form->packets[i];
+        for (size_t j = 0; packet->is_sent[direction] && j < packet->field_count; ++j) {
+            const icd_envelope_field_t *const field = &packet->fields[j];
             if (field->role < ICD_ENVELOPE_CONSTANT) {
-                values.of[field->role] = field->values[direction];
+                const uint32_t role = UINT32_C(1) << ICDGEN_U32(field->role);
+                uint32_t *const value = &values.of[field->role];
+                if ((seen & role) == 0u) {
+                    *value = field->values[direction];
+                } else if (*value != field->values[direction] && field->bits < 32u) {
+                    *value = ICD_ENVELOPE_DEFAULT;
+                } else {
+                    /* the packets have the same default */
+                }
+                seen |= role;
             }
         }
     }
     return values;
 }
 
+/* Return whether the sender chose the value of a field. Otherwise, the field has the default of its packet. */
+static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, const icd_envelope_values_t *values)
+{
+    return values != NULL && (values->of[field->role] != ICD_ENVELOPE_DEFAULT || field->bits == 32u);
+}
+
 /* Write all fields except the checksum. Return false if a value does not fit. */
 static inline bool icdgen_envelope_fill(
-    const icd_stream_form_t *form,
+    const icd_packet_form_t *packet,
     icd_direction_t direction,
     uint32_t id,
     size_t length,
@@ -125,20 +143,20 @@ static inline bool icdgen_envelope_fill(
     uint8_t *header,
     uint8_t *trailer)
 {
-    for (size_t i = 0; i < form->field_count; ++i) {
-        const icd_envelope_field_t *const field = &form->fields[i];
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *const field = &packet->fields[i];
         uint32_t value = field->values[direction];
         if (field->role == ICD_ENVELOPE_CHECKSUM) {
             continue;
         }
         if (field->role == ICD_ENVELOPE_ID) {
-            value = id;
+            value = (id >> value) & icdgen_envelope_mask(field);
         } else if (field->role == ICD_ENVELOPE_LENGTH) {
-            value = ICDGEN_U32(ICDGEN_I64(length) + form->length_plus);
-        } else if (field->role < ICD_ENVELOPE_CONSTANT) {
+            value = ICDGEN_U32(ICDGEN_I64(length) + packet->length_plus);
+        } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
-            /* a constant */
+            /* the value of the ICD */
         }
         if (value > icdgen_envelope_mask(field)) {
             return false;
@@ -158,6 +176,87 @@ static inline size_t icdgen_without_zeros(const uint8_t *data, size_t length)
     return left;
 }
 
+/* A packet that is to be encoded. */
+typedef struct {
+    const icd_stream_form_t *form;
+    icd_direction_t direction;
+    const icd_stream_row_t *row; /* the message; as a telecommand also telemetry, for the packet that requests it */
+    const uint8_t *data;
+    size_t length;
+} icdgen_outgoing_t;
+
+static inline bool icdgen_outgoing_requests(const icdgen_outgoing_t *outgoing)
+{
+    return outgoing->direction == ICD_TELECOMMAND && (outgoing->row->flags & ICD_STREAM_REQUESTED) != 0u;
+}
+
+static inline const icd_packet_form_t *icdgen_outgoing_packet(const icdgen_outgoing_t *outgoing)
+{
+    const icd_stream_form_t *const form = outgoing->form;
+    return &form->packets[icdgen_outgoing_requests(outgoing) ? form->request->packet : outgoing->row->packet];
+}
+
+/* Find the message with this id. */
+static inline icd_status_t icdgen_outgoing_message(icdgen_outgoing_t *outgoing, const icd_link_t *link, uint32_t id)
+{
+    outgoing->form = link->stream;
+    if (outgoing->form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    outgoing->row = icdgen_stream_row(outgoing->form, outgoing->direction, id);
+    if (outgoing->row == NULL) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    const bool fits = outgoing->length >= outgoing->row->least && outgoing->length <= outgoing->row->most;
+    return fits ? ICD_OK : ICD_ERROR_LENGTH;
+}
+
+/* Find the telemetry with this id that a packet requests. */
+static inline icd_status_t icdgen_outgoing_request(icdgen_outgoing_t *outgoing, const icd_link_t *link, uint32_t id)
+{
+    const icd_stream_form_t *const form = link->stream;
+    if (form == NULL || form->request == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    outgoing->form = form;
+    outgoing->row = icdgen_stream_row(form, ICD_TELEMETRY, id);
+    outgoing->data = form->request->data;
+    outgoing->length = form->packets[form->request->packet].reserved;
+    return outgoing->row != NULL && icdgen_outgoing_requests(outgoing) ? ICD_OK : ICD_ERROR_UNKNOWN_ID;
+}
+
+static inline icd_status_t icdgen_outgoing_encode(
+    const icdgen_outgoing_t *outgoing,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    const icd_packet_form_t *const packet = icdgen_outgoing_packet(outgoing);
+    const icd_stream_row_t *const row = outgoing->row;
+    const uint8_t *const data = outgoing->data;
+    const bool cuts_zeros = (row->flags & ICD_STREAM_CUTS_ZEROS) != 0u && !icdgen_outgoing_requests(outgoing);
+    const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
+    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
+    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
+    if (!icdgen_envelope_fill(packet, outgoing->direction, row->id, length, values, header, trailer)) {
+        return ICD_ERROR_RANGE;
+    }
+    const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);
+    if (check != NULL && packet->check != NULL) {
+        const uint32_t sum = icdgen_envelope_check(packet, row, header, data, length, trailer);
+        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
+    }
+    icdgen_line_t line = {outgoing->form->delimited_by, buffer, capacity, 0, 0, false, false};
+    icdgen_line_delimiter(&line, true);
+    icdgen_line_write(&line, header, packet->header_bytes);
+    icdgen_line_write(&line, data, length);
+    icdgen_line_write(&line, trailer, packet->trailer_bytes);
+    icdgen_line_delimiter(&line, false);
+    *written = line.count;
+    return line.full ? ICD_ERROR_LENGTH : ICD_OK;
+}
+
 ICDGEN_API icd_status_t icd_stream_encode(
     const icd_link_t *link,
     icd_direction_t direction,
@@ -169,37 +268,22 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written)
 {
-    const icd_stream_form_t *const form = link->stream;
-    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
-    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    const icd_stream_row_t *const row = icdgen_stream_row(form, direction, id);
-    if (row == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (length < row->least || length > row->most) {
-        return ICD_ERROR_LENGTH;
-    }
-    const size_t sent = row->cuts_zeros ? icdgen_without_zeros(data, length) : length;
-    const icd_envelope_values_t chosen = values != NULL ? *values : icd_envelope_values(link, direction);
-    if (!icdgen_envelope_fill(form, direction, id, sent, &chosen, header, trailer)) {
-        return ICD_ERROR_RANGE;
-    }
-    const icd_envelope_field_t *const check = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
-    if (check != NULL && form->check != NULL) {
-        const uint32_t sum = icdgen_envelope_check(form, row, header, data, sent, trailer);
-        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
-    }
-    icdgen_line_t line = {form->delimited_by, buffer, capacity, 0, 0, false, false};
-    icdgen_line_delimiter(&line, true);
-    icdgen_line_write(&line, header, form->header_bytes);
-    icdgen_line_write(&line, data, sent);
-    icdgen_line_write(&line, trailer, form->trailer_bytes);
-    icdgen_line_delimiter(&line, false);
-    *written = line.count;
-    return line.full ? ICD_ERROR_LENGTH : ICD_OK;
+    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length};
+    const icd_status_t status = icdgen_outgoing_message(&outgoing, link, id);
+    return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
+}
+
+ICDGEN_API icd_status_t icd_stream_encode_request(
+    const icd_link_t *link,
+    uint32_t telemetry,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    const icd_status_t status = icdgen_outgoing_request(&outgoing, link, telemetry);
+    return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
 
 ICDGEN_API icd_status_t icd_stream_sender_init(
@@ -221,6 +305,32 @@ ICDGEN_API icd_status_t icd_stream_sender_init(
     return link->stream != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }
 
+/* Encode a packet with the next sequence number. */
+static inline icd_status_t icdgen_outgoing_send(
+    const icdgen_outgoing_t *outgoing, icd_stream_sender_t *sender, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    const icd_stream_form_t *const form = outgoing->form;
+    const icd_envelope_field_t *const field =
+        icdgen_envelope_field(icdgen_outgoing_packet(outgoing), ICD_ENVELOPE_SEQUENCE);
+    const size_t counter = form->per_id ? ICDGEN_SIZE(outgoing->row - form->rows[outgoing->direction]) : 0u;
+    /* With a sequence for each id, packets that request telemetry have no counter. */
+    const bool is_counted =
+        field != NULL && counter < sender->sequence_count && !(form->per_id && icdgen_outgoing_requests(outgoing));
+    icd_envelope_values_t values = sender->values;
+    if (is_counted && sender->sequences[counter] != ICDGEN_NO_SEQUENCE) {
+        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[counter] + 1u) & icdgen_envelope_mask(field);
+    } else if (is_counted && values.of[ICD_ENVELOPE_SEQUENCE] == ICD_ENVELOPE_DEFAULT) {
+        values.of[ICD_ENVELOPE_SEQUENCE] = field->values[sender->direction];
+    } else {
+        /* the value that the sender chose */
+    }
+    const icd_status_t status = icdgen_outgoing_encode(outgoing, &values, buffer, capacity, written);
+    if (status == ICD_OK && is_counted) {
+        sender->sequences[counter] = values.of[ICD_ENVELOPE_SEQUENCE];
+    }
+    return status;
+}
+
 ICDGEN_API icd_status_t icd_stream_send(
     icd_stream_sender_t *sender,
     uint32_t id,
@@ -230,26 +340,17 @@ ICDGEN_API icd_status_t icd_stream_send(
     size_t capacity,
     size_t *written)
 {
-    const icd_stream_form_t *const form = sender->link->stream;
-    icd_envelope_values_t values = sender->values;
-    size_t place = 0;
-    icd_status_t status;
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    const icd_stream_row_t *const row = icdgen_stream_row(form, sender->direction, id);
-    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
-    if (row != NULL && form->per_id) {
-        place = ICDGEN_SIZE(row - form->rows[sender->direction]);
-    }
-    if (field != NULL && place < sender->sequence_count && sender->sequences[place] != ICDGEN_NO_SEQUENCE) {
-        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[place] + 1u) & icdgen_envelope_mask(field);
-    }
-    status = icd_stream_encode(sender->link, sender->direction, id, data, length, &values, buffer, capacity, written);
-    if (status == ICD_OK && place < sender->sequence_count) {
-        sender->sequences[place] = values.of[ICD_ENVELOPE_SEQUENCE];
-    }
-    return status;
+    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length};
+    const icd_status_t status = icdgen_outgoing_message(&outgoing, sender->link, id);
+    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
+}
+
+ICDGEN_API icd_status_t icd_stream_send_request(
+    icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written)
+{
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    const icd_status_t status = icdgen_outgoing_request(&outgoing, sender->link, telemetry);
+    return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
 }
 
 #endif /* ICDGEN_WIRE_STREAM_ENCODE_C */

@@ -23,13 +23,15 @@ typedef enum {
     ICD_ENVELOPE_TYPE = 3,
     ICD_ENVELOPE_FLAGS = 4,
     ICD_ENVELOPE_TIME = 5,
-    ICD_ENVELOPE_CONSTANT = 6,
-    ICD_ENVELOPE_ID = 7,
-    ICD_ENVELOPE_LENGTH = 8,
-    ICD_ENVELOPE_CHECKSUM = 9
+    ICD_ENVELOPE_STATUS = 6,
+    ICD_ENVELOPE_REASON = 7,
+    ICD_ENVELOPE_CONSTANT = 8,
+    ICD_ENVELOPE_ID = 9,
+    ICD_ENVELOPE_LENGTH = 10,
+    ICD_ENVELOPE_CHECKSUM = 11
 } icd_envelope_role_t;
 
-#define ICD_ENVELOPE_VALUES 6 /**< Number of roles whose values the sender chooses. */
+#define ICD_ENVELOPE_VALUES 8 /**< Number of roles whose values the sender chooses. */
 
 /**
  * A header or trailer field. The number in the `size` bytes from byte `at` on is shifted right by `shift` and masked to
@@ -43,7 +45,8 @@ typedef struct {
     uint8_t shift;
     uint8_t bits;
     bool little;
-    uint32_t values[2]; /**< Constant or default value in telecommands and in telemetry. */
+    /** Constant or default value in telecommands and in telemetry; of a part of the id, the number of lower bits. */
+    uint32_t values[2];
 } icd_envelope_field_t;
 
 typedef enum {
@@ -62,6 +65,27 @@ typedef struct {
     uint8_t covered_trailer; /**< Number of bytes of the trailer that it covers. */
     bool is_seeded;          /**< Whether the seed of the message is appended as the last byte that it covers. */
 } icd_check_form_t;
+
+/** What the packets of a format contain. */
+typedef enum {
+    ICD_PACKET_MESSAGE = 0,
+    ICD_PACKET_REQUEST = 1, /**< The id of telemetry that is requested, and reserved bytes. */
+    ICD_PACKET_NOTHING = 2  /**< No message, but reserved bytes; the packet itself is a response. */
+} icd_packet_content_t;
+
+/** A packet format: header, data and trailer. */
+typedef struct {
+    uint32_t ids[2];     /**< Without an id field: id of its only telecommand and telemetry; otherwise 0. */
+    int32_t length_plus; /**< Value of the length field minus the number of data bytes. */
+    const icd_envelope_field_t *fields;
+    const icd_check_form_t *check;
+    uint8_t field_count;
+    uint8_t header_bytes;
+    uint8_t trailer_bytes;
+    icd_packet_content_t content;
+    bool is_sent[2];   /**< Whether there are such packets in the direction of telecommands, and of telemetry. */
+    uint16_t reserved; /**< Number of data bytes of packets without a message. */
+} icd_packet_form_t;
 
 /** What a response means for its telecommand. */
 typedef enum {
@@ -97,11 +121,12 @@ typedef struct {
     icd_verdict_t verdict;
 } icd_meaning_t;
 
-/** Telemetry that can end, refuse, defer or prolong a telecommand. */
+/** Telemetry, or a packet without a message, that can end, refuse, defer or prolong a telecommand. */
 typedef struct {
-    uint32_t telemetry;
+    uint32_t source;       /**< Id of the telemetry, or index of the packet. */
     icd_verdict_t verdict; /**< With a status: the meaning of all values that are not in `meanings`. */
     uint8_t echo_count;
+    bool is_packet; /**< The places in a packet count from 4 bytes before its first byte, as if the id stood there. */
     uint16_t meaning_count;
     const icd_echo_t *echoes;
     const icd_meaning_t *meanings;
@@ -111,42 +136,53 @@ typedef struct {
 
 #define ICD_MOST_SOURCES 4u /**< Largest number of numbers of a telecommand that its responses repeat. */
 
-/** The possible responses to a telecommand. */
+/** The possible responses to a telecommand or to a request of telemetry, except for the requested telemetry. */
 typedef struct {
     const icd_number_place_t *sources; /**< Numbers of the telecommand that responses repeat. */
     const icd_response_t *responses;
     uint8_t source_count;
     uint8_t response_count;
+    bool is_request;  /**< Of a request of telemetry: the requested telemetry precedes `responses`. */
     uint32_t timeout; /**< In milliseconds; 0: the time-out of the client. */
 } icd_exchange_t;
 
-/** A message: id, shortest and longest data length in bytes, and seed. The last members concern telecommands only. */
+#define ICD_STREAM_CUTS_ZEROS 1u /**< Trailing zeros of the data are not sent, except for the first byte. */
+#define ICD_STREAM_REPEATS 2u    /**< Of a telecommand: it may be sent again after a time-out. */
+#define ICD_STREAM_REQUESTS                                                                                            \
+    4u /**< Of a telecommand: it requests telemetry `requested` if it is sent as `least` zeros. */
+#define ICD_STREAM_REQUESTED 8u /**< Of telemetry: the packet of icd_telemetry_request_t requests it. */
+
+/** A message: id, shortest and longest data length in bytes, flags, seed, and index of the packet format. */
 typedef struct {
     uint32_t id;
     uint16_t least;
     uint16_t most;
-    bool cuts_zeros; /**< Whether trailing zeros of the data are not sent, except for the first byte. */
+    uint8_t flags;
     uint8_t seed;
-    bool repeats;                   /**< Whether it may be sent again after a time-out. */
-    bool is_request;                /**< Whether it requests telemetry `requested` if it is sent as `least` zeros. */
-    uint32_t requested;             /**< Id of this telemetry. */
-    const icd_exchange_t *exchange; /**< NULL if nothing responds to it. */
+    uint8_t packet;
+    uint32_t requested;             /**< Of a telecommand: id of the telemetry that it requests. */
+    const icd_exchange_t *exchange; /**< Of a telecommand: NULL if nothing responds to it. */
 } icd_stream_row_t;
+
+/** The request of telemetry by a packet with its id and `reserved` bytes. */
+typedef struct {
+    const icd_exchange_t *exchange;
+    const uint8_t *data; /**< The reserved bytes; NULL if there are none. */
+    uint8_t packet;      /**< Index of the packet format. */
+} icd_telemetry_request_t;
 
 /** Framing of messages in a stream of bytes or in packets. */
 typedef struct {
     icd_delimiter_t delimited_by;
-    uint8_t header_bytes;
-    uint8_t trailer_bytes;
-    int32_t length_plus; /**< Value of the length field minus the number of data bytes. */
-    bool per_id;         /**< Whether each id has its own sequence counter. */
-    const icd_envelope_field_t *fields;
-    uint8_t field_count;
-    const icd_check_form_t *check;
-    const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, in ascending order of the ids. */
+    bool per_id; /**< Whether each id has its own sequence counter. */
+    uint8_t packet_count;
+    int16_t around[2];                /**< Most bytes of header and trailer in each direction; -1 without packets. */
+    const icd_packet_form_t *packets; /**< If two formats fit, the first is received. */
+    const icd_stream_row_t *rows[2];  /**< Telecommands and telemetry, in ascending order of the ids. */
     uint16_t row_counts[2];
-    const uint32_t *confirming; /**< Ids of telemetry that only responds to telecommands, and is not requested. */
     uint16_t confirming_count;
+    const uint32_t *confirming; /**< Ids of telemetry that only responds to telecommands, and is not requested. */
+    const icd_telemetry_request_t *request; /**< NULL if only telecommands request telemetry. */
 } icd_stream_form_t;
 
 #endif /* ICDGEN_WIRE_STREAM_FORM_H */

@@ -67,7 +67,7 @@ def _message(message: Message) -> dict[str, Any]:
 def _link(icd: Icd, node: Node) -> dict[str, Any]:
     known = facts.of(icd, node)
     framing, stream = known.framing, known.stream
-    around = stream.header_bytes + stream.trailer_bytes if stream else 0
+    around = max(packet.overhead for packet in stream.packets) if stream else 0
     return {
         "longest": known.longest,
         "around": around,

@@ -48,7 +48,11 @@ def typed(facts: Facts) -> Answer:
 
 
 def event(kind: str, facts: Facts) -> Answer:
-    return {"event": kind, **typed(facts)}
+    answer = {"event": kind, **typed(facts)}
+    if kind in ("message", "request", "packet") and "reason" in facts:
+        # The value of a field of the packet; elsewhere, a reason is a word.
+        answer["reason"] = int(facts["reason"])
+    return answer
 
 
 def crc8(to: Asking, request: Request) -> Answer:
@@ -243,7 +247,9 @@ def link_data(to: Asking, request: Request) -> Answer:
 
 
 def stream_encode(to: Asking, request: Request) -> Answer:
-    direction = _direction(request)
+    # 2: the packet that requests telemetry of the id
+    is_request = request.get("direction") == "request"
+    direction = len(DIRECTIONS) if is_request else _direction(request)
     id, data, values = (
         number(request, "id"),
         octets(request).hex(),

@@ -6,6 +6,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
+from icdgen.backends.c.stream_rows import (
+    Row,
+    field_row,
+    message_row,
+    number_place,
+    only_id,
+    stream_sizes,
+    verdict_name,
+)
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import (
@@ -19,8 +28,15 @@ from icdgen.describe.links import (
 )
 from icdgen.icd.responses import ID_BYTES
 from icdgen.protocol.declared import Kind, facts_of
-from icdgen.protocol.envelope import CRC, PACKET, EnvelopeField, Stream, StreamRow
-from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.envelope import (
+    CRC,
+    DIRECTIONS,
+    NOTHING,
+    PACKET,
+    REQUEST,
+    Stream,
+)
+from icdgen.protocol.exchange import Exchange, Response
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -38,27 +54,11 @@ class Table(NamedTuple):
     unless: str = ""  # macro that omits the table
 
 
-class Row(NamedTuple):
-    """Value of an initialiser, with a comment; subject to a condition of the
-    preprocessor if there is one.
-    """
-
-    value: str
-    text: str = ""
-    condition: str = ""
-
-    def __str__(self) -> str:
-        row = f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
-        return (
-            f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
-        )
-
-
 def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     """Return the sizes of buffers: name, bytes and comment."""
     facts = link.facts
     if facts.stream:
-        return _stream_sizes(facts.stream)
+        return stream_sizes(facts.stream)
     rows = [
         (
             "LONGEST",
@@ -98,32 +98,6 @@ def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
             )
         )
     return rows
-
-
-def _stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
-    """Return the sizes of buffers of a node with packets."""
-    return [
-        (
-            "LONGEST",
-            form.longest,
-            "Buffer size of a decoder in bytes: the longest message with header and trailer.",
-        ),
-        (
-            "LINE_BYTES",
-            form.longest_line,
-            "Largest size in bytes of an encoded message.",
-        ),
-        (
-            "SEQUENCES",
-            form.sequences,
-            "Number of sequence counters that a decoder or a sender needs.",
-        ),
-        (
-            "REQUEST_BYTES",
-            form.longest_request,
-            "Buffer size of a client per request in bytes, in addition to LONGEST.",
-        ),
-    ]
 
 
 def tables(link: LinkDescription) -> list[Table]:
@@ -471,51 +445,95 @@ class _Tables:
         form = self.facts_of_link.stream
         if form is None:
             return "NULL"
-        fields = self.array(
-            "envelope", "icd_envelope_field_t", map(_field, form.fields)
+        packets = self.array(
+            "packets",
+            "icd_packet_form_t",
+            [self.packet(form, number) for number in range(len(form.packets))],
         )
-        check = "NULL"
-        if form.check:
-            crc = self.crc("check", form.check.crc, form.check.kind == CRC)
-            row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
-            covered = f"{form.check.covered_from}u, {form.check.covered_trailer}u, {boolean(form.check.is_seeded)}"
-            check = self.add(
-                "check", "icd_check_form_t", [row, Row(covered, "covered")]
-            )
         directions = (("sent", form.telecommands), ("received", form.telemetry))
         exchanges = self.exchanges(form)
         rows = [
             self.array(
                 name,
                 "icd_stream_row_t",
-                [_packet_row(row, exchanges.get(row.exchange)) for row in rows],
+                [message_row(row, exchanges.get(row.exchange)) for row in rows],
             )
             for name, rows in directions
         ]
         confirming = self.numbers(
             "confirming", "uint32_t", (f"{id:#x}u" for id in form.confirming), 8
         )
+        request = "NULL"
+        if form.request:
+            zeros = ("0u" for _ in range(form.request.reserved))
+            data = self.numbers("reserved", "uint8_t", zeros, 16)
+            exchange = exchanges[form.request.exchange]
+            row = Row(f"{exchange}, {data}, {form.request.packet}u")
+            request = self.add("request", "icd_telemetry_request_t", [row])
         delimiter = "packet" if form.delimited_by == PACKET else form.delimited_by
-        sizes = f"ICD_DELIMITED_BY_{delimiter.upper()}, {form.header_bytes}u, {form.trailer_bytes}u"
+        around = (
+            max((packet.overhead for packet in form.packets_of(each)), default=-1)
+            for each in DIRECTIONS
+        )
         parts = [
-            Row(sizes, "bytes of header, trailer"),
             Row(
-                f"{form.length_plus}, {boolean(form.per_id)}",
-                "length outside the data, a sequence for each id",
+                f"ICD_DELIMITED_BY_{delimiter.upper()}, {boolean(form.per_id)}",
+                "a sequence for each id",
             ),
-            Row(f"{fields}, {len(form.fields)}u", "fields"),
-            Row(check, "checksum"),
+            Row(
+                f"{len(form.packets)}u, {{{', '.join(map(str, around))}}}, {packets}",
+                "packet formats",
+            ),
             Row(
                 f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}",
                 "messages",
             ),
             Row(
-                f"{confirming}, {len(form.confirming)}u",
+                f"{len(form.confirming)}u, {confirming}",
                 "telemetry that only responds",
             ),
+            Row(request, "request of telemetry"),
         ]
         return self.add(
             "stream", "icd_stream_form_t", parts, self.assumed.of_section("stream")
+        )
+
+    def packet(self, form: Stream, number: int) -> Row:
+        """Return the row of a packet format; its fields and its checksum are separate
+        tables.
+        """
+        packet = form.packets[number]
+        suffix = f"_{number}" if len(form.packets) > 1 else ""
+        fields = self.array(
+            f"envelope{suffix}", "icd_envelope_field_t", map(field_row, packet.fields)
+        )
+        check = "NULL"
+        if packet.check:
+            name = f"check{suffix}"
+            crc = self.crc(name, packet.check.crc, packet.check.kind == CRC)
+            row = Row(f"ICD_CHECK_{packet.check.kind.upper()}, {{{crc}}}")
+            covered = f"{packet.check.covered_from}u, {packet.check.covered_trailer}u, {boolean(packet.check.is_seeded)}"
+            check = self.add(name, "icd_check_form_t", [row, Row(covered, "covered")])
+        sizes = (
+            f"{len(packet.fields)}u, {packet.header_bytes}u, {packet.trailer_bytes}u"
+        )
+        content = {REQUEST: "REQUEST", NOTHING: "NOTHING"}.get(
+            packet.content, "MESSAGE"
+        )
+        # Without an id field, a decoder takes the id of the only message from here.
+        has_id = packet.of("id") is not None
+        ids = ", ".join(
+            "0x0u" if has_id else f"{only_id(form, number, each):#x}u"
+            for each in DIRECTIONS
+        )
+        reserved = packet.reserved
+        if form.request and form.request.packet == number:
+            reserved = form.request.reserved
+        sent = ", ".join(boolean(each in packet.directions) for each in DIRECTIONS)
+        return Row(
+            f"{{{{{ids}}}, {packet.length_plus}, {fields}, {check}, {sizes}, "
+            f"ICD_PACKET_{content}, {{{sent}}}, {reserved}u}}",
+            plain(packet.name),
         )
 
     def exchanges(self, form: Stream) -> dict[Exchange | None, str]:
@@ -523,12 +541,19 @@ class _Tables:
         rows = []
         for exchange in form.exchanges:
             sources = self.shared(
-                "sources", "icd_number_place_t", map(_number_place, exchange.sources)
+                "sources", "icd_number_place_t", map(number_place, exchange.sources)
             )
+            # The requested telemetry, whose id is that of the request, has no row.
+            declared = [
+                each
+                for each in exchange.responses
+                if each.telemetry is not None or each.packet is not None
+            ]
             responses = self.shared(
-                "responses", "icd_response_t", map(self.response, exchange.responses)
+                "responses", "icd_response_t", map(self.response, declared)
             )
-            counts = f"{len(exchange.sources)}u, {len(exchange.responses)}u"
+            is_request = boolean(len(declared) < len(exchange.responses))
+            counts = f"{len(exchange.sources)}u, {len(declared)}u, {is_request}"
             rows.append(f"{{{sources}, {responses}, {counts}, {exchange.timeout}u}}")
         self.array("exchanges", "icd_exchange_t", rows)
         return {
@@ -544,7 +569,7 @@ class _Tables:
             "echoes",
             "icd_echo_t",
             (
-                f"{{{_number_place(echo.place, ID_BYTES)}, {echo.source}u}}"
+                f"{{{number_place(echo.place, ID_BYTES)}, {echo.source}u}}"
                 for echo in response.echoes
             ),
         )
@@ -552,15 +577,18 @@ class _Tables:
             "meanings",
             "icd_meaning_t",
             (
-                f"{{{value:#x}u, {_verdict(verdict)}}}"
+                f"{{{value:#x}u, {verdict_name(verdict)}}}"
                 for value, verdict in response.meanings
             ),
         )
+        is_packet = response.packet is not None
+        source = response.packet if is_packet else response.telemetry
         numbers = (
-            f"{response.telemetry:#x}u, {_verdict(response.verdict)}",
-            f"{len(response.echoes)}u, {len(response.meanings)}u, {echoes}, {meanings}",
-            _number_place(response.status, ID_BYTES),
-            _number_place(response.reason, ID_BYTES),
+            f"{source:#x}u, {verdict_name(response.verdict)}",
+            f"{len(response.echoes)}u, {boolean(is_packet)}, {len(response.meanings)}u",
+            f"{echoes}, {meanings}",
+            number_place(response.status, ID_BYTES),
+            number_place(response.reason, ID_BYTES),
         )
         return f"{{{', '.join(numbers)}}}"
 
@@ -632,42 +660,6 @@ class _Tables:
 
 def _error_code(code: tuple[str, int]) -> str:
     return f"{{ICD_REASON_{code[0].upper()}, {code[1]}u}}"
-
-
-def _field(field: EnvelopeField) -> Row:
-    """Return the row of a field of packets."""
-    values = ", ".join(f"{value:#x}u" for value in field.values)
-    numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
-    return Row(
-        f"{{ICD_ENVELOPE_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
-    )
-
-
-def _number_place(place: NumberPlace | None, offset: int = 0) -> str:
-    """Return the initialiser of the place of a number; ``offset``: bytes in front of
-    it. All zeros if there is no number.
-    """
-    if place is None:
-        return "{0u, 0u, 0u, 0u, false}"
-    numbers = (place.at + offset, place.size, place.shift, place.bits)
-    return (
-        f"{{{', '.join(f'{number}u' for number in numbers)}, {boolean(place.little)}}}"
-    )
-
-
-def _verdict(verdict: str) -> str:
-    return f"ICD_VERDICT_{verdict.upper()}"
-
-
-def _packet_row(row: StreamRow, exchange: str | None) -> Row:
-    """Return the row of a message in packets."""
-    values = (
-        f"{row.id:#x}u, {row.least}u, {row.most}u",
-        f"{boolean(row.cuts_zeros)}, {row.seed}u, {boolean(row.repeats)}",
-        f"{boolean(row.requests is not None)}, {row.requests or 0:#x}u",
-        exchange or "NULL",
-    )
-    return Row(f"{{{', '.join(values)}}}", plain(row.name))
 
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:

@@ -4,31 +4,40 @@ message, and data for scripts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 from icdgen_runtime.wire.envelope import Direction
-from icdgen_runtime.wire.stream import stream_encode
+from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 
 from icdgen.describe.ids import pair_bytes
 from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message
+from icdgen.icd.packets import Packet, declared_packets, id_shifts
 from icdgen.protocol.envelope import (
     COBS,
     CRC,
     DATA,
+    DIRECTIONS,
     GIVEN,
     HDLC,
     LENGTH,
+    MESSAGE,
     PACKET,
     SLIP,
     Check,
+    EnvelopeField,
+    PacketFormat,
     Stream,
 )
+from icdgen.protocol.exchange import NumberPlace, Response
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Crc
 from icdgen.wording import count
+
+Section = Mapping[str, Any]
 
 ENDS = {
     LENGTH: "where its length says",
@@ -45,6 +54,8 @@ _ROLES = {
     "sequence": "counts messages",
     "source": "says who sends",
     "destination": "says whom it is for",
+    "status": "says whether it succeeded",
+    "reason": "says why it was refused",
     "checksum": "shows damage",
 }
 # Attributes of a field that the decoder in JavaScript reads.
@@ -64,6 +75,8 @@ class Place(NamedTuple):
     place: str
     about: str
     holds: str
+    url: str = ""  # of the enumeration of its values
+    name: str = ""
 
 
 class Sum(NamedTuple):
@@ -74,35 +87,75 @@ class Sum(NamedTuple):
     crc: Crc | None
 
 
-def script_facts(form: Stream, message: Message | None = None) -> dict[str, object]:
-    """Return the data on the packet format for scripts.
+def script_facts(
+    form: Stream, message: Message | None = None, with_responses: bool = False
+) -> dict[str, object]:
+    """Return the data on the packet formats for scripts.
 
-    ``message``: include only rows of this message.
+    ``message``: include only rows of this message. ``with_responses``: include the
+    meaning of packets without a message.
     """
     # A message page contains only its own rows, which keeps it small.
-    ids = None if message is None else set(message.ids)
+    ids = None if message is None else _ids_of(message)
+    # The length of other messages shows where packets without a length field end.
+    unmeasured = [
+        index
+        for index, packet in enumerate(form.packets)
+        if form.delimited_by == LENGTH and not packet.of("length")
+    ]
     script_data: dict[str, object] = {
         "delimited_by": form.delimited_by,
-        "header": form.header_bytes,
-        "trailer": form.trailer_bytes,
-        "plus": form.length_plus,
         "longest": form.longest,
         "given": GIVEN,
-        "fields": [
-            {name: getattr(field, name) for name in _FIELD_KEYS}
-            for field in form.fields
-        ],
+        "packets": [_packet(packet) for packet in form.packets],
     }
-    if form.check:
-        script_data["check"] = _check(form.check)
     if size := pair_bytes(form):
         script_data["id_pairs"] = size
-    for direction in ("telecommand", "telemetry"):
-        rows = [row for row in form.rows(direction) if ids is None or row.id in ids]
+    for direction in DIRECTIONS:
         script_data[direction] = [
-            [row.id, row.least, row.most, row.seed] for row in rows
+            [row.id, row.least, row.most, row.seed, row.packet]
+            for row in form.rows(direction)
+            if ids is None or row.id in ids[direction] or row.packet in unmeasured
         ]
+    if form.request:
+        requested = [row.id for row in form.telemetry if row.is_requested]
+        script_data["request"] = {
+            "packet": form.request.packet,
+            "reserved": form.request.reserved,
+            "ids": [id for id in requested if ids is None or id in ids["telemetry"]],
+        }
+    responses = list(_responses(form))
+    if responses and with_responses:
+        script_data["responses"] = responses
     return script_data
+
+
+def _ids_of(message: Message) -> dict[str, set[int]]:
+    """Return the ids of a message by direction."""
+    ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
+    return {direction: set() if id is None else {id} for direction, id in ids.items()}
+
+
+def _packet(packet: PacketFormat) -> dict[str, object]:
+    """Return the data on a packet format for scripts."""
+    packet_data: dict[str, object] = {
+        "name": packet.name,
+        "directions": packet.directions,
+        "content": packet.content,
+        "reserved": packet.reserved,
+        "header": packet.header_bytes,
+        "trailer": packet.trailer_bytes,
+        "plus": packet.length_plus,
+        "fields": [_field(field) for field in packet.fields],
+    }
+    if packet.check:
+        packet_data["check"] = _check(packet.check)
+    return packet_data
+
+
+def _field(field: EnvelopeField) -> dict[str, object]:
+    shift = {"id_shift": field.id_shift} if field.id_shift else {}
+    return {**{name: getattr(field, name) for name in _FIELD_KEYS}, **shift}
 
 
 def _check(check: Check) -> dict[str, object]:
@@ -114,24 +167,65 @@ def _check(check: Check) -> dict[str, object]:
     return {"kind": check.kind, "crc": crc_numbers(check.crc), **places}
 
 
+def _responses(form: Stream) -> Iterator[dict[str, object]]:
+    """Yield what each packet without a message says about which messages: the verdict,
+    and where status and reason are in the frame.
+    """
+    exchanges = [
+        *(
+            ("telemetry", row.id, form.request.exchange)
+            for row in form.telemetry
+            if form.request and row.is_requested
+        ),
+        *(
+            ("telecommand", row.id, row.exchange)
+            for row in form.telecommands
+            if row.exchange
+        ),
+    ]
+    # Responses that differ in what they repeat only are the same for a reader.
+    ids: dict[Response, dict[str, list[int]]] = {}
+    for direction, id, exchange in exchanges:
+        for response in exchange.responses:
+            if response.packet is not None:
+                about = ids.setdefault(replace(response, echoes=()), {})
+                about.setdefault(direction, []).append(id)
+    for response, about in ids.items():
+        response_data: dict[str, object] = {
+            "packet": response.packet,
+            "verdict": response.verdict,
+            "about": about,
+        }
+        if response.status:
+            response_data["status"] = _place(response.status)
+            response_data["meanings"] = response.meanings
+        if response.reason:
+            response_data["reason"] = _place(response.reason)
+            response_data["names"] = response.reasons
+        yield response_data
+
+
+def _place(place: NumberPlace) -> list[object]:
+    return [place.at, place.size, place.shift, place.bits, place.little]
+
+
 def crc_numbers(crc: Crc) -> dict[str, object]:
     """Return the defined parameters of a checksum."""
     return {key: value for key, value in asdict(crc).items() if value is not None}
 
 
-def boxes(section: Mapping[str, Any]) -> list[tuple[str, str, float, str]]:
+def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str]]:
     """Return text, subtitle, share of the width, and bit number of each field and of
     the data.
     """
-    form = section["stream"]
-    return [
-        *_boxes(form.get("header", ())),
-        ("data", "", 3.0, ""),
-        *_boxes(form.get("trailer", ())),
-    ]
+    data = [("data", "", 3.0, "")]
+    if form.content != MESSAGE:
+        size = count(form.reserved, "byte")
+        data = [("reserved", size, 3.0, "")] if form.reserved else []
+    return [*_boxes(packet.header), *data, *_boxes(packet.trailer)]
 
 
-def _boxes(rows: Any) -> Iterator[tuple[str, str, float, str]]:
+def _boxes(rows: Iterable[Section]) -> Iterator[tuple[str, str, float, str]]:
     for row in sorted(rows, key=lambda row: int(row["at"])):
         # The minimum width leaves room for the name of the role.
         yield row["role"], f"{row['bits']} bits", max(
@@ -139,22 +233,36 @@ def _boxes(rows: Any) -> Iterator[tuple[str, str, float, str]]:
         ), f"{row['at']}"
 
 
-def places(section: Mapping[str, Any]) -> list[Place]:
-    """Return each field, in order."""
-    form = section["stream"]
+def places(packet: Packet, enum_urls: Mapping[str, str]) -> list[Place]:
+    """Return each field, in order.
+
+    ``enum_urls``: links to the enumerations, by name.
+    """
+    id_parts = dict(_id_parts(packet))
     return [
         Place(
             row["role"],
             f"{part}, {bit_range(row['at'], row['bits'])}",
-            _about(row),
+            _about(row) + id_parts.get(id(row), ""),
             _holds(row),
+            enum_urls.get(row.get("enum", ""), ""),
+            row.get("name", ""),
         )
-        for part in ("header", "trailer")
-        for row in sorted(form.get(part, ()), key=lambda row: int(row["at"]))
+        for part, rows in (("header", packet.header), ("trailer", packet.trailer))
+        for row in sorted(rows, key=lambda row: int(row["at"]))
     ]
 
 
-def _about(row: Mapping[str, Any]) -> str:
+def _id_parts(packet: Packet) -> Iterator[tuple[int, str]]:
+    """Yield the identity of each field of the id, and which bits of the id it has; none
+    if the id is one field.
+    """
+    parts = list(id_shifts(packet.rows))
+    for row, shift in parts if len(parts) > 1 else ():
+        yield id(row), f": {bit_range(shift, row['bits'])} of its id"
+
+
+def _about(row: Section) -> str:
     about = _ROLES.get(row["role"], "is the sender's choice")
     if row["role"] == "length":
         about += (
@@ -172,9 +280,11 @@ def _about(row: Mapping[str, Any]) -> str:
     return about + (f", {row['byte_order']} endian" if "byte_order" in row else "")
 
 
-def _holds(row: Mapping[str, Any]) -> str:
+def _holds(row: Section) -> str:
     if row["role"] == "checksum":
         return str(row["checksum"])
+    if "enum" in row:
+        return str(row["enum"])
     value = row.get("value")
     if isinstance(value, Mapping):
         return ", ".join(
@@ -192,11 +302,12 @@ def _number(value: int | list[int]) -> str:
     )
 
 
-def sums(section: Mapping[str, Any], node_facts: Facts) -> list[Sum]:
+def sums(section: Section, node_facts: Facts) -> list[Sum]:
     """Return the named checksums."""
     checksums = []
+    checks = _checks(section, node_facts)
     for name, declaration in section.get("checksums", {}).items():
-        form = node_facts.stream.check if node_facts.stream else None
+        form = checks.get(name)
         kind, covers = declaration["kind"], declaration["covers"]
         rows = [
             (
@@ -223,6 +334,19 @@ def sums(section: Mapping[str, Any], node_facts: Facts) -> list[Sum]:
     return checksums
 
 
+def _checks(section: Section, node_facts: Facts) -> dict[str, Check]:
+    """Return the checksums of the packets by name."""
+    if node_facts.stream is None:
+        return {}
+    declared = declared_packets(section["stream"]).all
+    return {
+        row["checksum"]: form.check
+        for packet, form in zip(declared, node_facts.stream.packets, strict=True)
+        for row in packet.of("checksum")
+        if form.check
+    }
+
+
 _PARAMETERS = ("polynomial", "init", "reflect_in", "reflect_out", "xor_out")
 
 
@@ -244,24 +368,43 @@ class Part(NamedTuple):
 
 
 def packet(
-    form: Stream, link: Any, id: int, direction: Direction, data: bytes
+    form: Stream, link: Link, id: int, direction: Direction, data: bytes
 ) -> list[Part]:
     """Return the parts of a message in its packet format, before byte stuffing."""
-    # Without delimiter: byte stuffing would move the borders of the parts.
-    packet_bytes = stream_encode(
-        link._replace(stream=link.stream._replace(delimited_by=PACKET)),
-        id,
-        data,
-        direction,
-    )
-    head, end = form.header_bytes, len(packet_bytes) - form.trailer_bytes
+    sent = stream_encode(_unstuffed(link), id, data, direction)
+    (row,) = (row for row in form.rows(direction) if row.id == id)
+    return _parts(form.packets[row.packet], sent)
+
+
+def request(form: Stream, link: Link, telemetry_id: int) -> list[Part]:
+    """Return the parts of the packet that requests telemetry, before byte stuffing;
+    none if no packet does.
+    """
+    rows = [row for row in form.telemetry if row.id == telemetry_id]
+    if form.request is None or not any(row.is_requested for row in rows):
+        return []
+    sent = stream_encode_request(_unstuffed(link), telemetry_id)
+    return _parts(form.packets[form.request.packet], sent)
+
+
+def _unstuffed(link: Link) -> Link:
+    """Return the link without delimiter: byte stuffing would move the borders of the
+    parts.
+    """
+    assert link.stream
+    return link._replace(stream=link.stream._replace(delimited_by="none"))
+
+
+def _parts(packet: PacketFormat, sent: bytes) -> list[Part]:
+    head, end = packet.header_bytes, len(sent) - packet.trailer_bytes
     before, behind = (
-        ", ".join(f.role for f in form.fields if f.in_trailer == where)
+        ", ".join(f.role for f in packet.fields if f.in_trailer == where)
         for where in (False, True)
     )
+    of_packet = f" of {packet.name}" if packet.name else ""
     parts = [
-        Part("id", packet_bytes[:head], f"header: {before}"),
-        Part("data", packet_bytes[head:end], f"data, {count(end - head, 'byte')}"),
-        Part("crc", packet_bytes[end:], f"trailer: {behind}"),
+        Part("id", sent[:head], f"header{of_packet}: {before}"),
+        Part("data", sent[head:end], f"data, {count(end - head, 'byte')}"),
+        Part("crc", sent[end:], f"trailer{of_packet}: {behind}"),
     ]
     return [part for part in parts if part.data]

@@ -75,7 +75,7 @@ class Links:
     ) -> None:
         taken: set[str] = set()
         for thing in things:
-            name = _free(
+            name = free_name(
                 prefix + slug(thing.identifier or thing.name, node.vocabulary), taken
             )
             self._pages[node.name, kind, thing.name] = f"{node.name}/{name}.html"
@@ -127,7 +127,7 @@ def _anchors_of_fields(repeats: Repeats, vocabulary: tuple[str, ...]) -> dict[st
     """Return the anchors of the shown fields by name of the place."""
     taken: set[str] = set()
     return {
-        field.place.name: _free(
+        field.place.name: free_name(
             "field-" + slug(field.place.identifier or field.name, vocabulary), taken
         )
         for field in repeats.fields
@@ -138,12 +138,15 @@ def _anchors_of_members(enum: Enum, vocabulary: tuple[str, ...]) -> dict[str, st
     """Return the anchors by value of the member."""
     taken: set[str] = set()
     return {
-        str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken)
+        str(m.value): free_name(
+            "member-" + slug(m.identifier or m.name, vocabulary), taken
+        )
         for m in enum.members
     }
 
 
-def _free(name: str, taken: set[str]) -> str:
+def free_name(name: str, taken: set[str]) -> str:
+    """Return the name, numbered if it is taken, and add it to ``taken``."""
     candidate, number = name, 2
     while candidate in taken:
         candidate, number = f"{name}-{number}", number + 1

@@ -7,13 +7,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from icdgen.backends.html import all_facts, envelopes, responses, sequences, texts
+from icdgen.backends.html import (
+    all_facts,
+    envelopes,
+    packets,
+    responses,
+    sequences,
+    texts,
+)
 from icdgen.backends.html.all_facts import Row, as_text, value_text
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.error_codes import error_enum
 from icdgen.icd.model import Node
 from icdgen.protocol import facts
 from icdgen.protocol.declared import facts_of
+from icdgen.protocol.envelope import LENGTH
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import CanPart, Crc
 
@@ -48,7 +56,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     ]
     return {
         "node": node,
-        "envelope": _envelope(node_facts, section),
+        "envelope": _envelope(relations, node, node_facts),
         "lines": lines(section),
         "framing": _framing(node_facts),
         "escaped": node_facts.framing and f"{node_facts.framing.escape:02X}",
@@ -149,14 +157,17 @@ def _framing(node_facts: Facts) -> list[Box]:
     return _row([(text, about, share, "") for text, about, share in pieces])
 
 
-def _envelope(node_facts: Facts, section: dict[str, Any]) -> dict[str, object]:
-    """Return the description of the packet format; empty without one."""
+def _envelope(relations: Relations, node: Node, node_facts: Facts) -> dict[str, object]:
+    """Return the description of the packet formats; empty without one."""
     if node_facts.stream is None:
         return {}
+    views = packets.packet_views(relations, node, node_facts.stream)
     return {
-        "boxes": _row(envelopes.boxes(section)),
         "ends": envelopes.ENDS[node_facts.stream.delimited_by],
-        "places": envelopes.places(section),
+        "packets": [(view, _row(view.boxes)) for view in views],
+        "is_named": any(view.name for view in views),
+        "is_measured": node_facts.stream.delimited_by != LENGTH
+        or all(packet.of("length") for packet in node_facts.stream.packets),
     }
 
 
@@ -256,6 +267,16 @@ def entries(
             "envelope stream header trailer sync length sequence delimiter framing checksum",
             "Envelope",
             "envelope",
+        ),
+        *(
+            (
+                True,
+                f"packet format envelope header trailer request response {name}",
+                f"Packet {name}",
+                url.partition("#")[2],
+            )
+            for name, url in packets.packet_urls(relations, node).items()
+            if name
         ),
         *(
             (

@@ -114,7 +114,10 @@ def _speaker(
     }
     speaker_data |= wire.framing_facts(node_facts)
     if node_facts.stream:
-        speaker_data["stream"] = envelopes.script_facts(node_facts.stream)
+        stream = envelopes.script_facts(node_facts.stream, with_responses=True)
+        speaker_data["stream"] = stream
+        if "responses" in stream:  # they need not be about a message
+            speaker_data["protocol"] = relations.links.protocol(node.name)
     if node_facts.checksum:
         speaker_data["crc"] = wire.crc_facts(node_facts)
     if node_facts.can:

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from icdgen.backends.html.all_facts import Row
-from icdgen.backends.html.relations import Relations
+from icdgen.backends.html.packets import packet_urls
+from icdgen.backends.html.relations import Place, Relations
 from icdgen.backends.html.texts import capitalized
 from icdgen.icd.model import Message, Node
 from icdgen.icd.responses import (
@@ -22,6 +23,7 @@ from icdgen.icd.responses import (
     echoes_of,
     responses_in,
 )
+from icdgen.protocol import facts
 
 _ABOUT = {
     ACK: "confirms",
@@ -48,7 +50,9 @@ _MOST_NAMES = 6  # telecommands that the page of a response lists
 
 
 class ResponseRow(NamedTuple):
-    """Response to telecommands: the telemetry, its meaning, and its fields."""
+    """Response to telecommands or requests: the telemetry or packet, its meaning, and
+    its fields.
+    """
 
     kind: str  # one of `icdgen.icd.responses.KINDS`
     name: str
@@ -57,6 +61,15 @@ class ResponseRow(NamedTuple):
     echo: str
     judges: str  # status values and reason
     has_status: bool
+
+
+class RequestRow(NamedTuple):
+    """Requests of telemetry by a packet with its id."""
+
+    packet: Place  # empty text if the link has one packet format
+    messages: list[Place]
+    rows: list[ResponseRow]
+    timeout: str
 
 
 class TelecommandRow(NamedTuple):
@@ -71,20 +84,23 @@ class TelecommandRow(NamedTuple):
 
 def of_node(relations: Relations, node: Node) -> dict[str, object]:
     """Return the responses of a node: those of all telecommands, those of each
-    telecommand that differs, and the reasons of refusals. Empty without responses.
+    telecommand that differs, those of requests of telemetry, and the reasons of
+    refusals. Empty without responses.
     """
+    requests = request_row(relations, node)
     commands = _commands(relations, node)
     rows = [
         _telecommand(relations, node, message)
         for message in _telecommands(relations, node)
         if message.response is not None or message.repeat
     ]
-    if not commands and not rows:
+    if not commands and not rows and not requests:
         return {}
     reasons: Mapping[str, str] = commands.get("reasons", {})
     return {
         "general": general(relations, node),
         "telecommands": rows,
+        "requests": requests,
         "reasons": [
             Row(capitalized(about), reasons[cause])
             for cause, about in _CAUSES.items()
@@ -96,6 +112,26 @@ def of_node(relations: Relations, node: Node) -> dict[str, object]:
 def general(relations: Relations, node: Node) -> list[ResponseRow]:
     """Return the responses to all telecommands without other responses."""
     return _rows(relations, node, responses_in(_commands(relations, node)))
+
+
+def request_row(relations: Relations, node: Node) -> RequestRow | None:
+    """Return how telemetry is requested by its id; None if no packet does."""
+    stream = facts.of(relations.icd, node).stream
+    if stream is None or stream.request is None:
+        return None
+    section = relations.icd.protocol_of(node)["stream"]["requests"]
+    name = stream.packets[stream.request.packet].name
+    ids = {row.id for row in stream.telemetry if row.is_requested}
+    return RequestRow(
+        Place(name, packet_urls(relations, node)[name]),
+        [
+            relations.place(message)
+            for message in relations.icd.messages_of(node)
+            if message.telemetry_id in ids
+        ],
+        _rows(relations, node, responses_in(section)),
+        _milliseconds(section.get("timeout_ms")),
+    )
 
 
 def of_message(
@@ -112,12 +148,13 @@ def of_message(
         yield "Time-out", row.timeout, ""
         yield "May be repeated", row.repeat, ""
         return
+    yield from _of_request(relations, node, message)
     page = relations.links.protocol(node.name) + "#responses"
     commands = _commands(relations, node)
     requests: dict[str, list[str]] = {}
     for telecommand in _telecommands(relations, node):
         for kind, response in declared_responses(commands, telecommand).items():
-            if response["message"] == message.name:
+            if response.get("message") == message.name:
                 requests.setdefault(kind, []).append(telecommand.name)
     for kind, names in requests.items():
         more = len(names) - _MOST_NAMES
@@ -125,6 +162,23 @@ def of_message(
             f" and {more} more" if more > 0 else ""
         )
         yield "Response", f"{_ABOUT[kind]}: {listed}", page
+
+
+def _of_request(
+    relations: Relations, node: Node, message: Message
+) -> Iterator[tuple[str, str, str]]:
+    """Yield label, text and link of each fact about the request of telemetry."""
+    request = request_row(relations, node)
+    if request is None or relations.place(message) not in request.messages:
+        return
+    text = f"packet {request.packet.text} with its id" if request.packet.text else ""
+    yield "Requested by", text or "a packet with its id", request.packet.url
+    yield from ((_LABELS[each.kind], each.name, each.url) for each in request.rows)
+    yield "Time-out", request.timeout, ""
+
+
+def _milliseconds(timeout: int | None) -> str:
+    return f"{timeout:,} ms" if timeout else ""
 
 
 def _commands(relations: Relations, node: Node) -> Mapping[str, Any]:
@@ -146,7 +200,7 @@ def _telecommand(relations: Relations, node: Node, message: Message) -> Telecomm
         message.name,
         relations.links.message(message),
         _rows(relations, node, declared),
-        f"{timeout:,} ms" if timeout else "",
+        _milliseconds(timeout),
         "yes" if message.repeat else "",
     )
 
@@ -154,20 +208,27 @@ def _telecommand(relations: Relations, node: Node, message: Message) -> Telecomm
 def _rows(
     relations: Relations, node: Node, declared: Mapping[str, Mapping[str, Any]]
 ) -> list[ResponseRow]:
-    messages = {message.name: message for message in relations.icd.messages_of(node)}
+    places = {
+        message.name: relations.place(message)
+        for message in relations.icd.messages_of(node)
+    }
+    packets = packet_urls(relations, node) if declared else {}
     rows = []
     for kind, row in declared.items():
-        message = messages[row["message"]]
+        place = (
+            Place(f"packet {row['packet']}", packets[row["packet"]])
+            if "packet" in row
+            else places[row["message"]]
+        )
         echo = ", ".join(
             f"{field} = {repeated}" for field, repeated in echoes_of(row).items()
         )
-        url = relations.links.message(message)
         about = f"{_ABOUT[kind]}, or refuses" if "status" in row else _ABOUT[kind]
         rows.append(
             ResponseRow(
                 kind,
-                message.name,
-                url,
+                place.text,
+                place.url,
                 about,
                 echo,
                 _judges(kind, row),

@@ -5,7 +5,7 @@ them.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sized
 from dataclasses import dataclass, field
 
 from icdgen.backends.html import responses
@@ -114,10 +114,11 @@ def acknowledges(relations: Relations, node: Node, node_facts: Facts) -> list[Se
 def _on_framed_link(
     relations: Relations, node: Node, node_facts: Facts
 ) -> Iterator[Sequence]:
-    """Yield the outcomes of a telecommand on a framed link."""
+    """Yield the outcomes of a telecommand on a framed link, and of a request of
+    telemetry.
+    """
     client = node_facts.client
-    rows = responses.general(relations, node)
-    if not node_facts.stream or not rows:
+    if not node_facts.stream:
         return
     notes = {
         ACK: "it is done",
@@ -125,16 +126,38 @@ def _on_framed_link(
         BUSY: f"sent again after {client.busy_pause} ms, {client.retries} times at most",
         PROGRESS: "the time-out begins anew",
     }
-    waits = f"waits {client.reply_timeout} ms; if it may be repeated, {client.retries} more times"
-    arrows = [Arrow(True, "telecommand", waits)]
+    if rows := responses.general(relations, node):
+        waits = f"waits {client.reply_timeout} ms; if it may be repeated, {client.retries} more times"
+        arrows = [Arrow(True, "telecommand", waits), *_responses(rows, notes)]
+        yield Sequence("Framed link, telecommand", node.title, arrows, _remarks(arrows))
+    if request := responses.request_row(relations, node):
+        timeout = request.timeout or f"{client.reply_timeout} ms"
+        waits = f"waits {timeout}, tries again {client.retries} times"
+        sent = "request: id of the telemetry"
+        if request.packet.text:
+            sent = f"packet {request.packet.text}: id of the telemetry"
+        arrows = [
+            Arrow(True, sent, waits, request.packet.url),
+            Arrow(False, "the telemetry"),
+            *_responses(request.rows, notes),
+        ]
+        yield Sequence("Framed link, telemetry", node.title, arrows, _remarks(arrows))
+
+
+def _responses(
+    rows: Iterable[responses.ResponseRow], notes: Mapping[str, str]
+) -> Iterator[Arrow]:
+    """Yield the arrow of each response, with its meaning by kind."""
     for row in rows:
         if row.kind in notes:
             text = f"{row.name}: {row.echo}" if row.echo else row.name
             # A status can say more than one thing.
             note = row.about if row.has_status else notes[row.kind]
-            arrows.append(Arrow(False, text, note, row.url))
-    remarks = ["The device sends one of these responses."] if len(arrows) > 2 else []
-    yield Sequence("Framed link, telecommand", node.title, arrows, remarks)
+            yield Arrow(False, text, note, row.url)
+
+
+def _remarks(arrows: Sized) -> list[str]:
+    return ["The device sends one of these responses."] if len(arrows) > 2 else []
 
 
 def _on_can(

@@ -14,7 +14,7 @@ from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.errors import TooLongError, UnsupportedError
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.stream import stream_encode
+from icdgen_runtime.wire.stream import stream_encode, stream_encode_request
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html import envelopes
@@ -200,26 +200,30 @@ def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
         "telemetry": message.telemetry_id,
     }
     for direction, id in ids.items():
-        if id is not None:
-            parts = envelopes.packet(form, wire.link, id, direction, data)
-            lines.append(
-                Line(
-                    direction.capitalize(),
-                    [Chunk(part.kind, _hex(part.data), part.title) for part in parts],
-                )
-            )
-            sent = stream_encode(wire.link, id, data, direction)
-            # Byte stuffing changed the bytes, so they are shown a second time.
-            if sent != b"".join(part.data for part in parts):
-                lines.append(
-                    Line(
-                        "in wire order",
-                        [Chunk("data", _hex(sent), "stuffed, between delimiters")],
-                    )
-                )
+        if id is None:
+            continue
+        if direction == "telemetry" and (
+            parts := envelopes.request(form, wire.link, id)
+        ):
+            requested = stream_encode_request(wire.link, id)
+            lines += _packet_lines("Request", parts, requested)
+        parts = envelopes.packet(form, wire.link, id, direction, data)
+        sent = stream_encode(wire.link, id, data, direction)
+        lines += _packet_lines(direction.capitalize(), parts, sent)
     return Bus(
         "Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines
     )
+
+
+def _packet_lines(
+    label: str, parts: list[envelopes.Part], sent: bytes
+) -> Iterator[Line]:
+    """Yield a packet by its parts; also as it is sent, if byte stuffing changed it."""
+    yield Line(label, [Chunk(part.kind, _hex(part.data), part.title) for part in parts])
+    if sent != b"".join(part.data for part in parts):
+        yield Line(
+            "in wire order", [Chunk("data", _hex(sent), "stuffed, between delimiters")]
+        )
 
 
 def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:

@@ -20,7 +20,7 @@ from icdgen.backends.rust.literals import (
     struct,
 )
 from icdgen.backends.rust.names import variant
-from icdgen.backends.rust.streams import stream_of, tabulated
+from icdgen.backends.rust.streams import crc_tables, stream_of
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
@@ -55,10 +55,10 @@ def sizes(links: Collection[LinkDescription]) -> dict[str, int]:
     }
 
 
-def values(link: LinkDescription) -> dict[str, str]:
+def values(link: LinkDescription) -> dict[str, object]:
     """Return the values for the template of a link.
 
-    ``tabulated`` is the CRC of packets, for which there is a table.
+    ``tables`` has the name and the CRC of each lookup table.
     """
     facts, link_literal = link.facts, _Literal(link)
     text = written(link_literal.link(), _note)
@@ -67,14 +67,14 @@ def values(link: LinkDescription) -> dict[str, str]:
     ]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
-    crc = tabulated(facts.stream)
+    tables = crc_tables(facts.stream)
     return {
         "node": facts.node.name,
         "doc": doc(about),
         "literal": text,
         "longest": integer(longest(link)),
         "sequences": integer(facts.stream.sequences) if facts.stream else "",
-        "tabulated": written(crc, _note) if crc else "",
+        "tables": [(name, written(crc, _note)) for crc, name in tables.items()],
     }
 
 

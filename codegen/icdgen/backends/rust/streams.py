@@ -18,55 +18,98 @@ from icdgen.backends.rust.literals import (
     struct,
 )
 from icdgen.backends.rust.names import variant
-from icdgen.backends.rust.text import mask
+from icdgen.backends.rust.text import mask, string
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.envelope import CRC, WORD, Check, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.envelope import (
+    CRC,
+    DIRECTIONS,
+    NOTHING,
+    WORD,
+    Check,
+    EnvelopeField,
+    PacketFormat,
+    Stream,
+    StreamRow,
+    TelemetryRequest,
+)
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 
 _DELIMITERS = {"none": "Packet"}
+_CONTENTS = {NOTHING: "Nothing"}
 
 
 def stream_of(form: Stream) -> Brackets:
-    """Return the expression of a packet format."""
-    exchanges = form.exchanges
-    indices = {exchange: index for index, exchange in enumerate(exchanges)}
+    """Return the expression of packet formats and their messages."""
+    indices = {exchange: index for index, exchange in enumerate(form.exchanges)}
+    tables = crc_tables(form)
     return struct(
         "Stream",
         part(
             "delimited_by",
             f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or variant(form.delimited_by)}",
         ),
-        part("header_bytes", spelled(form.header_bytes)),
-        part("trailer_bytes", spelled(form.trailer_bytes)),
-        part("length_plus", spelled(form.length_plus)),
         part("per_id", spelled(form.per_id)),
-        part("fields", rows(map(_field, form.fields))),
-        part("check", some(_check(form.check) if form.check else None)),
+        part("packets", rows(_packet(packet, tables) for packet in form.packets)),
         part("telecommands", rows(_row(row, indices) for row in form.telecommands)),
         part("telemetry", rows(_row(row, indices) for row in form.telemetry)),
-        part("exchanges", rows(map(_exchange, exchanges))),
+        part("exchanges", rows(map(_exchange, form.exchanges))),
         part("confirming", flat_rows(map(spelled, form.confirming))),
+        part("request", some(_request(form.request, indices))),
     )
 
 
-def _check(check: Check) -> Brackets:
+def _request(
+    request: TelemetryRequest | None, indices: Mapping[Exchange, int]
+) -> Brackets | None:
+    if request is None:
+        return None
+    return flat(
+        "RequestForm",
+        packet=request.packet,
+        exchange=indices[request.exchange],
+        data=f"&[0; {request.reserved}]",
+    )
+
+
+def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
+    host, device = DIRECTIONS
+    content = _CONTENTS.get(packet.content) or variant(packet.content)
+    return struct(
+        "PacketForm",
+        part("name", string(packet.name)),
+        part("from_host", spelled(host in packet.directions)),
+        part("from_device", spelled(device in packet.directions)),
+        part("header_bytes", spelled(packet.header_bytes)),
+        part("trailer_bytes", spelled(packet.trailer_bytes)),
+        part("length_plus", spelled(packet.length_plus)),
+        part("fields", rows(map(_field, packet.fields))),
+        part("check", some(_check(packet.check, tables) if packet.check else None)),
+        part("content", f"link::Content::{content}"),
+        part("reserved", spelled(packet.reserved)),
+    )
+
+
+def crc_tables(form: Stream | None) -> dict[Brackets, str]:
+    """Return the name of the lookup table of each CRC of the packets."""
+    checks = [packet.check for packet in (form.packets if form else ())]
+    crcs = [_crc(check) for check in checks if check and check.kind == CRC]
+    return {
+        crc: f"TABLE_{number}" if number > 1 else "TABLE"
+        for number, crc in enumerate(dict.fromkeys(crcs), 1)
+    }
+
+
+def _check(check: Check, tables: Mapping[Brackets, str]) -> Brackets:
+    crc = _crc(check)
     return struct(
         "CheckForm",
         part("kind", f"link::CheckKind::{variant(check.kind)}"),
-        part("crc", _crc(check)),
-        part("table", some("&TABLE" if check.kind == CRC else None)),
+        part("crc", crc),
+        part("table", some(f"&{tables[crc]}" if check.kind == CRC else None)),
         part("covered_from", spelled(check.covered_from)),
         part("covered_trailer", spelled(check.covered_trailer)),
         part("is_seeded", spelled(check.is_seeded)),
     )
-
-
-def tabulated(form: Stream | None) -> Brackets | None:
-    """Return the CRC for which the wire layer gets a table; None for any other
-    checksum.
-    """
-    check = form and form.check
-    return _crc(check) if check and check.kind == CRC else None
 
 
 def _crc(check: Check) -> Brackets:
@@ -124,13 +167,20 @@ def _response(response: Response) -> Brackets:
     )
     return struct(
         "Response",
-        part("telemetry", spelled(response.telemetry)),
+        part("kind", f"link::ResponseKind::{_kind(response)}"),
         part("verdict", _verdict(response.verdict)),
         part("echoes", flat_rows(echoes)),
         part("status", _optional_place(response.status)),
         part("meanings", flat_rows(meanings)),
         part("reason", _optional_place(response.reason)),
     )
+
+
+def _kind(response: Response) -> str:
+    if response.packet is not None:
+        return f"Packet({response.packet})"
+    id = response.telemetry
+    return "Requested" if id is None else f"Telemetry({spelled(id)})"
 
 
 def _optional_place(place: NumberPlace | None) -> Expression:

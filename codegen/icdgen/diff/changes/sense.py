@@ -54,19 +54,20 @@ def general_responses_changed(pair: NodePair, ctx: Context) -> Iterator[CheckRes
     for fact in facts(pair.old, pair.new):
         if fact.is_word or not RESPONSES.fullmatch(fact.path):
             continue
-        # The keys below `commands`; none if the whole section is new or gone.
-        keys = fact.path.split(".")[3:]
+        # The keys below `commands` or `requests`; none if the whole section is new or
+        # gone.
+        section, *keys = fact.path.split(".")[2:]
         if len(keys) == 1 and _response(fact.old) == _response(fact.new):
             continue  # another spelling
         was, now = shown(fact.old), shown(fact.new)
-        what = _response_words(keys)
+        what = _response_words(section, keys)
         if fact.old is None:
             text = f"{what} is new: {now}"
         elif fact.new is None:
             text = f"{what} is gone; it was {was}"
         else:
             text = f"{what} is {now}, was {was}"
-        effect = _effect_of_response(keys, fact.old, fact.new)
+        effect = _effect_of_response(section, keys, fact.old, fact.new)
         yield CheckResult(
             text,
             (fact.path.rsplit(".", 1)[-1],),
@@ -84,14 +85,15 @@ def _response(value: object) -> object:
     return {"message": value} if isinstance(value, str) else value
 
 
-def _response_words(keys: list[str]) -> str:
-    """Return the words for a value below `commands`."""
+def _response_words(section: str, keys: list[str]) -> str:
+    """Return the words for a value below `commands` or `requests`."""
+    to = "telecommands" if section == "commands" else "requests of telemetry"
     if not keys:
-        return "the section `commands` with responses to telecommands"
+        return f"the section `{section}` with responses to {to}"
     kind, *inner = keys
     if kind not in KINDS:
-        return f"`{'.'.join(keys)}` in `commands`"
-    response = f"the response `{kind}` to telecommands"
+        return f"`{'.'.join(keys)}` in `{section}`"
+    response = f"the response `{kind}` to {to}"
     return f"`{'.'.join(inner)}` of {response}" if inner else response
 
 
@@ -116,6 +118,13 @@ def response_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
             for message in (pair.old, pair.new)
         )
         yield CheckResult(f"{name} is {now}, was {was}", ("repeat", "name"), was, now)
+    if pair.old.requested != pair.new.requested:
+        was, now = (
+            "requested by its id" if message.requested else "not requested by its id"
+            for message in (pair.old, pair.new)
+        )
+        keys = ("requested", "name")
+        yield CheckResult(f"{name} is {now}, was {was}", keys, was, now)
 
 
 def _responses(message: Message) -> str:
@@ -123,11 +132,23 @@ def _responses(message: Message) -> str:
     return "those of all telecommands" if own is None else shown(own)
 
 
-def _effect_of_response(keys: list[str], old: object, new: object) -> str:
-    """Return what a program with the old ICD does with a response to all telecommands;
-    empty if it is not affected.
+def _effect_of_response(section: str, keys: list[str], old: object, new: object) -> str:
+    """Return what a program with the old ICD does with a response to all telecommands or
+    requests; empty if it is not affected.
     """
     kind = keys[0] if keys else ""
+    if kind in ("packet", "reserved"):
+        return (
+            "The device does not take the request of a program with the old ICD for a "
+            "request of telemetry."
+        )
+    if section == "requests" and not kind:
+        return (
+            "A program with the old ICD requests telemetry in a way that the device does "
+            "not know."
+            if new is None
+            else ""
+        )
     if (kind and kind not in KINDS) or "reason" in keys:
         return ""
     if len(keys) > 1 or (kind and old is not None and new is not None):

@@ -30,6 +30,7 @@ from icdgen.icd.rules import (  # noqa: F401
     layout,
     limits,
     loggable,
+    packets,
     protocol,
     protocol_effects,
     protocol_limits,

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.packets import Packet, Packets, declared_packets
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, of_wide_value
@@ -24,16 +25,41 @@ WORD = 32  # largest width of a field in bits
 MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # largest number of bytes that a field can be in
 DATA = "data"
-# Keys that only fields of one role can have.
+# Keys that only fields of some roles can have.
 ONLY_WITH = {
-    "counts": "length",
-    "plus": "length",
-    "per": "sequence",
-    "checksum": "checksum",
+    "counts": ("length",),
+    "plus": ("length",),
+    "per": ("sequence",),
+    "checksum": ("checksum",),
+    "enum": ("status", "reason"),
 }
 # Keys of a protocol section with `stream`.
 ALLOWED_WITH_STREAM = ("stream", "checksums", "client", "uart", "boot")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
+
+
+class LinkPacket(NamedTuple):
+    """Packet format of a link. ``title`` names it in a sentence; it is empty for the
+    only one of a link.
+    """
+
+    packet: Packet
+    title: str
+    rows: list[tuple[str, Map]]  # header or trailer, and a field, in order
+
+    def of(self, *roles: str) -> list[Map]:
+        """Return the fields of these roles."""
+        return [row for _, row in self.rows if row.get("role") in roles]
+
+    @property
+    def overhead(self) -> int:
+        """Return the bytes of header and trailer."""
+        overhead = 0
+        for part in PARTS:
+            ends = (row["at"] + row["bits"] for of, row in self.rows if of == part)
+            # Round up to whole bytes.
+            overhead += -(-max(ends, default=0) // 8)
+        return overhead
 
 
 class Link(NamedTuple):
@@ -41,24 +67,51 @@ class Link(NamedTuple):
 
     node: Node
     section: Map
-    rows: list[tuple[str, Map]]  # header or trailer, and a field, in order
+    declared: Packets
+    packets: list[LinkPacket]
 
-    def of(self, *roles: str) -> list[Map]:
-        """Return the fields of these roles."""
-        return [row for _, row in self.rows if row.get("role") in roles]
+    @property
+    def rows(self) -> Iterator[tuple[str, Map]]:
+        """Yield header or trailer, and each field, once: packets can share fields."""
+        seen: set[int] = set()
+        for packet in self.packets:
+            for part, row in packet.rows:
+                if id(row) not in seen:
+                    seen.add(id(row))
+                    yield part, row
+
+    def place(self, packet: LinkPacket) -> tuple[Map, str]:
+        """Return mapping and key that describe a packet as a whole."""
+        if packet.title:
+            return self.section["packets"][packet.packet.name], "from"
+        return self.section, "delimited_by"
 
 
 def links(ctx: Context) -> Iterator[Link]:
     """Yield the links of the nodes that declare a valid `stream` themselves."""
     for node in ctx.icd.nodes:
         section = section_of(node, "stream")
-        if section is not None:
-            rows = [
-                (part, row) for part in PARTS for row in mappings(section.get(part))
-            ]
-            # Otherwise the schema check reports the fields.
-            if all(_is_sound(row) for _, row in rows):
-                yield Link(node, section, rows)
+        if section is None:
+            continue
+        telecommands = [message for _, message in ids_of(ctx, node, TELECOMMAND)]
+        declared = declared_packets(section, telecommands)
+        packets = [
+            LinkPacket(
+                packet,
+                f" of the packet {quote(packet.name)}" if packet.name else "",
+                [
+                    (part, row)
+                    for part, rows in zip(
+                        PARTS, (packet.header, packet.trailer), strict=True
+                    )
+                    for row in mappings(rows)
+                ],
+            )
+            for packet in declared.all
+        ]
+        # Otherwise the schema check reports the fields.
+        if all(_is_sound(row) for packet in packets for _, row in packet.rows):
+            yield Link(node, section, declared, packets)
 
 
 def _is_sound(row: Map) -> bool:
@@ -70,7 +123,20 @@ def _is_sound(row: Map) -> bool:
         or not 0 < numbers[1] <= WORD
     ):
         return False
-    return isinstance(row.get("role"), str) and isinstance(row.get("checksum", ""), str)
+    texts = [
+        row.get("role"),
+        *(row.get(key, "") for key in ("checksum", "name", "enum")),
+    ]
+    value = row.get("value", 0)
+    values = [*value.values()] if isinstance(value, Map) else [value]
+    return all(isinstance(text, str) for text in texts) and all(map(_is_value, values))
+
+
+def _is_value(value: object) -> bool:
+    """Return whether a value is a number, or bytes."""
+    if isinstance(value, Seq | list):
+        return all(type(byte) is int and 0 <= byte <= 0xFF for byte in value)
+    return type(value) is int
 
 
 @rule("ICD170")
@@ -111,18 +177,20 @@ def links_are_described_once(ctx: Context) -> Iterator[Fault]:
 @rule("ICD171")
 def roles_are_complete(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
-        seen: set[str] = set()
+        reported: set[int] = set()
+        for packet in link.packets:
+            seen: set[str] = set()
+            for _, row in packet.rows:
+                role = row["role"]
+                is_twice = role in seen and role not in (*FIXED, "id")
+                if is_twice and id(row) not in reported:
+                    reported.add(id(row))
+                    message = f"there are two fields of the role `{role}`{packet.title}"
+                    help = "give one of them its own role, or make it a `constant`"
+                    yield Fault.at(row, "role", message, help)
+                seen.add(role)
         for _, row in link.rows:
             role = row["role"]
-            if role in seen and role not in FIXED:
-                message = f"there are two fields of the role `{role}`"
-                yield Fault.at(
-                    row,
-                    "role",
-                    message,
-                    "give one of them its own role, or make it a `constant`",
-                )
-            seen.add(role)
             if role in FIXED and "value" not in row:
                 yield Fault.at(
                     row,
@@ -138,9 +206,10 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
                     message,
                     "remove `value`, or make the field a `constant`",
                 )
-            for key, owner in ONLY_WITH.items():
-                if key in row and role != owner:
-                    message = f"`{key}` applies to a field of the role `{owner}`, not of a `{role}`"
+            for key, owners in ONLY_WITH.items():
+                if key in row and role not in owners:
+                    owner = " or ".join(f"`{each}`" for each in owners)
+                    message = f"`{key}` applies to a field of the role {owner}, not of a `{role}`"
                     yield Fault.at_key(
                         row, key, message, "remove it, or correct `role`"
                     )
@@ -148,30 +217,44 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
 
 
 def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
-    """Yield the faults of roles that a link needs and no field has."""
-    lengths = link.of("length")
-    if link.section.get("delimited_by") == "length":
-        if not lengths:
+    """Yield the faults of roles that a packet needs and no field has."""
+    is_delimited = link.section.get("delimited_by") != "length"
+    for packet in link.packets:
+        place = link.place(packet)
+        lengths = packet.of("length")
+        for part, row in packet.rows:
+            if row["role"] == "length" and part == "trailer" and not is_delimited:
+                message = "the length that delimits messages is after their data"
+                yield Fault.at(row, "role", message, "move it to `header`")
+        carried = {
+            direction: [
+                (id, message)
+                for id, message in ids_of(ctx, link.node, direction)
+                if packet.packet in link.declared.of(message.name, direction)
+            ]
+            for direction in packet.packet.directions
+        }
+        for direction, messages in carried.items():
+            if len({id for id, _ in messages}) > 1 and not packet.of("id"):
+                message = f"no field{packet.title} has the role `id`, and there are several messages in one direction ({direction})"
+                help = "add one: the link has no other way to distinguish them"
+                yield Fault.at(*place, message, help)
+                break
+        if lengths or is_delimited:
+            continue
+        varying = next(
+            (
+                message
+                for messages in carried.values()
+                for _, message in messages
+                if message.layout.shortest != message.length or message.may_end_early
+            ),
+            None,
+        )
+        if varying is not None:
+            message = f"no field{packet.title} has the role `length`, and {quote(varying.name)} has no fixed length"
             help = "add one, or choose another value of `delimited_by`"
-            message = "no field has the role `length`, which delimits messages"
-            yield Fault.at(link.section, "delimited_by", message, help)
-        elif any(
-            part == "trailer" for part, row in link.rows if row["role"] == "length"
-        ):
-            message = "the length that delimits messages is after their data"
-            yield Fault.at(lengths[0], "role", message, "move it to `header`")
-    for direction in DIRECTIONS:
-        if len({id for id, _ in ids_of(ctx, link.node, direction)}) > 1 and not link.of(
-            "id"
-        ):
-            message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
-            yield Fault.at(
-                link.section,
-                "delimited_by",
-                message,
-                "add one: the link has no other way to distinguish them",
-            )
-            return
+            yield Fault.at(*place, message, help)
 
 
 def ids_of(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
@@ -240,61 +323,53 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     """Yield the faults of fields that are too narrow for the ids and lengths of the
     messages.
     """
-    messages = [
-        pair for direction in DIRECTIONS for pair in ids_of(ctx, link.node, direction)
-    ]
-    for row in link.of("id"):
+    for packet in link.packets:
+        messages = [
+            (id, message)
+            for direction in packet.packet.directions
+            for id, message in ids_of(ctx, link.node, direction)
+            if packet.packet in link.declared.of(message.name, direction)
+        ]
+        parts = packet.of("id")
+        bits = sum(row["bits"] for row in parts)
         id, message = max(messages, key=lambda pair: pair[0], default=(0, None))
-        if message is not None and id >> row["bits"]:
-            text = f"an id of {count(row['bits'], 'bit')} cannot represent 0x{id:X}, that of {quote(message.name)}"
-            yield Fault.at(row, "bits", text, "make the field wider, or correct the id")
-    overhead = 0  # bytes of header and trailer
-    for part in PARTS:
-        ends = (
-            row["at"] + row["bits"]
-            for part_of_row, row in link.rows
-            if part_of_row == part
-        )
-        # Round up to whole bytes.
-        overhead += -(-max(ends, default=0) // 8)
-    empty = next(
-        (
-            message
-            for _, message in messages
-            if message.layout.shortest == 0 and overhead == 0
-        ),
-        None,
-    )
-    if empty is not None:
-        text = f"no byte is sent for {quote(empty.name)}, which can have no data"
-        yield Fault.at(
-            link.section, "delimited_by", text, "add a field to `header`, such as an id"
-        )
-    for row in link.of("length"):
-        plus = row.get("plus", 0) + (overhead if row.get("counts") == "message" else 0)
-        for _, message in messages:
-            shortest, longest = message.layout.shortest + plus, message.length + plus
-            if longest >= 1 << row["bits"]:
-                text = f"a length of {count(row['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
-                yield Fault.at(
-                    row, "bits", text, "make the field wider, or the message shorter"
-                )
-                break
-            if shortest < 0:
-                text = f"the length of {quote(message.name)} would be {shortest}"
-                yield Fault.at(
-                    row,
-                    "plus",
-                    text,
-                    "correct `plus`, or let the message have more bytes",
-                )
-                break
-    for row in link.of("sequence"):
-        if row["bits"] > MOST_SEQUENCE_BITS:
+        if message is not None and parts and id >> bits:
+            text = f"an id of {count(bits, 'bit')} cannot represent 0x{id:X}, that of {quote(message.name)}"
+            help = "make the field wider, or correct the id"
+            yield Fault.at(parts[0], "bits", text, help)
+        overhead = packet.overhead
+        empty = next((each for _, each in messages if each.layout.shortest == 0), None)
+        if empty is not None and overhead == 0:
+            text = f"no byte is sent for {quote(empty.name)}, which can have no data"
+            help = "add a field to `header`, such as an id"
+            yield Fault.at(*link.place(packet), text, help)
+        for row in packet.of("length"):
+            yield from _lengths(row, messages, overhead)
+    for _, row in link.rows:
+        if row["role"] == "sequence" and row["bits"] > MOST_SEQUENCE_BITS:
             text = f"a sequence number has at most {MOST_SEQUENCE_BITS} bits"
             yield Fault.at(
                 row, "bits", text, "make it narrower, and the rest a `constant`"
             )
+
+
+def _lengths(
+    row: Map, messages: list[tuple[int, Message]], overhead: int
+) -> Iterator[Fault]:
+    """Yield the faults of a length field that cannot represent the length of a message."""
+    plus = row.get("plus", 0) + (overhead if row.get("counts") == "message" else 0)
+    for _, message in messages:
+        shortest, longest = message.layout.shortest + plus, message.length + plus
+        if longest >= 1 << row["bits"]:
+            text = f"a length of {count(row['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
+            help = "make the field wider, or the message shorter"
+            yield Fault.at(row, "bits", text, help)
+            break
+        if shortest < 0:
+            text = f"the length of {quote(message.name)} would be {shortest}"
+            help = "correct `plus`, or let the message have more bytes"
+            yield Fault.at(row, "plus", text, help)
+            break
 
 
 @rule("ICD173")
@@ -302,9 +377,7 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         checksums = section_of(link.node, "checksums") or unread()
         used: set[str] = set()
-        for part, row in link.rows:
-            if row["role"] != "checksum":
-                continue
+        for packet, part, row in _checksum_fields(link):
             name = row.get("checksum", "")
             used.add(name)
             declared = checksums.get(name)
@@ -326,7 +399,7 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                     f"name one of `checksums` in `checksum:`: {names}",
                 )
             elif _is_valid(declared):
-                yield from _checksum(ctx, link, part, row, declared)
+                yield from _checksum(ctx, link, packet, part, row, declared)
         for name in checksums:
             if name not in used:
                 message = f"no field of the frame has the checksum {quote(name)}"
@@ -334,6 +407,18 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                 yield Fault(
                     section_of(link.node), checksums.key_at(name), message, help
                 )
+
+
+def _checksum_fields(link: Link) -> Iterator[tuple[LinkPacket, str, Map]]:
+    """Yield each checksum field, the part in which it is, and the first packet with
+    it.
+    """
+    seen: set[int] = set()
+    for packet in link.packets:
+        for part, row in packet.rows:
+            if row["role"] == "checksum" and id(row) not in seen:
+                seen.add(id(row))
+                yield packet, part, row
 
 
 def _is_valid(checksum: object) -> bool:
@@ -358,7 +443,12 @@ def _is_valid(checksum: object) -> bool:
 
 
 def _checksum(
-    ctx: Context, link: Link, part: str, row: Map, checksum: Map
+    ctx: Context,
+    link: Link,
+    packet: LinkPacket,
+    part: str,
+    row: Map,
+    checksum: Map,
 ) -> Iterator[Fault]:
     """Yield the faults of a checksum and of the field that it is sent in."""
     width: int = checksum["width"]
@@ -398,11 +488,11 @@ def _checksum(
                 yield Fault.at_key(
                     checksum, key, message, "remove it, or correct `kind`"
                 )
-    yield from _covered(link, part, row, checksum)
+    yield from _covered(packet, part, row, checksum)
     yield from _seeds(ctx, link, checksum)
 
 
-def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
+def _covered(packet: LinkPacket, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
     """Yield the faults of `covers`, which must include the data but not the checksum
     itself.
     """
@@ -412,14 +502,13 @@ def _covered(link: Link, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
         role = covers[key]
         matches = [
             (part_of_row, field)
-            for part_of_row, field in link.rows
-            if field["role"] == role
+            for part_of_row, field in packet.rows
+            if role in (field.get("name"), field["role"])
         ]
         if role != DATA and not matches:
-            message = f"no field has the role `{role}`"
-            yield Fault.at(
-                covers, key, message, "name the role of a field of the frame, or `data`"
-            )
+            message = f"no field{packet.title} has the role or name `{role}`"
+            help = "name the role of a field of the frame, or `data`"
+            yield Fault.at(covers, key, message, help)
             return
         if role != DATA and matches[0][0] != where:
             message = f"a checksum covers the data, but `{key}: {role}` names a field of the {matches[0][0]}"

@@ -15,7 +15,7 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
 from icdgen.icd.places import scalars_in
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.protocol import sections
+from icdgen.icd.rules.protocol import sections, sections_in
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import VERBATIM
 from icdgen.icd.suggestions import suggestion
@@ -73,8 +73,12 @@ def named_messages_and_members_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         messages = {message.name for message in ctx.messages_of(node)}
         enums = {enum.name: enum for owner in ctx.scope(node) for enum in owner.enums}
+        # In the section `stream`, `packet` names a packet format (rule ICD184).
+        framed = {id(section) for section in sections_in(node.source, "stream")}
         for section in sections(node):
             for key in MESSAGES:
+                if key == "packet" and id(section) in framed:
+                    continue
                 for name, place in _values(section, key, str):
                     if name not in messages:
                         help, fix = suggestion(name, messages, VERBATIM)

@@ -7,10 +7,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from icdgen.icd.enumeration import Enum
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, integer_range
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.packets import Packet
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
     ID,
@@ -19,6 +21,7 @@ from icdgen.icd.responses import (
     NEEDED,
     NONE,
     STATUS_SETS,
+    Section,
     declared_responses,
     echoes_of,
     field_of,
@@ -54,8 +57,15 @@ class Declared(NamedTuple):
     owner: Map  # mapping with the key `kind`
     kind: str
     row: Map  # mapping of the response; empty if it is only a name
-    name: str  # of the telemetry
-    telecommands: list[Message]
+    name: str  # of the telemetry or packet
+    telecommands: list[Message]  # none for a request of telemetry
+    is_packet: bool = False
+    is_of_request: bool = False
+
+    @property
+    def packet(self) -> Packet | None:
+        """Return the packet that responds; None for telemetry."""
+        return self.link.declared.by_name(self.name) if self.is_packet else None
 
     def fault(self, key: str, message: str, help: str, fix: str = "") -> Fault:
         """Return a fault at a key of the response, or at the response."""
@@ -63,8 +73,10 @@ class Declared(NamedTuple):
         return Fault.at(owner, key, message, help, fix)
 
 
-def _declared(ctx: Context, link: Link) -> Iterator[Declared]:
-    """Yield the responses of a link that conform to the schema."""
+def _owners(ctx: Context, link: Link) -> list[tuple[Map, list[Message]]]:
+    """Return the mappings with responses: those of all telecommands, of one, and of
+    requests, each with the telecommands.
+    """
     telecommands = [message for _, message in ids_of(ctx, link.node, TELECOMMAND)]
     commands = link.section.get("commands")
     commands = commands if isinstance(commands, Map) else unread()
@@ -73,18 +85,30 @@ def _declared(ctx: Context, link: Link) -> Iterator[Declared]:
         for message in telecommands
         if isinstance(message.response, Map)
     ]
-    for owner, messages in [(commands, telecommands), *own]:
+    requests = link.section.get("requests")
+    requests = requests if isinstance(requests, Map) else unread()
+    return [(commands, telecommands), *own, (requests, [])]
+
+
+def _declared(ctx: Context, link: Link) -> Iterator[Declared]:
+    """Yield the responses of a link that conform to the schema."""
+    commands, requests = (link.section.get(key) for key in ("commands", "requests"))
+    for owner, messages in _owners(ctx, link):
         for kind in KINDS:
             value = owner.get(kind, NONE)
             row = value if isinstance(value, Map) else unread()
-            name = row.get("message") if isinstance(value, Map) else value
+            is_packet = "packet" in row and "message" not in row
+            name = row.get("packet" if is_packet else "message")
+            name = name if isinstance(value, Map) else value
             if isinstance(name, str) and name != NONE and _is_sound(row):
                 users = [
                     message
                     for message in messages
                     if owner is not commands or _inherits(message, kind)
                 ]
-                yield Declared(link, owner, kind, row, name, users)
+                yield Declared(
+                    link, owner, kind, row, name, users, is_packet, owner is requests
+                )
 
 
 def _is_sound(row: Map) -> bool:
@@ -93,7 +117,8 @@ def _is_sound(row: Map) -> bool:
     """
     echo = row.get("echo", "")
     parts = [*echo, *echo.values()] if isinstance(echo, Map) else [echo]
-    texts = [*parts, row.get("status", ""), row.get("reason", "")]
+    keys = ("status", "reason", "message", "packet")
+    texts = [*parts, *(row.get(key, "") for key in keys)]
     return all(isinstance(text, str) for text in texts)
 
 
@@ -117,9 +142,12 @@ def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
         names = {message.name: id for id, message in telemetry}
         telecommands = {each.name for _, each in ids_of(ctx, link.node, TELECOMMAND)}
         broken = ctx.broken_messages(link.node)
+        yield from _sources(ctx, link)
         for declared in _declared(ctx, link):
             name = declared.name
-            if name in telecommands and name not in names:
+            if declared.is_packet:
+                yield from _of_packet(declared)
+            elif name in telecommands and name not in names:
                 message = f"{quote(name)} is a telecommand, and a response comes from the device"
                 yield declared.fault("message", message, "name telemetry")
             elif name not in names and name not in broken:
@@ -136,10 +164,47 @@ def responses_are_telemetry(ctx: Context) -> Iterator[Fault]:
                 )
 
 
+def _sources(ctx: Context, link: Link) -> Iterator[Fault]:
+    """Yield the faults of responses that name neither telemetry nor a packet, or both."""
+    for owner, _ in _owners(ctx, link):
+        for kind in KINDS:
+            row = owner.get(kind)
+            if not isinstance(row, Map):
+                continue
+            if "message" in row and "packet" in row:
+                text = "a response is a message or a packet, and this one names both"
+                yield Fault.at_key(row, "packet", text, "remove one of them")
+            elif "message" not in row and "packet" not in row:
+                text = f"nothing says what `{kind}` is"
+                help = "add `message:`, the telemetry that responds"
+                yield Fault.at_key(owner, kind, text, help)
+
+
+def _of_packet(declared: Declared) -> Iterator[Fault]:
+    """Yield the faults of the packet that is a response."""
+    packet, names = declared.packet, [each.name for each in declared.link.declared.all]
+    if packet is None:
+        message = f"there is no packet {quote(declared.name)}"
+        known = [name for name in names if name]
+        remedy = suggestion(declared.name, known, "add it to `packets`")
+        yield declared.fault("packet", message, *remedy)
+    elif TELEMETRY not in packet.directions:
+        message = f"the host sends the packet {quote(declared.name)}, and a response comes from the device"
+        help = "name a packet `from: device`"
+        yield declared.fault("packet", message, help)
+    elif packet.messages is not None:
+        message = f"the packet {quote(declared.name)} carries messages, so it is no response of its own"
+        help = "name one of its messages with `message`, or a packet without messages"
+        yield declared.fault("packet", message, help)
+
+
 @rule("ICD177")
 def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         for declared in _declared(ctx, link):
+            if declared.is_packet:
+                yield from _numbers_of_packet(ctx, declared)
+                continue
             response = _response(ctx, declared)
             if response is None:
                 continue  # ICD176
@@ -148,6 +213,73 @@ def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
             yield from _reason(declared, response)
         yield from _reasons(ctx, link)
         yield from _numbers_of_parts(ctx, link)
+
+
+def _numbers_of_packet(ctx: Context, declared: Declared) -> Iterator[Fault]:
+    """Yield the faults of the fields of a packet that a client compares."""
+    packet, row, node = declared.packet, declared.row, declared.link.node
+    if packet is None:
+        return  # ICD176
+    echo = row.get("echo")
+    owner = echo if isinstance(echo, Map) else row
+    # Key of the response, the mapping and the key in it that name the field, the name
+    # and what the field repeats.
+    named: list[tuple[str, Map, str, str, str | None]] = [
+        (key, row, key, row[key], None) for key in ("status", "reason") if key in row
+    ]
+    for name, part in echoes_of(row).items():
+        named.append(("echo", owner, name if owner is echo else "echo", name, part))
+    enums = {enum.name for each in ctx.scope(node) for enum in each.enums}
+    for key, mapping, place, name, repeated in named:
+        field = packet.named(name)
+        if field is None:
+            known = [row.get("name", row["role"]) for row in packet.rows]
+            message = f"the packet {quote(packet.name)} has no field {quote(name)}"
+            remedy = suggestion(name, known, "name a field by its name or role")
+            yield Fault.at_key(mapping, place, message, *remedy)
+        elif key == "reason" and field.get("enum") not in enums:
+            text = (
+                f"{quote(name)} has no enumeration, so a refusal would be a bare number"
+            )
+            help = "give the field `enum:` with the reasons of the manual"
+            yield Fault.at(mapping, place, text, help)
+        elif isinstance(repeated, str):
+            yield from _echo_in_packet(ctx, declared, mapping, place, field, repeated)
+
+
+def _echo_in_packet(
+    ctx: Context,
+    declared: Declared,
+    owner: Map,
+    key: str,
+    field: Section,
+    repeated: str,
+) -> Iterator[Fault]:
+    """Yield the fault of a field of a packet that cannot repeat a part of a telecommand
+    or request.
+    """
+    node, packet = declared.link.node, declared.packet
+    name, width = field.get("name", field["role"]), field["bits"]
+    if packet is not None and field["role"] == "id" and repeated == ID:
+        width = sum(row["bits"] for row in packet.of("id"))  # all its parts
+    messages = declared.telecommands
+    if declared.is_of_request:
+        if repeated != ID and id_byte_of(node, repeated) is None:
+            text = "a request of telemetry has no part but its id"
+            yield Fault.at_key(owner, key, text, "write `id`")
+            return
+        messages = []
+        bits = max(
+            (id.bit_length() for id, _ in ids_of(ctx, node, TELEMETRY)), default=0
+        )
+        if repeated == ID and bits > width:
+            text = f"{quote(name)} of {count(width, 'bit')} cannot repeat an id of {count(bits, 'bit')}"
+            yield Fault.at_key(owner, key, text, "name another field")
+    for message in messages:
+        text, help = _misfit(node, name, width, message, repeated)
+        if text:
+            yield Fault.at_key(owner, key, text, help)
+            return
 
 
 def _numbers_of_parts(ctx: Context, link: Link) -> Iterator[Fault]:
@@ -227,14 +359,14 @@ def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
                 help = f"let `echo` or `{other}` name another field"
                 yield Fault.at(row, other, text, help)
         for message in declared.telecommands:
-            text, help = _misfit(node, field, message, repeated)
+            text, help = _misfit(node, field.name, field.bits, message, repeated)
             if text:
                 yield Fault.at(owner, key, text, help)
                 break
 
 
 def _misfit(
-    node: Node, field: NodePlace, message: Message, repeated: str
+    node: Node, field: str, width: int, message: Message, repeated: str
 ) -> tuple[str, str]:
     """Return why a field cannot repeat a part of a telecommand, and the remedy; two
     empty texts if it can.
@@ -249,20 +381,20 @@ def _misfit(
         if source is None:
             return text, f"{help}, or write `id`" if "correct" in help else help
         bits = source.bits
-    name = quote(field.name)
-    if bits > field.bits:
-        text = f"{name} of {count(field.bits, 'bit')} cannot repeat {count(bits, 'bit')} of {quote(message.name)}"
+    name = quote(field)
+    if bits > width:
+        text = f"{name} of {count(width, 'bit')} cannot repeat {count(bits, 'bit')} of {quote(message.name)}"
         return text, "correct the width of the field, or name another field"
     # Clients compare bits. A device that writes a signed number into a wider field
     # extends its sign; for a float or bytes, the bits of the wider field are unknown.
-    if source is None or bits == field.bits:
+    if source is None or bits == width:
         return "", ""
     is_number = source.scalar.type in WHOLE_NUMBERS
     if is_number and not source.scalar.is_signed:
         return "", ""
     why = "may be negative" if is_number else "is not a whole number"
     part = f"{quote(repeated)} of {quote(message.name)}"
-    text = f"{name} of {count(field.bits, 'bit')} cannot repeat {part}, which has {bits} and {why}"
+    text = f"{name} of {count(width, 'bit')} cannot repeat {part}, which has {bits} and {why}"
     return text, "give both the same width, or name another field"
 
 
@@ -354,6 +486,20 @@ def _ranges_of_reasons(declared: Declared, response: Message) -> Iterator[Fault]
             yield Fault.at(declared.row, key, text, help)
 
 
+def _enum_of_reason(ctx: Context, declared: Declared) -> Enum | None:
+    """Return the enumeration of the reason of a refusal; None without one."""
+    name = reason_of(declared.row)
+    if declared.packet is not None:
+        row = declared.packet.named(name or "")
+        enums = (enum for node in ctx.scope(declared.link.node) for enum in node.enums)
+        return next(
+            (enum for enum in enums if row and enum.name == row.get("enum")), None
+        )
+    response = _response(ctx, declared)
+    field = response and field_of(response, name)
+    return field.scalar.enum if field else None
+
+
 def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
     """Yield the faults of reasons that no refusal has."""
     commands = link.section.get("commands")
@@ -362,10 +508,8 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
         return
     members: list[str] = []
     for declared in _declared(ctx, link):
-        response = _response(ctx, declared)
-        field = response and field_of(response, reason_of(declared.row))
-        if field and field.scalar.enum:
-            members += [member.name for member in field.scalar.enum.members]
+        enum = _enum_of_reason(ctx, declared)
+        members += [member.name for member in enum.members] if enum else []
     for cause, name in reasons.items():
         if isinstance(name, str) and cause != "assumptions" and name not in members:
             text = f"no refusal has the reason {quote(name)}"
@@ -437,11 +581,14 @@ def _contradictions(rows: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
         yield next(iter(rows)), text, help
     seen: dict[object, str] = {}
     for kind, row in rows.items():
-        name = row.get("message")
+        key = "message" if "message" in row else "packet"
+        name = row.get(key)
         if not isinstance(name, str):
             continue  # The schema check reports it.
+        name = f"{key} {name}"
         if name in seen:
-            text = f"`{seen[name]}` and `{kind}` of {{name}} are the same telemetry"
+            what = "telemetry" if key == "message" else "packet"
+            text = f"`{seen[name]}` and `{kind}` of {{name}} are the same {what}"
             help = "write one `ack` whose `status` says which it is"
             yield kind, text, help
         seen.setdefault(name, kind)

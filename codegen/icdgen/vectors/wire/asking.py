@@ -10,7 +10,11 @@ from typing import Any
 
 from icdgen_runtime.wire.envelope import NumberPlace as WirePlace
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.stream import stream_encode
+from icdgen_runtime.wire.stream import (
+    stream_encode,
+    stream_encode_packet,
+    values_of,
+)
 
 from icdgen.icd.responses import ID_BYTES, NEEDED, PROGRESS
 from icdgen.protocol.envelope import Stream, StreamRow
@@ -37,7 +41,9 @@ class Sample:
         self._numbers = 0
 
     def ask(self, at: int, row: StreamRow, **more: object) -> dict[str, Any]:
-        """Return a row that sends a telecommand."""
+        """Return a row that sends a telecommand, or requests telemetry by a packet."""
+        if row.is_requested:
+            return {"at": at, "telemetry": row.id, **more}
         return {
             "at": at,
             "telecommand": row.id,
@@ -53,7 +59,7 @@ class Sample:
         """
         if data is None:
             data = self.source.randbytes(row.most)
-        field = self.form.of("sequence")
+        field = self.form.packets[row.packet].of("sequence")
         self._numbers += lost + 1
         values = {"sequence": self._numbers & field.mask} if field else {}
         line = stream_encode(self.link, row.id, data, "telemetry", **values)
@@ -72,32 +78,56 @@ class Sample:
 
         ``foreign``: each echo differs from the telecommand in its lowest bit.
         """
-        row = next(row for row in self.form.telemetry if row.id == response.telemetry)
-        data = bytearray(self.source.randbytes(row.most))
-        telecommand = asked["telecommand"].to_bytes(ID_BYTES, "big") + bytes.fromhex(
-            asked["bytes"]
+        id: int = asked["telecommand" if "telecommand" in asked else "telemetry"]
+        telecommand = id.to_bytes(ID_BYTES, "big") + bytes.fromhex(
+            asked.get("bytes", "")
         )
+        telemetry = id if response.telemetry is None else response.telemetry
+        row = next((row for row in self.form.telemetry if row.id == telemetry), None)
+        if response.packet is not None:
+            packet = self.form.packets[response.packet]
+            data = bytearray(packet.overhead + packet.reserved)
+        else:
+            assert row is not None
+            data = bytearray(self.source.randbytes(row.most))
         for echo in response.echoes:
             number = wire_place(exchange.sources[echo.source]).of(telecommand)
             wire_place(echo.place).put(number ^ int(foreign), data)
         if response.status and status is not None:
             wire_place(response.status).put(status, data)
+        if response.packet is not None:
+            if response.reason:
+                place = wire_place(response.reason)
+                place.put(self.source.randrange(1, 1 << place.bits), data)
+            line = self.packet(response.packet, bytes(data))
+            return {"at": at, "receive": line.hex()}
+        assert row is not None
         return self.come(at, row, data=bytes(data))
+
+    def packet(self, number: int, draft: bytes) -> bytes:
+        """Return a packet without a message, with the id and values of a draft."""
+        stream = need(self.link.stream, "stream")
+        id, values = values_of(stream.packets[number], draft)
+        field = self.form.packets[number].of("sequence")
+        if field:
+            self._numbers += 1
+            values["sequence"] = self._numbers & field.mask
+        return stream_encode_packet(self.link, number, id, "telemetry", **values)
 
 
 def scripts(link: Link[Any], facts: Facts) -> Requests:
     """Yield the scripts of the client over a packet format."""
     form = need(facts.stream, "stream")
     sample = Sample(link, form, Random(f"{facts.node.name} client"))
-    if not form.telecommands:
+    if not form.telecommands and form.request is None:
         return
-    for why, rows in _single_requests(form, sample):
+    for why, rows in _single_requests(form, sample) if form.telecommands else ():
         yield f"client: {why}", {
             "op": "stream_client",
             "settings": SETTINGS,
             "script": rows,
         }
-    for why, rows in _simultaneous_requests(form, sample):
+    for why, rows in _simultaneous_requests(form, sample) if form.telecommands else ():
         for requests in (1, 2, 3):
             request = {
                 "op": "stream_client",
@@ -107,7 +137,10 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
             }
             yield f"client of {requests}: {why}", request
     for exchange in form.exchanges:
-        row = next(row for row in form.telecommands if row.exchange is exchange)
+        row = next((row for row in form.telecommands if row.exchange == exchange), None)
+        row = row or next((row for row in form.telemetry if row.is_requested), None)
+        if row is None:
+            continue  # no telemetry can be requested
         for why, more, rows in _outcomes(row, exchange, sample):
             request = {
                 "op": "stream_client",

@@ -13,9 +13,20 @@ from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.envelope import StreamRow as WireRow
 from icdgen_runtime.wire.errors import need
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.stream import stream_encode
+from icdgen_runtime.wire.stream import (
+    stream_encode,
+    stream_encode_packet,
+    stream_encode_request,
+)
 
-from icdgen.protocol.envelope import DIRECTIONS, GIVEN, PACKET, Stream, StreamRow
+from icdgen.protocol.envelope import (
+    DIRECTIONS,
+    GIVEN,
+    NOTHING,
+    PACKET,
+    Stream,
+    StreamRow,
+)
 from icdgen.vectors.wire import Requests, pieces
 
 _SPLITS = 40  # maximum number of split positions of a message
@@ -30,6 +41,46 @@ def requests(link: Link[Any], form: Stream, source: Random) -> Requests:
         if form.rows(direction):
             yield from _streams(link, form, direction, source)
     yield "no such message", _encode(DIRECTIONS[0], _unknown(form, DIRECTIONS[0]), b"")
+    yield from _without_messages(link, form, source)
+
+
+def _without_messages(link: Link[Any], form: Stream, source: Random) -> Requests:
+    """Yield requests of telemetry by packets, and packets without a message."""
+    requested = [row for row in form.telemetry if row.is_requested]
+    for row in requested:
+        yield f"{row.name} is requested", _encode("request", row.id, b"")
+    if len(form.packets) > 1 or form.request:
+        unknown = _unknown(form, DIRECTIONS[1])
+        yield "no such telemetry to request", _encode("request", unknown, b"")
+    lines: dict[Direction, list[bytes]] = {direction: [] for direction in DIRECTIONS}
+    lines["telecommand"] += [stream_encode_request(link, row.id) for row in requested]
+    for number, packet in enumerate(form.packets):
+        if packet.content != NOTHING:
+            continue
+        for direction in DIRECTIONS:
+            if direction in packet.directions:
+                id = form.telemetry[0].id if packet.of("id") else 0
+                values = {
+                    field.role: source.randint(1, field.mask)
+                    for field in packet.fields
+                    if field.role in GIVEN and field.role != "sequence"
+                }
+                line = stream_encode_packet(link, number, id, direction, **values)
+                lines[direction].append(line)
+    for direction, sent in lines.items():
+        rows = form.rows(direction)
+        if not sent:
+            continue
+        sent += [_line(link, direction, row, source, 0) for row in rows[:2]]
+        yield "packets of all formats, one after the other", _events(direction, sent)
+        if form.delimited_by != PACKET:
+            stream = b"\x00\xff" + b"".join(sent) + b"noise" + b"".join(sent[::-1])
+            for how, chunks in pieces("packets of all formats", stream, source):
+                yield how, _events(direction, chunks)
+        for why, damaged in _damaged(sent[0], source):
+            yield f"a packet without a message, {why}", _events(
+                direction, [damaged, *sent]
+            )
 
 
 def _encode(direction: str, id: int, data: bytes, **values: int) -> dict[str, object]:
@@ -77,7 +128,8 @@ def _encoded(
             )
     for row in form.rows(direction)[:1]:
         data = source.randbytes(row.most)
-        for field in form.fields:
+        packet = form.packets[row.packet]
+        for field in packet.fields:
             if field.role in GIVEN:
                 for value in sorted({0, 1, field.mask // 3, field.mask}):
                     yield f"{field.role} {value}", _encode(
@@ -92,7 +144,7 @@ def _encoded(
                     yield f"a {field.role} that does not fit", _encode(
                         direction, row.id, data, **too_large
                     )
-        absent = next((role for role in GIVEN if form.of(role) is None), None)
+        absent = next((role for role in GIVEN if packet.of(role) is None), None)
         if absent:
             yield "a value that no field takes", _encode(
                 direction, row.id, data, **{absent: 7}
@@ -139,7 +191,7 @@ def _streams(
         ),
         (
             "the header of a message, then whole ones",
-            good[: max(1, form.header_bytes)] + good + good,
+            good[: max(1, form.packets[short.packet].header_bytes)] + good + good,
         ),
         ("a message that is cut off, then whole ones", good[:-1] + good + good + good),
         ("a message that has only begun", good + good[: len(good) // 2]),
@@ -160,8 +212,8 @@ def _streams(
             direction, [two_messages[:at], two_messages[at:]]
         )
     for more in (-1, 0):
-        limit = form.header_bytes + short.most + form.trailer_bytes + more
-        if limit >= form.header_bytes + form.trailer_bytes:
+        limit = form.packets[short.packet].overhead + short.most + more
+        if limit >= max(each.overhead for each in form.packets):
             why = "that it just fits" if more == 0 else "too small by one"
             yield f"a buffer {why}", _events(
                 direction, [good + lines[-1] + good + good], limit=limit
@@ -172,7 +224,8 @@ def _line(
     link: Link[Any], direction: Direction, row: StreamRow, source: Random, number: int
 ) -> bytes:
     """Return the transmitted bytes of a message with a sequence number."""
-    values = {"sequence": number} if link.stream and link.stream.of("sequence") else {}
+    has_number = need(link.stream, "stream").packets[row.packet].of("sequence")
+    values = {"sequence": number} if has_number else {}
     data = source.randbytes(row.most)
     return stream_encode(link, row.id, data, direction, **values)
 
@@ -214,7 +267,7 @@ def _undefined_messages(
     """Yield messages with an unknown id or length, encoded with a packet format that
     defines them.
     """
-    place = form.of("id")
+    place = form.packets[row.packet].of("id")
     id = next(
         (
             candidate
@@ -231,7 +284,7 @@ def _undefined_messages(
     if row.most:
         variants.append(("that is too short by one", row.id, row.most - 1, row.seed))
     for why, id, size, seed in variants:
-        only = (WireRow(id, 0, size, False, seed),)
+        only = (WireRow(id, 0, size, False, seed, packet=row.packet),)
         stream = need(link.stream, "stream")._replace(telecommands=only, telemetry=only)
         try:
             line = stream_encode(
@@ -245,7 +298,7 @@ def _undefined_messages(
 def _gaps(
     link: Link[Any], form: Stream, direction: Direction, row: StreamRow, source: Random
 ) -> Iterator[tuple[str, bytes]]:
-    place = form.of("sequence")
+    place = form.packets[row.packet].of("sequence")
     if place is None:
         return
     for why, numbers in (

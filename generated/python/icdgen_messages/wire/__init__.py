@@ -51,6 +51,7 @@ __all__ = [
     "Malformed",
     "OutcomeOf",
     "Packet",
+    "PacketData",
     "Procedure",
     "ProgramCopy",
     "ProgramInformation",
@@ -88,6 +89,8 @@ __all__ = [
     "serial_port",
     "socket_port",
     "stream_encode",
+    "stream_encode_packet",
+    "stream_encode_request",
     "uart_encode",
     "uart_kind",
     "write_index",
@@ -107,6 +110,7 @@ if TYPE_CHECKING:
     from .crc import Crc as Crc
     from .crc import crc8 as crc8
     from .crc import crc16 as crc16
+    from .device import PacketData as PacketData
     from .device import TelemetryData as TelemetryData
     from .device import response_to as response_to
     from .envelope_client import EnvelopeClient as EnvelopeClient
@@ -162,6 +166,8 @@ if TYPE_CHECKING:
     from .stream import StreamDecoder as StreamDecoder
     from .stream import StreamEvent as StreamEvent
     from .stream import stream_encode as stream_encode
+    from .stream import stream_encode_packet as stream_encode_packet
+    from .stream import stream_encode_request as stream_encode_request
     from .times import DosTime as DosTime
     from .times import dos_time_pack as dos_time_pack
     from .times import dos_time_unpack as dos_time_unpack
@@ -181,7 +187,7 @@ _HOMES = {
     "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
     "client": ("Client", "Request"),
     "crc": ("Crc", "crc16", "crc8"),
-    "device": ("TelemetryData", "response_to"),
+    "device": ("PacketData", "TelemetryData", "response_to"),
     "envelope_client": ("EnvelopeClient",),
     "errors": (
         "BusyError",
@@ -219,7 +225,13 @@ _HOMES = {
     "programs": ("ProgramCopy", "ProgramInformation"),
     "sender": ("Sender",),
     "session": ("Session",),
-    "stream": ("StreamDecoder", "StreamEvent", "stream_encode"),
+    "stream": (
+        "StreamDecoder",
+        "StreamEvent",
+        "stream_encode",
+        "stream_encode_packet",
+        "stream_encode_request",
+    ),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),
     "transfer": ("Download", "Erase", "FileEntry", "FileList", "Format", "Upload"),
     "uart": ("UartDecoder", "UartEvent", "uart_encode", "uart_kind"),

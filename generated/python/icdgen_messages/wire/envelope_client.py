@@ -11,7 +11,14 @@ from .._base import Message
 from .._errors import LengthError, UnknownIdError
 from .._hints import Buffer, N
 from .client import Request
-from .envelope import Direction, Exchange, Response, StreamRow, Verdict
+from .envelope import (
+    Direction,
+    Exchange,
+    Response,
+    StreamRow,
+    TelemetryRequest,
+    Verdict,
+)
 from .errors import BusyError, UnsupportedError, need
 from .events import (
     Arrived,
@@ -47,6 +54,10 @@ _NO_EXCHANGE = Exchange((), ())
 _NEEDED: tuple[Verdict, ...] = ("ack", "reply")
 
 
+Arrival = tuple[Optional[int], Optional[int]]
+"""Id of telemetry and index of a packet without a message; one of them is None."""
+
+
 class _Awaited(NamedTuple):
     """Responses to a request: what can arrive, and the numbers that it must repeat."""
 
@@ -62,10 +73,12 @@ class _Awaited(NamedTuple):
             if any(response.can_be(verdict) for response in self.responses)
         )
 
-    def matching(self, id: int, data: bytes) -> Optional[Response]:
-        """Return the response that telemetry is; None if it is none of them."""
+    def matching(self, arrival: Arrival, data: bytes) -> Optional[Response]:
+        """Return the response that telemetry or a packet is; None if it is none of
+        them.
+        """
         for response in self.responses:
-            if response.telemetry == id and all(
+            if (response.telemetry, response.packet) == arrival and all(
                 echo.place.of(data) == self.sources[echo.source]
                 for echo in response.echoes
             ):
@@ -77,7 +90,7 @@ class _Awaited(NamedTuple):
         other.
         """
         return any(
-            mine.telemetry == theirs.telemetry
+            (mine.telemetry, mine.packet) == (theirs.telemetry, theirs.packet)
             and not any(
                 echo.place == repeated.place
                 and self.sources[echo.source] != other.sources[repeated.source]
@@ -122,7 +135,7 @@ class _Slot:
 
     handle: int
     request: Request
-    sent_id: int  # of the telecommand
+    sent_id: Optional[int]  # of the telecommand; None: the request of telemetry
     awaited: _Awaited
     timeout: float
     repeats: bool  # whether it may be sent again after a time-out
@@ -257,7 +270,10 @@ class EnvelopeClient(Generic[N]):
         slot, now = self._queued(), self._now
         if slot is None or not self._may_be_sent(slot):
             return b""
-        line = self._sender.encode(slot.sent_id, slot.request.data)
+        if slot.sent_id is None:
+            line = self._sender.encode_request(slot.request.id)
+        else:
+            line = self._sender.encode(slot.sent_id, slot.request.data)
         slot.attempts += 1
         slot.missing = slot.awaited.needed
         slot.owed.add_transmission()
@@ -321,22 +337,25 @@ class EnvelopeClient(Generic[N]):
     def _event_of(self, now: float, event: StreamEvent) -> Event:
         if event.event == "gap":
             return Gap(event.id, event.missing)
-        if event.event != "message" or event.id is None:
+        if event.event not in ("message", "packet") or event.id is None:
             return LineError(event.event, event.id)
         id, data, kind = event.id, event.data, event.kind
+        arrival: Arrival = (
+            (None, event.packet) if event.packet is not None else (id, None)
+        )
         for slot in self._slots:
-            response = slot.awaited.matching(id, data)
+            response = slot.awaited.matching(arrival, data)
             if response and slot.is_awaited:
                 is_reply = response.verdict == "reply"
                 if not is_reply or slot.kind in (None, kind):
                     return self._responded(now, slot, response, event)
         for late in self._late:
-            response = late.awaited.matching(id, data)
+            response = late.awaited.matching(arrival, data)
             if response:
                 late.owed.remove(response.verdict_of(data))
                 self._late = [entry for entry in self._late if entry.owed]
                 return Late(id, data, kind)
-        if id in self._form.confirming:
+        if event.packet is not None or id in self._form.confirming:
             return Stray(data, id, kind)
         return Arrived(id, data, event.values, kind)
 
@@ -354,7 +373,7 @@ class EnvelopeClient(Generic[N]):
             return Progress(id, data, event.kind, handle)
         if verdict in ("ack", "reply"):
             slot.missing -= {verdict}
-            if slot.missing and verdict == "reply":
+            if slot.missing and verdict == "reply" and response_id is not None:
                 return Reply(id, data, event.kind, response_id, handle)
             if slot.missing:
                 return Progress(id, data, event.kind, handle)
@@ -380,25 +399,37 @@ class EnvelopeClient(Generic[N]):
     ) -> list[Event]:
         row = self._row(request)
         if request.kind == "telemetry":
-            request = Request("telemetry", request.id, bytes(row.least), True)
-        elif reply is not None and all(
-            entry.id != reply for entry in self._form.telemetry
-        ):
+            data = bytes(row.least) if row else bytes(self._request_form().reserved)
+            request = Request("telemetry", request.id, data, True)
+        elif reply is not None and self._form.row("telemetry", reply) is None:
             raise UnknownIdError(self.link.node, "telemetry", reply)
         if self._max_requests is not None and len(self._slots) >= self._max_requests:
             raise BusyError("as many requests are going on as there may be")
-        if not row.least <= len(request.data) <= row.most:
+        if row and not row.least <= len(request.data) <= row.most:
             nearest = row.most if len(request.data) > row.most else row.least
             raise LengthError(f"telecommand {row.id}", nearest, len(request.data))
+        exchange_index = row.exchange if row else self._request_form().exchange
         exchange = (
-            _NO_EXCHANGE if row.exchange is None else self._form.exchanges[row.exchange]
+            _NO_EXCHANGE
+            if exchange_index is None
+            else self._form.exchanges[exchange_index]
         )
         responses = exchange.responses
+        if row is None:
+            responses = tuple(
+                (
+                    each._replace(telemetry=request.id)
+                    if (each.telemetry, each.packet) == (None, None)
+                    else each
+                )
+                for each in responses
+            )
         replies = [each for each in responses if each.can_be("reply")]
         if reply is not None and all(each.telemetry != reply for each in replies):
             others = (each for each in responses if each not in replies)
             responses = (*others, Response(reply, "reply"))
-        telecommand = row.id.to_bytes(4, "big") + request.data
+        sent_id = row.id if row else request.id
+        telecommand = sent_id.to_bytes(4, "big") + request.data
         sources = tuple(place.of(telecommand) for place in exchange.sources)
         self.begun += 1
         self._set_time(now)
@@ -406,28 +437,36 @@ class EnvelopeClient(Generic[N]):
             _Slot(
                 self.begun,
                 request,
-                row.id,
+                row.id if row else None,
                 _Awaited(responses, sources),
                 exchange.timeout or self.settings.reply_timeout,
-                request.repeat or row.repeats,
+                request.repeat or (row is not None and row.repeats),
                 kind,
             )
         )
         return []
 
-    def _row(self, request: Request) -> StreamRow:
-        """Return the telecommand that is sent."""
+    def _row(self, request: Request) -> Optional[StreamRow]:
+        """Return the telecommand that is sent; None for a request of telemetry by a
+        packet.
+        """
         rows, id = self._form.telecommands, request.id
         if request.kind == "telecommand":
             row = next((row for row in rows if row.id == id), None)
         else:
             row = next((row for row in rows if row.requests == id), None)
-            if row is None and any(row.id == id for row in self._form.telemetry):
-                what = "is sent unasked: no telecommand without values asks for it"
+            telemetry = self._form.row("telemetry", id)
+            if row is None and telemetry and telemetry.is_requested:
+                return None
+            if row is None and telemetry:
+                what = "is sent unasked: nothing requests it without values"
                 raise UnsupportedError(f"telemetry {id} {what}")
         if row is None:
             raise UnknownIdError(self.link.node, request.kind, id)
         return row
+
+    def _request_form(self) -> TelemetryRequest:
+        return need(self._form.request, "requests")
 
     def _set_time(self, now: float) -> None:
         """Store the time, and drop responses that can no longer arrive."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Optional, Union
 
 from .._base import Message
@@ -12,7 +12,7 @@ from .._hints import Buffer
 from .envelope import Direction
 from .errors import UnsupportedError, need
 from .link import Link
-from .stream import CHOSEN_ROLES, stream_encode
+from .stream import stream_encode, stream_encode_packet, stream_encode_request
 
 
 class Sender:
@@ -30,33 +30,68 @@ class Sender:
         direction: Direction = "telecommand",
         values: Optional[Mapping[str, int]] = None,
     ) -> None:
-        form = need(link.stream, "stream")
+        self._form = form = need(link.stream, "stream")
         self._link = link
         self._direction: Direction = direction
         self._values = dict(values or {})
+        fields = form.chosen(direction)
         for role, value in self._values.items():
-            field = form.of(role) if role in CHOSEN_ROLES else None
+            field = fields.get(role)
             if field is None:
                 raise UnsupportedError(f"the envelope has no field `{role}` to choose")
             if not 0 <= value < 1 << field.bits:
                 raise RangeError(role, f"0 to {(1 << field.bits) - 1}", value)
-        self._sequence = form.of("sequence")
-        self._per_id = form.per_id
         self._next: dict[Optional[int], int] = {}
 
     def encode(self, message: Union[Message, int], data: Buffer = b"") -> bytes:
         """Encode a message, or the data of an id. Raise as `stream_encode`."""
-        field = self._sequence
-        if field is None:
-            return stream_encode(
-                self._link, message, data, self._direction, **self._values
-            )
         index = 0 if self._direction == "telecommand" else -1
         id = message.IDS[index] if isinstance(message, Message) else message
-        key = id if self._per_id else None
+
+        def encoded(values: Mapping[str, int]) -> bytes:
+            return stream_encode(self._link, message, data, self._direction, **values)
+
+        row = self._form.row(self._direction, id)
+        packet = 0 if row is None else row.packet
+        return self._numbered(packet, id, encoded)
+
+    def encode_request(self, telemetry: int) -> bytes:
+        """Encode the packet that requests telemetry of an id. Raise as
+        `stream_encode_request`.
+        """
+
+        def encoded(values: Mapping[str, int]) -> bytes:
+            return stream_encode_request(self._link, telemetry, **values)
+
+        request = self._form.request
+        return self._numbered(request.packet if request else 0, None, encoded)
+
+    def encode_packet(self, packet: int, id: int, values: Mapping[str, int]) -> bytes:
+        """Encode a packet without a message. Raise as `stream_encode_packet`."""
+
+        def encoded(own: Mapping[str, int]) -> bytes:
+            return stream_encode_packet(
+                self._link, packet, id, self._direction, **{**values, **own}
+            )
+
+        return self._numbered(packet, None, encoded)
+
+    def _numbered(
+        self,
+        packet: int,
+        id: Optional[int],
+        encoded: Callable[[Mapping[str, int]], bytes],
+    ) -> bytes:
+        """Return what ``encoded`` makes with the next sequence number, if the packet has
+        one. ``id``: of a message; None for other packets, which have no number if each
+        id has its own.
+        """
+        field = self._form.packets[packet].of("sequence")
+        if field is None or (self._form.per_id and id is None):
+            return encoded(self._values)
+        key = id if self._form.per_id else None
         first = field.values[self._direction == "telemetry"]
         number = self._next.get(key, self._values.get("sequence", first))
-        values = {**self._values, "sequence": number}
-        line = stream_encode(self._link, message, data, self._direction, **values)
+        line = encoded({**self._values, "sequence": number})
         self._next[key] = (number + 1) & ((1 << field.bits) - 1)
         return line

@@ -1,5 +1,5 @@
-"""The device's half of a link with header and trailer: responses to telecommands, for
-simulators and for tests of a client.
+"""The device's half of a link with header and trailer: responses to telecommands and
+requests, for simulators and for tests of a client.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from .envelope import Exchange, NumberPlace, Response, Stream, Verdict
 from .errors import need
 from .link import Link
 from .message_ids import message_id
+from .stream import values_of
 
 _ID_BYTES = 4  # of the id in front of the data, in `Exchange.sources`
 
@@ -25,6 +26,16 @@ class TelemetryData(NamedTuple):
     data: bytes
 
 
+class PacketData(NamedTuple):
+    """A packet without a message: its index in `Stream.packets`, its id and the values
+    of its frame fields by role, for `Sender.encode_packet`.
+    """
+
+    packet: int
+    id: int
+    values: Mapping[str, int]
+
+
 def response_to(
     link: Link,
     telecommand: Union[Message, int],
@@ -32,14 +43,19 @@ def response_to(
     verdict: Verdict = "ack",
     reason: Optional[int] = None,
     frames: Optional[Mapping[int, Buffer]] = None,
-) -> Optional[TelemetryData]:
+    is_request: bool = False,
+) -> Union[TelemetryData, PacketData, None]:
     """Return the response of a device to a telecommand; None if the ICD has no such
     response.
+
+    ``is_request``: instead of a telecommand, the device has received the request of the
+    telemetry with this id (the event ``"request"`` of `StreamDecoder`).
 
     The telecommand is a message, or an id and its data. An id that the node does not
     have can be refused (``"nak"``). The response repeats the numbers of the telecommand
     that the ICD describes as `echo`, and has the status for ``verdict``: of several
-    values, the one that the ICD lists first. ``reason`` is the reason of a refusal.
+    values, the one that the ICD lists first. ``reason`` is the reason of a refusal; in a
+    packet without a message, the first of the ICD unless given.
     ``frames`` has the other bits, by id of the telemetry; without, they are 0. Raise
     `RangeError` for a reason whose number is the status of another verdict.
     """
@@ -49,37 +65,56 @@ def response_to(
         data = telecommand.to_bytes()
     else:
         id = telecommand
-    exchange = _exchange_of(form, id, verdict)
+    exchange = _exchange_of(form, id, verdict, is_request)
     response = _response(exchange, verdict) if exchange else None
     if exchange is None or response is None:
         return None
-    filled = bytearray((frames or {}).get(response.telemetry, b""))
-    row = next(row for row in form.telemetry if row.id == response.telemetry)
-    filled.extend(bytes(max(0, row.least - len(filled))))
+    telemetry = id if response.telemetry is None else response.telemetry
+    if response.packet is None:
+        filled = bytearray((frames or {}).get(telemetry, b""))
+        row = next(row for row in form.telemetry if row.id == telemetry)
+        filled.extend(bytes(max(0, row.least - len(filled))))
+    else:
+        packet = form.packets[response.packet]
+        filled = bytearray(packet.overhead + packet.reserved)
     sent = id.to_bytes(_ID_BYTES, "big") + bytes(data)
     for echo in response.echoes:
         echo.place.put(exchange.sources[echo.source].of(sent), filled)
     if response.status:
         response.status.put(_status(response, verdict), filled)
+    if reason is None and response.packet is not None and response.reasons:
+        # The reason can distinguish the packet from others, so it is not left 0.
+        reason = response.reasons[0][0]
     if reason is not None and response.reason:
         response.reason.put(reason, filled)
         is_kept = response.reason.of(bytes(filled)) == reason
         if not is_kept or response.verdict_of(bytes(filled)) != verdict:
             raise RangeError("reason", f"a reason of the verdict {verdict}", reason)
-    return TelemetryData(response.telemetry, bytes(filled))
+    if response.packet is not None:
+        id_of_packet, values = values_of(form.packets[response.packet], bytes(filled))
+        return PacketData(response.packet, id_of_packet, values)
+    return TelemetryData(telemetry, bytes(filled))
 
 
-def response_of(form: Stream, id: int, verdict: Verdict) -> Optional[Response]:
-    """Return the response that says ``verdict`` about a telecommand; None without one.
+def response_of(
+    form: Stream, id: int, verdict: Verdict, is_request: bool = False
+) -> Optional[Response]:
+    """Return the response that says ``verdict`` about a telecommand, or about the
+    request of telemetry; None without one.
 
     If the node does not have the telecommand, it refuses it by the first response that
     repeats no part of a telecommand but its id.
     """
-    exchange = _exchange_of(form, id, verdict)
+    exchange = _exchange_of(form, id, verdict, is_request)
     return _response(exchange, verdict) if exchange else None
 
 
-def _exchange_of(form: Stream, id: int, verdict: Verdict) -> Optional[Exchange]:
+def _exchange_of(
+    form: Stream, id: int, verdict: Verdict, is_request: bool
+) -> Optional[Exchange]:
+    if is_request:
+        request = need(form.request, "requests")
+        return form.exchanges[request.exchange]
     row = next((row for row in form.telecommands if row.id == id), None)
     if row is None:
         return _refusing(form) if verdict == "nak" else None

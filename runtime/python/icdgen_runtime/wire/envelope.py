@@ -1,4 +1,4 @@
-"""Frame format that the ICD describes by header and trailer fields with roles."""
+"""Packet formats that the ICD describes by header and trailer fields with roles."""
 
 from __future__ import annotations
 
@@ -7,6 +7,19 @@ from typing import Literal, NamedTuple, Optional
 Delimiter = Literal["length", "slip", "cobs", "hdlc", "none"]
 CheckKind = Literal["crc", "fletcher", "fletcher_255", "sum", "xor"]
 Direction = Literal["telecommand", "telemetry"]
+Content = Literal["message", "request", "none"]
+"""Content of a packet: a message, a request of telemetry, or no message."""
+CHOSEN_ROLES = (
+    "sequence",
+    "source",
+    "destination",
+    "type",
+    "flags",
+    "time",
+    "status",
+    "reason",
+)
+"""Roles of the frame fields whose values the sender chooses."""
 Verdict = Literal["ack", "reply", "nak", "busy", "progress"]
 """A response confirms the telecommand, is the telemetry that it requested, refuses it,
 defers it because the device is busy, or reports that it is still being executed.
@@ -46,6 +59,8 @@ class EnvelopeField(NamedTuple):
     little: bool
     values: tuple[int, int]
     """Constant or default value: in telecommands, in telemetry."""
+    id_shift: int = 0
+    """Of a part of the id: number of bits of the id in the fields after it."""
 
 
 class CheckForm(NamedTuple):
@@ -97,9 +112,13 @@ class Echo(NamedTuple):
 
 
 class Response(NamedTuple):
-    """Telemetry that can end, refuse, defer or prolong a telecommand."""
+    """Telemetry, or a packet without a message, that can end, refuse, defer or prolong
+    a telecommand.
+    """
 
-    telemetry: int
+    telemetry: Optional[int]
+    """Id of the telemetry; None for the telemetry that was requested, and for a packet.
+    """
     verdict: Verdict
     """Its meaning; with a status, the meaning of a value that ``meanings`` lacks."""
     echoes: tuple[Echo, ...] = ()
@@ -110,6 +129,8 @@ class Response(NamedTuple):
     """The place of the reason of a refusal."""
     reasons: tuple[tuple[int, str], ...] = ()
     """Names of the reasons."""
+    packet: Optional[int] = None
+    """Index of the packet. Its places count from the first byte of the header."""
 
     def verdict_of(self, data: bytes) -> Verdict:
         """Return what these data say."""
@@ -149,22 +170,60 @@ class StreamRow(NamedTuple):
     """Whether a telecommand may be sent again after a time-out."""
     requests: Optional[int] = None
     """The id of the telemetry that a telecommand of zeros requests."""
+    packet: int = 0
+    """Index in `Stream.packets`."""
+    is_requested: bool = False
+    """Whether telemetry is requested by the packet of `Stream.request`."""
 
 
-class Stream(NamedTuple):
-    """Frame format of messages in a byte stream or in packets."""
+class PacketForm(NamedTuple):
+    """A packet format: header, data, trailer."""
 
-    delimited_by: Delimiter
     header_bytes: int
     trailer_bytes: int
     length_plus: int
     """Number that the length field adds to the bytes of the data."""
+    fields: tuple[EnvelopeField, ...]
+    check: Optional[CheckForm] = None
+    name: str = ""
+    directions: tuple[Direction, ...] = ("telecommand", "telemetry")
+    content: Content = "message"
+    reserved: int = 0
+    """Bytes of the data of a packet without a message."""
+
+    def of(self, role: str) -> Optional[EnvelopeField]:
+        """Return the first field of a role, or None."""
+        return next((field for field in self.fields if field.role == role), None)
+
+    @property
+    def overhead(self) -> int:
+        """Bytes of header and trailer."""
+        return self.header_bytes + self.trailer_bytes
+
+
+class TelemetryRequest(NamedTuple):
+    """The request of telemetry by a packet with its id."""
+
+    packet: int
+    """Index in `Stream.packets`."""
+    exchange: int
+    """Index in `Stream.exchanges`."""
+    reserved: int
+    """Bytes of data, which are zeros."""
+
+
+class Stream(NamedTuple):
+    """Messages in a byte stream or in packets, with header and trailer."""
+
+    delimited_by: Delimiter
     per_id: bool
     """Whether each id has its own sequence counter."""
-    fields: tuple[EnvelopeField, ...]
+    packets: tuple[PacketForm, ...]
+    """Packet formats. If two fit, the first is received."""
     telecommands: tuple[StreamRow, ...]
     telemetry: tuple[StreamRow, ...]
-    check: Optional[CheckForm] = None
+    request: Optional[TelemetryRequest] = None
+    """None: only telecommands request telemetry."""
     exchanges: tuple[Exchange, ...] = ()
     confirming: tuple[int, ...] = ()
     """Ids of telemetry that only responds to telecommands, and is not requested."""
@@ -173,6 +232,19 @@ class Stream(NamedTuple):
         """Return the messages of a direction."""
         return self.telemetry if direction == "telemetry" else self.telecommands
 
-    def of(self, role: str) -> Optional[EnvelopeField]:
-        """Return the field of a role that occurs at most once, or None."""
-        return next((field for field in self.fields if field.role == role), None)
+    def row(self, direction: Direction, id: int) -> Optional[StreamRow]:
+        """Return the message of an id, or None."""
+        return next((row for row in self.rows(direction) if row.id == id), None)
+
+    def packets_of(self, direction: Direction) -> tuple[PacketForm, ...]:
+        """Return the packets of a direction."""
+        return tuple(each for each in self.packets if direction in each.directions)
+
+    def chosen(self, direction: Direction) -> dict[str, EnvelopeField]:
+        """Return the fields whose values the sender chooses, by role."""
+        fields: dict[str, EnvelopeField] = {}
+        for packet in self.packets_of(direction):
+            for field in packet.fields:
+                if field.role in CHOSEN_ROLES:
+                    fields.setdefault(field.role, field)
+        return fields

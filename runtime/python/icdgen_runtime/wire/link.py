@@ -15,9 +15,11 @@ from .envelope import Echo as Echo  # noqa: PLC0414
 from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
 from .envelope import Exchange as Exchange  # noqa: PLC0414
 from .envelope import NumberPlace as NumberPlace  # noqa: PLC0414
+from .envelope import PacketForm as PacketForm  # noqa: PLC0414
 from .envelope import Response as Response  # noqa: PLC0414
 from .envelope import Stream as Stream  # noqa: PLC0414
 from .envelope import StreamRow as StreamRow  # noqa: PLC0414
+from .envelope import TelemetryRequest as TelemetryRequest  # noqa: PLC0414
 
 Bus = Literal["uart", "i2c", "can"]
 CanKind = Literal[

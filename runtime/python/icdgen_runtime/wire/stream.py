@@ -1,4 +1,4 @@
-"""Messages with the frame format of the ICD, in a byte stream or in packets."""
+"""Messages with the packet formats of the ICD, in a byte stream or in packets."""
 
 from __future__ import annotations
 
@@ -9,8 +9,15 @@ from .._base import Message
 from .._errors import LengthError, RangeError, UnknownIdError
 from .._hints import Buffer
 from .checks import check
-from .envelope import Direction, EnvelopeField, Stream, StreamRow
-from .errors import need
+from .envelope import (
+    CHOSEN_ROLES,
+    Direction,
+    EnvelopeField,
+    PacketForm,
+    Stream,
+    StreamRow,
+)
+from .errors import UnsupportedError, need
 from .link import Link
 from .message_ids import message_id
 from .stuffing import Unstuffer, stuffed
@@ -19,29 +26,40 @@ M = TypeVar("M", bound=Message)
 MessageClass = type[Message]
 MessageClassOf = type[M]
 EventName = Literal[
-    "message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"
+    "message",
+    "request",
+    "packet",
+    "gap",
+    "checksum",
+    "length",
+    "unknown_id",
+    "overrun",
+    "framing",
 ]
-CHOSEN_ROLES = ("sequence", "source", "destination", "type", "flags", "time")
-"""Roles of the frame fields whose values the sender chooses."""
 
 
 class StreamEvent(NamedTuple):
     """A message, or the reason why bytes were dropped.
 
-    ``gap``: ``missing`` messages were lost before this one; 0 if a message was
-    repeated. ``checksum``: the checksum is wrong. ``length``: length mismatch.
-    ``unknown_id``: the node has no such message. ``overrun``: longer than the buffer.
-    ``framing``: a constant or a delimiter is wrong.
+    ``request``: telemetry of this id is requested. ``packet``: a packet without a
+    message; ``data`` is all of it. ``gap``: ``missing`` messages were lost before this
+    one; 0 if a message was repeated. ``checksum``: the checksum is wrong. ``length``:
+    length mismatch. ``unknown_id``: the node has no such message. ``overrun``: longer
+    than the buffer. ``framing``: a constant or a delimiter is wrong.
     """
 
     event: EventName
     id: Optional[int] = None
     data: bytes = b""
     values: Mapping[str, int] = {}
-    """For a message: the frame fields that its sender chose, by role."""
+    """For a message, a request or a packet: the frame fields that its sender chose, by
+    role.
+    """
     missing: int = 0
     kind: Optional[MessageClass] = None
     """For a message: its class; None if no message of its id matches."""
+    packet: Optional[int] = None
+    """For a packet: its index in `Stream.packets`."""
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
         """Return the message if it has this class, otherwise None."""
@@ -60,22 +78,19 @@ def stream_encode(
     """Encode a message, or the data of an id, with header and trailer.
 
     ``values`` are the values of ``sequence``, ``source``, ``destination``, ``type``,
-    ``flags`` and ``time``. Defaults are in the ICD. ``direction`` is the direction of
-    the message: a device sends ``"telemetry"``. Raise `UnknownIdError`, `LengthError`
-    and `RangeError`.
+    ``flags``, ``time``, ``status`` and ``reason``. Defaults are in the ICD.
+    ``direction`` is the direction of the message: a device sends ``"telemetry"``. Raise
+    `UnknownIdError`, `LengthError` and `RangeError`.
     """
     form = need(link.stream, "stream")
-    if unknown := [name for name in values if name not in CHOSEN_ROLES]:
-        raise TypeError(
-            f"stream_encode() takes no {unknown[0]!r}, but {', '.join(CHOSEN_ROLES)}"
-        )
+    _check_roles("stream_encode", values)
     if isinstance(message, Message):
         if data:
             raise TypeError("a message has its own data; direction= tells who sends it")
         id, data = message_id(link, direction, type(message)), message.to_bytes()
     else:
         id, data = message, bytes(data)
-    row = next((row for row in form.rows(direction) if row.id == id), None)
+    row = form.row(direction, id)
     if row is None:
         raise UnknownIdError(link.node, direction, id)
     if not row.least <= len(data) <= row.most:
@@ -83,19 +98,87 @@ def stream_encode(
         raise LengthError("a message", nearest, len(data))
     if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
-    head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
-    own_values = {"id": id, "length": len(data) + form.length_plus}
-    for field in form.fields:
-        if field.role != "checksum":
-            value = own_values.get(field.role, field.values[direction == "telemetry"])
-            if field.role in CHOSEN_ROLES:
-                value = values.get(field.role, value)
-            _put(field, tail if field.in_trailer else head, value)
-    place = form.of("checksum")
-    if place and form.check:
-        value = _checksum(form, row, bytes(head) + data + bytes(tail))
+    packet = form.packets[row.packet]
+    return _encoded(form, packet, direction, id, data, values, row)
+
+
+def stream_encode_request(link: Link, telemetry: int, **values: int) -> bytes:
+    """Encode the packet that requests telemetry of an id, with header and trailer.
+
+    ``values``: see `stream_encode`. Raise `UnsupportedError` if no packet of the link
+    requests telemetry, `UnknownIdError` for telemetry that cannot be requested by it,
+    and `RangeError`.
+    """
+    form = need(link.stream, "stream")
+    _check_roles("stream_encode_request", values)
+    request = need(form.request, "requests")
+    row = form.row("telemetry", telemetry)
+    if row is None or not row.is_requested:
+        raise UnknownIdError(link.node, "telemetry", telemetry)
+    packet, data = form.packets[request.packet], bytes(request.reserved)
+    return _encoded(form, packet, "telecommand", telemetry, data, values, row)
+
+
+def stream_encode_packet(
+    link: Link,
+    packet: int,
+    id: int = 0,
+    direction: Direction = "telemetry",
+    **values: int,
+) -> bytes:
+    """Encode a packet without a message, given by its index in `Stream.packets`.
+
+    ``id`` is the value of its field ``id``. ``values``: see `stream_encode`. Raise
+    `RangeError`.
+    """
+    form = need(link.stream, "stream")
+    _check_roles("stream_encode_packet", values)
+    packet_form = form.packets[packet]
+    data = bytes(packet_form.reserved)
+    return _encoded(form, packet_form, direction, id, data, values, None)
+
+
+def _check_roles(function: str, values: Mapping[str, int]) -> None:
+    if unknown := [name for name in values if name not in CHOSEN_ROLES]:
+        raise TypeError(
+            f"{function}() takes no {unknown[0]!r}, but {', '.join(CHOSEN_ROLES)}"
+        )
+
+
+def _encoded(
+    form: Stream,
+    packet: PacketForm,
+    direction: Direction,
+    id: int,
+    data: bytes,
+    values: Mapping[str, int],
+    row: Optional[StreamRow],
+) -> bytes:
+    """Return the transmitted bytes of a packet with these data."""
+    head, tail = bytearray(packet.header_bytes), bytearray(packet.trailer_bytes)
+    for field in packet.fields:
+        if field.role == "checksum":
+            continue  # it can cover all other fields
+        value = field.values[direction == "telemetry"]
+        if field.role == "id":
+            value = id >> field.id_shift
+            if field.id_shift + field.bits < _id_bits(packet):
+                value &= (1 << field.bits) - 1
+        elif field.role == "length":
+            value = len(data) + packet.length_plus
+        elif field.role in CHOSEN_ROLES:
+            value = values.get(field.role, value)
+        _put(field, tail if field.in_trailer else head, value)
+    place = packet.of("checksum")
+    if place and packet.check:
+        value = _checksum(packet, row, bytes(head) + data + bytes(tail))
         _put(place, tail if place.in_trailer else head, value)
     return stuffed(form.delimited_by, bytes(head) + data + bytes(tail))
+
+
+def _id_bits(packet: PacketForm) -> int:
+    """Return the bits of the id in all its fields."""
+    return sum(field.bits for field in packet.fields if field.role == "id")
 
 
 def _put(field: EnvelopeField, into: bytearray, value: int) -> None:
@@ -107,18 +190,113 @@ def _put(field: EnvelopeField, into: bytearray, value: int) -> None:
     into[span] = number.to_bytes(field.size, order)
 
 
-def _get(form: Stream, field: EnvelopeField, frame: Buffer, size: int) -> int:
-    at = field.at + (size - form.trailer_bytes if field.in_trailer else 0)
+def _get(packet: PacketForm, field: EnvelopeField, frame: Buffer, size: int) -> int:
+    at = field.at + (size - packet.trailer_bytes if field.in_trailer else 0)
     order: Literal["little", "big"] = "little" if field.little else "big"
     number = int.from_bytes(frame[at : at + field.size], order)
     return number >> field.shift & ((1 << field.bits) - 1)
 
 
-def _checksum(form: Stream, row: Optional[StreamRow], frame: bytes) -> int:
-    check_form = need(form.check, "checksums")
-    end = len(frame) - form.trailer_bytes + check_form.covered_trailer
+def _id_of(packet: PacketForm, frame: Buffer, size: int) -> Optional[int]:
+    """Return the id of a frame from all its parts; None in a packet without id."""
+    id = None
+    for field in packet.fields:
+        if field.role == "id":
+            id = (id or 0) | _get(packet, field, frame, size) << field.id_shift
+    return id
+
+
+def values_of(packet: PacketForm, frame: Buffer) -> tuple[int, dict[str, int]]:
+    """Return the id of a frame, and the values that its sender chose, by role."""
+    size = len(frame)
+    fields = (field for field in packet.fields if field.role in CHOSEN_ROLES)
+    values = {field.role: _get(packet, field, frame, size) for field in fields}
+    return _id_of(packet, frame, size) or 0, values
+
+
+def _checksum(packet: PacketForm, row: Optional[StreamRow], frame: bytes) -> int:
+    check_form = need(packet.check, "checksums")
+    end = len(frame) - packet.trailer_bytes + check_form.covered_trailer
     seed = bytes((row.seed,)) if check_form.is_seeded and row else b""
     return check(check_form, frame[check_form.covered_from : end] + seed)
+
+
+class ReceivedPacket(NamedTuple):
+    """A packet format of the received direction, and what a decoder needs of it."""
+
+    number: int  # index in `Stream.packets`
+    form: PacketForm
+    constants: list[tuple[EnvelopeField, int]]
+    values: list[EnvelopeField]
+    length: Optional[EnvelopeField]
+    sequence: Optional[EnvelopeField]
+    checksum: Optional[EnvelopeField]
+    rows: dict[int, StreamRow]  # by id
+    requested: dict[int, StreamRow]  # telemetry that it requests, by id
+    only: int  # id of the message of a packet without id
+
+    def differs(self, front: Buffer, left: int) -> bool:
+        """Return whether a constant of the header, as far as it was received, differs.
+
+        ``left``: number of received bytes.
+        """
+        return any(
+            not field.in_trailer
+            and field.at + field.size <= left
+            and _get(self.form, field, front, 0) != value
+            for field, value in self.constants
+        )
+
+    def fits(self, frame: Buffer) -> bool:
+        """Return whether a frame has the size of header and trailer, and all
+        constants.
+        """
+        size = len(frame)
+        return size >= self.form.overhead and all(
+            _get(self.form, field, frame, size) == value
+            for field, value in self.constants
+        )
+
+    def row(self, id: Optional[int]) -> Optional[StreamRow]:
+        """Return the message, or the requested telemetry, of an id."""
+        number = self.only if id is None else id
+        return self.rows.get(number) or self.requested.get(number)
+
+
+def _received_packets(form: Stream, direction: Direction) -> list[ReceivedPacket]:
+    packets = []
+    is_telemetry = direction == "telemetry"
+    for index, packet in enumerate(form.packets):
+        if direction not in packet.directions:
+            continue
+        rows = {row.id: row for row in form.rows(direction) if row.packet == index}
+        is_requesting = form.request is not None and form.request.packet == index
+        is_requesting = is_requesting and not is_telemetry
+        requested = {
+            row.id: row for row in form.telemetry if is_requesting and row.is_requested
+        }
+        constants = [
+            (field, field.values[is_telemetry])
+            for field in packet.fields
+            if field.role == "constant"
+        ]
+        values = [field for field in packet.fields if field.role in CHOSEN_ROLES]
+        length, sequence, checksum = map(packet.of, ("length", "sequence", "checksum"))
+        packets.append(
+            ReceivedPacket(
+                index,
+                packet,
+                constants,
+                values,
+                length,
+                sequence,
+                checksum,
+                rows,
+                requested,
+                min(rows, default=0),
+            )
+        )
+    return packets
 
 
 class StreamDecoder:
@@ -126,7 +304,8 @@ class StreamDecoder:
 
     The buffer has ``limit`` bytes, by default the length of the longest message. If
     packets delimit messages, pass each packet separately. Raise `LengthError` if header
-    and trailer exceed the limit.
+    and trailer exceed the limit, and `UnsupportedError` if the link has no packets of
+    this direction.
     """
 
     def __init__(
@@ -138,21 +317,13 @@ class StreamDecoder:
         self._form = form = need(link.stream, "stream")
         self._limit = link.longest if limit is None else min(limit, link.longest)
         self._longest = link.longest
-        around = form.header_bytes + form.trailer_bytes
+        self._packets = _received_packets(form, direction)
+        if not self._packets:
+            raise UnsupportedError(f"the link has no packets of {direction}")
+        around = max(packet.form.overhead for packet in self._packets)
         if self._limit < around:
             raise LengthError("the buffer of header and trailer", around, self._limit)
         self._types = link.TELEMETRY if direction == "telemetry" else link.TELECOMMANDS
-        self._rows = {row.id: row for row in form.rows(direction)}
-        self._only = min(self._rows, default=0)  # the message of a format without id
-        self._constants = [
-            (field, field.values[direction == "telemetry"])
-            for field in form.fields
-            if field.role == "constant"
-        ]
-        self._values = [field for field in form.fields if field.role in CHOSEN_ROLES]
-        self._id, self._length, self._sequence, self._checksum = map(
-            form.of, ("id", "length", "sequence", "checksum")
-        )
         self._buffer = bytearray()
         self._line = (
             None
@@ -191,8 +362,11 @@ class StreamDecoder:
         """Process a frame that is delimited on both sides."""
         if fault:
             events.append(StreamEvent(cast(EventName, fault)))
-        elif self._judge(frame, events) == "message":
-            return
+        else:
+            fitting = (packet for packet in self._packets if packet.fits(frame))
+            packet = next(fitting, self._packets[0])
+            if self._judge(packet, frame, events) == "message":
+                return
         self.discarded += size
 
     def _front(self, at: int, events: list[StreamEvent]) -> Optional[int]:
@@ -200,20 +374,25 @@ class StreamDecoder:
 
         Return the number of processed bytes, or None if more bytes are needed.
         """
-        form, left = self._form, len(self._buffer) - at
+        left = len(self._buffer) - at
         if not left:
             return None
-        front = self._buffer[at : at + form.header_bytes]
-        for field, value in self._constants:
-            is_received = not field.in_trailer and field.at + field.size <= left
-            if is_received and _get(form, field, front, 0) != value:
-                self.discarded += 1
-                return 1
+        for packet in self._packets:
+            form = packet.form
+            front = self._buffer[at : at + form.header_bytes]
+            if not packet.differs(front, left):
+                break
+        else:
+            self.discarded += 1
+            return 1
         if left < form.header_bytes:
             return None
-        length = need(self._length, "length")
-        data = _get(form, length, front, 0) - form.length_plus
-        size = form.header_bytes + data + form.trailer_bytes
+        data = self._length(packet, front)
+        if data is None:
+            events.append(StreamEvent("unknown_id", _id_of(form, front, 0)))
+            self.discarded += 1
+            return 1
+        size = form.overhead + data
         if data < 0 or size > self._limit:
             is_overrun = 0 <= data and size <= self._longest
             events.append(StreamEvent("overrun" if is_overrun else "length"))
@@ -221,57 +400,80 @@ class StreamDecoder:
             return 1
         if left < size:
             return None
-        verdict = self._judge(bytes(self._buffer[at : at + size]), events)
+        verdict = self._judge(packet, bytes(self._buffer[at : at + size]), events)
         if verdict != "message":
             size = size if verdict == "proven" else 1
             self.discarded += size
         return size
 
+    def _length(self, packet: ReceivedPacket, front: Buffer) -> Optional[int]:
+        """Return the bytes of the data that follow a header: from its length field,
+        otherwise those of the message. None for the id of no message.
+        """
+        if packet.length:
+            return _get(packet.form, packet.length, front, 0) - packet.form.length_plus
+        if packet.form.content != "message":
+            return packet.form.reserved
+        id = _id_of(packet.form, front, 0)
+        row = packet.row(id)
+        return None if row is None else self._size(packet, row)[1]
+
+    def _size(self, packet: ReceivedPacket, row: StreamRow) -> tuple[int, int]:
+        """Return the smallest and largest number of bytes of the data of a packet."""
+        request = self._form.request
+        if request and packet.requested.get(row.id) is row:
+            return (request.reserved, request.reserved)
+        return (row.least, row.most)
+
     def _judge(
-        self, frame: bytes, events: list[StreamEvent]
+        self, packet: ReceivedPacket, frame: bytes, events: list[StreamEvent]
     ) -> Literal["message", "proven", "doubtful"]:
         """Check and decode a frame, and add its events.
 
         ``proven`` is a valid frame whose message cannot be used. After ``doubtful``,
         the decoder searches the next frame from the next byte on.
         """
-        form, size = self._form, len(frame)
-        count = size - form.header_bytes - form.trailer_bytes
+        form, size = packet.form, len(frame)
+        count = size - form.overhead
         if count < 0:
             return self._doubtful("length", None, events)
-        for field, value in self._constants:
-            if _get(form, field, frame, size) != value:
-                return self._doubtful("framing", None, events)
-        stated = (
-            count if self._length is None else self._stated_length(self._length, frame)
-        )
-        if stated != count:
-            return self._doubtful("length", None, events)
-        id = _get(form, self._id, frame, size) if self._id else self._only
-        row = self._rows.get(id)
-        if self._checksum and form.check:
-            if form.check.is_seeded and row is None:
+        if not packet.fits(frame):
+            return self._doubtful("framing", None, events)
+        if packet.length:
+            stated = _get(form, packet.length, frame, size) - form.length_plus
+            if stated != count:
+                return self._doubtful("length", None, events)
+        given_id = _id_of(form, frame, size)
+        row = packet.row(given_id)
+        id = packet.only if given_id is None else given_id
+        has_row = form.content != "none"
+        if packet.checksum and form.check:
+            if form.check.is_seeded and row is None and has_row:
                 return self._doubtful("unknown_id", id, events)
-            given = _get(form, self._checksum, frame, size)
+            given = _get(form, packet.checksum, frame, size)
             if given != _checksum(form, row, frame):
                 return self._doubtful("checksum", id, events)
-        if row is None:
+        if row is None and has_row:
             events.append(StreamEvent("unknown_id", id))
             return "proven"
-        if not row.least <= count <= row.most:
+        bounds = self._size(packet, row) if row else (form.reserved, form.reserved)
+        if not bounds[0] <= count <= bounds[1]:
             events.append(StreamEvent("length", id))
             return "proven"
-        data = frame[form.header_bytes : form.header_bytes + count]
-        values = {entry.role: _get(form, entry, frame, size) for entry in self._values}
-        self._check_sequence(id, values, events)
-        kind = self._types.which(id, bytes(data))
-        events.append(StreamEvent("message", id, data, values, 0, kind))
+        values = {entry.role: _get(form, entry, frame, size) for entry in packet.values}
+        if row is None:
+            event = StreamEvent("packet", id, frame, values, packet=packet.number)
+        elif packet.requested.get(row.id) is row:
+            event = StreamEvent("request", id, b"", values)
+        else:
+            data = frame[form.header_bytes : form.header_bytes + count]
+            kind = self._types.which(id, bytes(data))
+            event = StreamEvent("message", id, data, values, 0, kind)
+        # If each id has its own sequence, only those of messages are counted.
+        if event.event == "message" or not self._form.per_id:
+            self._check_sequence(packet, id, values, events)
+        events.append(event)
         return "message"
-
-    def _stated_length(self, length: EnvelopeField, frame: Buffer) -> int:
-        """Return the number of data bytes, from the length field."""
-        form = self._form
-        return _get(form, length, frame, len(frame)) - form.length_plus
 
     def _doubtful(
         self, why: EventName, id: Optional[int], events: list[StreamEvent]
@@ -280,12 +482,16 @@ class StreamDecoder:
         return "doubtful"
 
     def _check_sequence(
-        self, id: int, values: Mapping[str, int], events: list[StreamEvent]
+        self,
+        packet: ReceivedPacket,
+        id: int,
+        values: Mapping[str, int],
+        events: list[StreamEvent],
     ) -> None:
         """Check the sequence number, and report a gap."""
-        if not self._sequence:
+        if not packet.sequence:
             return
-        number, mask = values["sequence"], (1 << self._sequence.bits) - 1
+        number, mask = values["sequence"], (1 << packet.sequence.bits) - 1
         key = id if self._form.per_id else None
         last = self._last.get(key)
         self._last[key] = number

@@ -14,8 +14,8 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::steps::{Piece, Place, Role, Step};
 pub use self::stream::{
-    CheckForm, CheckKind, Delimiter, Echo, EnvelopeField, EnvelopeRole, Exchange, NumberPlace,
-    Response, Stream, StreamRow, Verdict,
+    CheckForm, CheckKind, Content, Delimiter, Echo, EnvelopeField, EnvelopeRole, Exchange,
+    NumberPlace, PacketForm, RequestForm, Response, ResponseKind, Stream, StreamRow, Verdict,
 };
 pub use self::transfer::{
     DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, OperationForm, UploadForm,

@@ -2,7 +2,7 @@
 
 //! Checksum of messages with header and trailer.
 
-use crate::wire::link::{CheckForm, CheckKind, Stream, StreamRow};
+use crate::wire::link::{CheckForm, CheckKind, PacketForm, StreamRow};
 use crate::wire::Crc;
 
 /// A checksum that is fed piece by piece.
@@ -57,13 +57,13 @@ impl<'a> Check<'a> {
 
 /// The checksum of a message in three pieces.
 pub(super) fn whole(
-    stream: &Stream,
+    packet: &PacketForm,
     form: &CheckForm,
     row: Option<&StreamRow>,
     pieces: [&[u8]; 3],
 ) -> u32 {
     let [header, data, trailer] = pieces;
-    let header = header.get(..stream.header_bytes).unwrap_or(header);
+    let header = header.get(..packet.header_bytes).unwrap_or(header);
     let mut check = Check::new(form);
     check.feed(header.get(form.covered_from..).unwrap_or(&[]));
     check.feed(data);

@@ -110,7 +110,8 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
         self.decoder.discarded()
     }
 
-    /// Request telemetry by sending the telecommand that it replies to. `now` is in milliseconds.
+    /// Request telemetry by the telecommand that it replies to, or by the packet of requests. `now`
+    /// is in milliseconds.
     ///
     /// # Errors
     ///
@@ -153,7 +154,8 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     ///
     /// [`Error::UnknownId`] if the node has no such message, [`Error::Busy`] if `R` requests are in
     /// progress or wait to be sent, [`Error::Length`] if the data have the wrong length,
-    /// [`Error::Unsupported`] if no telecommand without parameters requests this telemetry.
+    /// [`Error::Unsupported`] if neither a telecommand without parameters nor a packet requests this
+    /// telemetry.
     pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
         self.slots.start(now, request)
     }
@@ -166,7 +168,7 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     /// [`Error::Length`] if `line` is too small; call again with a larger one.
     pub fn output<'a>(&mut self, line: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> {
         let sender = &mut self.sender;
-        let put = |id, data: &[u8]| sender.put(id, data, line);
+        let put = |sent, data: &[u8]| sender.put_packet(sent, data, line);
         let size = self.slots.output(put)?;
         Ok(size.and_then(move |size| line.get(..size)))
     }

@@ -6,8 +6,8 @@ use super::encoder::{
     COBS_WHOLE, HDLC_ESCAPE, HDLC_FLAG, HDLC_FLIP, SLIP_END, SLIP_ESCAPE, SLIP_ESCAPED_END,
     SLIP_ESCAPED_ESCAPE,
 };
-use super::judge::{Event, Judge, Sequences, Verdict};
-use crate::wire::link::{Delimiter, EnvelopeRole, Link, Stream};
+use super::judge::{judge_delimited, Event, Judge, Verdict};
+use crate::wire::link::{Delimiter, Link, PacketForm, Stream};
 use crate::wire::{Direction, Error};
 
 /// Decoder that finds the messages of one direction in a stream. `N` is the size of its buffer in
@@ -34,12 +34,13 @@ use crate::wire::{Direction, Error};
 pub struct Decoder<const N: usize, const S: usize> {
     form: &'static Stream,
     direction: Direction,
+    header_bytes: usize, // of the shortest header
     longest: usize,
     limit: usize,
     buffer: [u8; N],
     length: usize,
     needed: usize, // bytes in the buffer with which the next thing is decided, where a field tells the length
-    sequences: Sequences<S>,
+    sequences: [Option<u32>; S],
     pending: u64,
     discarded: u64,
     is_escaped: bool,
@@ -53,8 +54,8 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD describes no framing, [`Error::Length`] if header and
-    /// trailer do not fit into the buffer.
+    /// [`Error::Unsupported`] if the ICD describes no packets of this direction, [`Error::Length`] if
+    /// header and trailer do not fit into the buffer.
     pub fn new(link: &'static Link, direction: Direction) -> Result<Self, Error> {
         Self::with_limit(link, direction, N)
     }
@@ -63,27 +64,30 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD describes no framing, [`Error::Length`] if header and
-    /// trailer do not fit into the buffer.
+    /// [`Error::Unsupported`] if the ICD describes no packets of this direction, [`Error::Length`] if
+    /// header and trailer do not fit into the buffer.
     pub fn with_limit(
         link: &'static Link,
         direction: Direction,
         limit: usize,
     ) -> Result<Self, Error> {
         let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
-        let (expected, actual) = (form.header_bytes + form.trailer_bytes, limit.min(N));
+        let packets = form.packets_of(direction).map(|(_, packet)| packet);
+        let around = packets.clone().map(PacketForm::around);
+        let (expected, actual) = (around.max().ok_or(Error::Unsupported)?, limit.min(N));
         if actual < expected {
             return Err(Error::Length { expected, actual });
         }
         Ok(Self {
             form,
             direction,
+            header_bytes: packets.map(|packet| packet.header_bytes).min().unwrap_or(0),
             longest: link.longest,
             limit: actual.min(link.longest),
             buffer: [0; N],
             length: 0,
             needed: 0,
-            sequences: Sequences::new(),
+            sequences: [None; S],
             pending: 0,
             discarded: 0,
             is_escaped: false,
@@ -129,24 +133,26 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             on_event(Event::Overrun);
             false
         } else {
-            let judge = Judge::new(self.form, self.direction);
-            judge.judge(bytes, &mut self.sequences, on_event) == Verdict::Taken
+            let judges = Judge::all(self.form, self.direction);
+            judge_delimited(judges, bytes, &mut self.sequences, on_event) == Verdict::Taken
         };
         if !is_taken {
             self.drop_bytes(bytes.len());
         }
     }
 
-    fn drop_bytes(&mut self, count: usize) {
-        let count = u64::try_from(count).unwrap_or(0);
-        self.discarded = self.discarded.wrapping_add(count);
+    /// Count discarded bytes, and return their number.
+    fn drop_bytes(&mut self, count: usize) -> usize {
+        let bytes = u64::try_from(count).unwrap_or(0);
+        self.discarded = self.discarded.wrapping_add(bytes);
+        count
     }
 
     /// Bytes where a field of the length delimits messages. A full buffer is always decided.
     fn append(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let mut rest = bytes;
         while !rest.is_empty() {
-            let needed = self.needed.max(self.form.header_bytes);
+            let needed = self.needed.max(self.header_bytes);
             let wanted = needed.saturating_sub(self.length).max(1);
             let (piece, others) = rest.split_at(wanted.min(rest.len()));
             let end = self.length + piece.len();
@@ -167,9 +173,15 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     fn decide(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
         let mut at = 0;
         self.needed = 0;
-        while let Some(count) = self.front(at, on_event) {
-            at += count;
-            self.needed = 0;
+        loop {
+            let begin = self.begin(at);
+            let place = begin.map_or(self.length, |(place, _)| place);
+            self.drop_bytes(place.wrapping_sub(at));
+            at = place;
+            match begin.and_then(|(_, judge)| self.front(at, &judge, on_event)) {
+                Some(count) => at += count,
+                None => break,
+            }
         }
         if at > 0 {
             self.buffer.copy_within(at..self.length, 0);
@@ -177,34 +189,40 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         }
     }
 
+    /// Return the first place from `at` on where a packet can begin, and its format.
+    fn begin(&self, at: usize) -> Option<(usize, Judge)> {
+        let judges = Judge::all(self.form, self.direction);
+        (at..self.length).find_map(|place| {
+            let frame = self.buffer.get(place..self.length)?;
+            let judge = judges.clone().find(|it| it.header_is_right(frame))?;
+            Some((place, judge))
+        })
+    }
+
     /// What the buffer has from `at` on: bytes to go on, none while that is not decided.
-    fn front(&mut self, at: usize, on_event: &mut dyn FnMut(Event<'_>)) -> Option<usize> {
-        let form = self.form;
-        let judge = Judge::new(form, self.direction);
+    fn front(
+        &mut self,
+        at: usize,
+        judge: &Judge,
+        on_event: &mut dyn FnMut(Event<'_>),
+    ) -> Option<usize> {
         let frame = self.buffer.get(at..self.length)?;
-        if frame.is_empty() {
+        let packet = judge.packet;
+        if frame.len() < packet.header_bytes {
             return None;
         }
-        if !judge.header_is_right(frame) {
-            self.drop_bytes(1);
-            return Some(1);
-        }
-        let field = form.field(EnvelopeRole::Length)?;
-        if frame.len() < form.header_bytes {
-            return None;
-        }
-        let around = form.header_bytes + form.trailer_bytes;
-        let length = judge.length(field.get(form, frame));
-        let size = length.map_or(usize::MAX, |length| length.saturating_add(around));
-        if size > self.limit {
-            on_event(if size > self.longest {
-                Event::Length { id: None }
-            } else {
-                Event::Overrun
-            });
-            self.drop_bytes(1);
-            return Some(1);
-        }
+        let length = judge.length(frame);
+        let size = match length.map(|length| length.saturating_add(packet.around())) {
+            Ok(size) if size <= self.limit => size,
+            other => {
+                on_event(match other {
+                    Ok(size) if size <= self.longest => Event::Overrun,
+                    Err(Some(id)) => Event::UnknownId { id },
+                    _ => Event::Length { id: None },
+                });
+                return Some(self.drop_bytes(1));
+            }
+        };
         if frame.len() < size {
             self.needed = size;
         }
@@ -233,8 +251,8 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         } else if frame.is_empty() {
             true
         } else {
-            let judge = Judge::new(self.form, self.direction);
-            judge.judge(frame, &mut self.sequences, on_event) == Verdict::Taken
+            let judges = Judge::all(self.form, self.direction);
+            judge_delimited(judges, frame, &mut self.sequences, on_event) == Verdict::Taken
         };
         if !is_taken {
             self.discarded = self.discarded.wrapping_add(self.pending);

@@ -3,7 +3,8 @@
 //! Encoder of messages with header and trailer.
 
 use super::check;
-use crate::wire::link::{Delimiter, EnvelopeRole, Link, Stream};
+use crate::wire::bits::head;
+use crate::wire::link::{Delimiter, EnvelopeRole, Link, PacketForm, Stream, StreamRow};
 use crate::wire::{Direction, Error};
 
 pub(super) const SLIP_END: u8 = 0xc0;
@@ -19,48 +20,44 @@ pub(super) const COBS_WHOLE: u8 = 0xff;
 const ENVELOPE_BYTES: usize = 64;
 
 /// Values of the header and trailer fields that the sender chooses.
+///
+/// In a message to send, None stands for the default of the ICD, and values of fields that its
+/// packet does not have are ignored. In a received message, None means that its packet does not have
+/// the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Values {
     /// Counts messages.
-    pub sequence: u32,
+    pub sequence: Option<u32>,
     /// Who sends.
-    pub source: u32,
+    pub source: Option<u32>,
     /// Who it is for.
-    pub destination: u32,
+    pub destination: Option<u32>,
     /// What kind of message it is.
-    pub kind: u32,
+    pub kind: Option<u32>,
     /// Bits of any meaning.
-    pub flags: u32,
+    pub flags: Option<u32>,
     /// When it was sent.
-    pub time: u32,
+    pub time: Option<u32>,
+    /// Result of a request.
+    pub status: Option<u32>,
+    /// Reason of a refusal.
+    pub reason: Option<u32>,
 }
 
 impl Values {
-    /// Return the values of the ICD for this direction. Fields without a value in the ICD are 0.
-    #[must_use]
-    pub fn new(link: &Link, direction: Direction) -> Self {
-        let mut values = Self::default();
-        let fields = link.stream.as_ref().map_or(&[][..], |form| form.fields);
-        for field in fields {
-            if let Some(place) = values.place(field.role) {
-                *place = field.value(direction);
-            }
-        }
-        values
-    }
-
-    /// Whether each fits its field.
+    /// Check that each value fits its field in the packets of the host.
     pub(super) fn check(mut self, form: &Stream) -> Result<(), Error> {
-        for field in form.fields {
-            let value = self.place(field.role).map_or(0, |value| *value);
-            if value > field.mask() {
+        let packets = form.packets_of(Direction::Telecommand);
+        for field in packets.flat_map(|(_, packet)| packet.fields) {
+            let value = self.place(field.role).and_then(|value| *value);
+            if value.map_or(false, |value| value > field.mask()) {
                 return Err(Error::range(name(field.role)));
             }
         }
         Ok(())
     }
 
-    pub(super) fn place(&mut self, role: EnvelopeRole) -> Option<&mut u32> {
+    pub(super) fn place(&mut self, role: EnvelopeRole) -> Option<&mut Option<u32>> {
         match role {
             EnvelopeRole::Sequence => Some(&mut self.sequence),
             EnvelopeRole::Source => Some(&mut self.source),
@@ -68,6 +65,8 @@ impl Values {
             EnvelopeRole::Type => Some(&mut self.kind),
             EnvelopeRole::Flags => Some(&mut self.flags),
             EnvelopeRole::Time => Some(&mut self.time),
+            EnvelopeRole::Status => Some(&mut self.status),
+            EnvelopeRole::Reason => Some(&mut self.reason),
             _ => None,
         }
     }
@@ -88,7 +87,7 @@ impl Values {
 ///
 /// fn sent(link: &Link, id: u32, data: &[u8], port: &mut Vec<u8>) -> Result<(), Error> {
 ///     let mut line = [0; 600];
-///     let values = Values::new(link, Direction::Telecommand);
+///     let values = Values { time: Some(12), ..Values::default() };
 ///     let size = encode(link, Direction::Telecommand, id, data, &values, &mut line)?;
 ///     port.extend_from_slice(&line[..size]);
 ///     Ok(())
@@ -119,36 +118,100 @@ pub fn encode(
     } else {
         data
     };
-    let (mut header, mut trailer) = ([0; ENVELOPE_BYTES], [0; ENVELOPE_BYTES]);
-    let mut values = *values;
-    for field in form.fields {
-        let length = i64::try_from(data.len()).unwrap_or(i64::MAX);
-        let value = match field.role {
-            EnvelopeRole::Checksum => continue,
-            EnvelopeRole::Id => i64::from(id),
-            EnvelopeRole::Length => length.wrapping_add(i64::from(form.length_plus)),
-            role => i64::from(*values.place(role).unwrap_or(&mut field.value(direction))),
-        };
-        let fitting = u32::try_from(value).ok();
-        let value = fitting.filter(|value| *value <= field.mask());
-        let value = value.ok_or_else(|| Error::range(name(field.role)))?;
-        let into = if field.in_trailer {
-            &mut trailer
-        } else {
-            &mut header
-        };
-        field.put(into, value);
+    let packet = form
+        .packets
+        .get(usize::from(row.packet))
+        .ok_or(Error::Unsupported)?;
+    let message = Message {
+        packet,
+        direction,
+        id,
+        row,
+        data,
+    };
+    message.encode(form.delimited_by, values, out)
+}
+
+/// Encode a request of the telemetry with this id, and return the number of bytes written to `out`.
+///
+/// # Errors
+///
+/// [`Error::Unsupported`] if no packet requests telemetry, [`Error::UnknownId`] if none requests
+/// this, [`Error::Length`] if `out` is too small, [`Error::Range`] if a value does not fit into its
+/// field.
+pub fn encode_request(
+    link: &Link,
+    id: u32,
+    values: &Values,
+    out: &mut [u8],
+) -> Result<usize, Error> {
+    let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+    let request = form.request.as_ref().ok_or(Error::Unsupported)?;
+    let row = form.row(Direction::Telemetry, id).map(|(_, row)| row);
+    let row = row.filter(|row| row.is_requested);
+    let message = Message {
+        packet: form.packets.get(request.packet).ok_or(Error::Unsupported)?,
+        direction: Direction::Telecommand,
+        id,
+        row: row.ok_or(Error::UnknownId { id })?,
+        data: request.data,
+    };
+    message.encode(form.delimited_by, values, out)
+}
+
+/// A message to encode.
+struct Message<'a> {
+    packet: &'a PacketForm,
+    direction: Direction,
+    id: u32,
+    row: &'a StreamRow,
+    data: &'a [u8],
+}
+
+impl Message<'_> {
+    fn encode(
+        &self,
+        delimited_by: Delimiter,
+        values: &Values,
+        out: &mut [u8],
+    ) -> Result<usize, Error> {
+        let (packet, data) = (self.packet, self.data);
+        let (mut header, mut trailer) = ([0; ENVELOPE_BYTES], [0; ENVELOPE_BYTES]);
+        let mut values = *values;
+        for field in packet.fields {
+            let length = i64::try_from(data.len()).unwrap_or(i64::MAX);
+            let value = match field.role {
+                EnvelopeRole::Checksum => continue,
+                EnvelopeRole::Id => i64::from(field.part(self.id)),
+                EnvelopeRole::Length => length.wrapping_add(i64::from(packet.length_plus)),
+                role => {
+                    let chosen = values.place(role).and_then(|value| *value);
+                    i64::from(chosen.unwrap_or_else(|| field.value(self.direction)))
+                }
+            };
+            let fitting = u32::try_from(value).ok();
+            let value = fitting.filter(|value| *value <= field.mask());
+            let value = value.ok_or_else(|| Error::range(name(field.role)))?;
+            let into = if field.in_trailer {
+                &mut trailer
+            } else {
+                &mut header
+            };
+            field.put(into, value);
+        }
+        if let (Some(field), Some(check)) = (packet.field(EnvelopeRole::Checksum), &packet.check) {
+            let sum = check::whole(packet, check, Some(self.row), [&header, data, &trailer]);
+            let into = if field.in_trailer {
+                &mut trailer
+            } else {
+                &mut header
+            };
+            field.put(into, sum);
+        }
+        let header = head(&header, packet.header_bytes);
+        let trailer = head(&trailer, packet.trailer_bytes);
+        line(delimited_by, [header, data, trailer], out)
     }
-    if let (Some(field), Some(check)) = (form.field(EnvelopeRole::Checksum), &form.check) {
-        let sum = check::whole(form, check, Some(row), [&header, data, &trailer]);
-        let into = if field.in_trailer {
-            &mut trailer
-        } else {
-            &mut header
-        };
-        field.put(into, sum);
-    }
-    line(form, [&header, data, &trailer], out)
 }
 
 /// The data without the zeros at their end, but for one.
@@ -171,6 +234,8 @@ const fn name(role: EnvelopeRole) -> &'static str {
         EnvelopeRole::Type => "type",
         EnvelopeRole::Flags => "flags",
         EnvelopeRole::Time => "time",
+        EnvelopeRole::Status => "status",
+        EnvelopeRole::Reason => "reason",
         EnvelopeRole::Constant => "constant",
         EnvelopeRole::Id => "id",
         EnvelopeRole::Length => "length",
@@ -179,10 +244,8 @@ const fn name(role: EnvelopeRole) -> &'static str {
 }
 
 /// Writes the pieces of a message with what delimits it.
-fn line(form: &Stream, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<usize, Error> {
+fn line(delimited_by: Delimiter, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<usize, Error> {
     let [header, data, trailer] = pieces;
-    let header = header.get(..form.header_bytes).unwrap_or(header);
-    let trailer = trailer.get(..form.trailer_bytes).unwrap_or(trailer);
     let actual = out.len();
     let mut line = Line {
         out,
@@ -190,21 +253,21 @@ fn line(form: &Stream, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<usize, Erro
         block: 0,
         is_whole: false,
     };
-    match form.delimited_by {
+    match delimited_by {
         Delimiter::Slip => line.byte(SLIP_END),
         Delimiter::Hdlc => line.byte(HDLC_FLAG),
         Delimiter::Cobs => line.byte(0),
         Delimiter::Length | Delimiter::Packet => (),
     }
     for byte in header.iter().chain(data).chain(trailer) {
-        match form.delimited_by {
+        match delimited_by {
             Delimiter::Slip => line.slip(*byte),
             Delimiter::Hdlc => line.hdlc(*byte),
             Delimiter::Cobs => line.cobs(*byte),
             Delimiter::Length | Delimiter::Packet => line.byte(*byte),
         }
     }
-    match form.delimited_by {
+    match delimited_by {
         Delimiter::Slip => line.byte(SLIP_END),
         Delimiter::Hdlc => line.byte(HDLC_FLAG),
         Delimiter::Cobs => line.end(),

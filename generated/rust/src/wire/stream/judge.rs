@@ -4,7 +4,7 @@
 
 use super::check;
 use super::encoder::Values;
-use crate::wire::link::{EnvelopeField, EnvelopeRole, Stream, StreamRow};
+use crate::wire::link::{Content, EnvelopeField, EnvelopeRole, PacketForm, Stream, StreamRow};
 use crate::wire::Direction;
 
 /// A message, a dropped message, or the outcome of a request of a client.
@@ -18,11 +18,29 @@ pub enum Event<'a> {
         /// Its data.
         data: &'a [u8],
         /// Values of the header and trailer fields that the sender chose.
-        values: Values,
+        values: &'a Values,
+    },
+    /// A request of telemetry.
+    Request {
+        /// Id of the telemetry.
+        id: u32,
+        /// Values of the header and trailer fields that the sender chose.
+        values: &'a Values,
+    },
+    /// A packet without a message.
+    Packet {
+        /// Index of its format in `Stream::packets` of the link.
+        packet: usize,
+        /// Its id; 0 if it has none.
+        id: u32,
+        /// The whole packet: header, data and trailer.
+        data: &'a [u8],
+        /// Values of the header and trailer fields that the sender chose.
+        values: &'a Values,
     },
     /// Messages were lost before this one; 0: this message is a repetition.
     Gap {
-        /// Id of the received message.
+        /// Id of the received message; 0 if the packet has none.
         id: u32,
         /// Number of missing messages.
         missing: u32,
@@ -54,12 +72,14 @@ pub enum Event<'a> {
         id: u32,
         /// Number of times the request was sent.
         attempts: u16,
-        /// Id of the response that completed it.
+        /// Id of the response that completed it; 0 for a packet without id.
         reply: u32,
-        /// Data of the response.
+        /// Index of the format of a response that is a packet without a message.
+        packet: Option<usize>,
+        /// Data of the response; the whole packet if it has no message.
         data: &'a [u8],
         /// Values of the header and trailer fields of the response.
-        values: Values,
+        values: &'a Values,
     },
     /// Client: the telecommand was sent, and nothing responds to it.
     Sent {
@@ -80,9 +100,11 @@ pub enum Event<'a> {
         attempts: u16,
         /// The reason, if the response has one.
         code: Option<u32>,
-        /// Id of the response.
+        /// Id of the response; 0 for a packet without id.
         reply: u32,
-        /// Data of the response.
+        /// Index of the format of a response that is a packet without a message.
+        packet: Option<usize>,
+        /// Data of the response; the whole packet if it has no message.
         data: &'a [u8],
     },
     /// Client: the device was busy each time, so the request was not executed.
@@ -95,9 +117,11 @@ pub enum Event<'a> {
         attempts: u16,
         /// The reason, if the response has one.
         code: Option<u32>,
-        /// Id of the response.
+        /// Id of the response; 0 for a packet without id.
         reply: u32,
-        /// Data of the response.
+        /// Index of the format of a response that is a packet without a message.
+        packet: Option<usize>,
+        /// Data of the response; the whole packet if it has no message.
         data: &'a [u8],
     },
     /// Client: no response in time, so it is not known whether the request was executed.
@@ -116,9 +140,11 @@ pub enum Event<'a> {
         direction: Direction,
         /// Id of the request.
         id: u32,
-        /// Id of the response.
+        /// Id of the response; 0 for a packet without id.
         reply: u32,
-        /// Data of the response.
+        /// Index of the format of a response that is a packet without a message.
+        packet: Option<usize>,
+        /// Data of the response; the whole packet if it has no message.
         data: &'a [u8],
     },
     /// Client: the requested telemetry, before the acknowledge of its request.
@@ -132,20 +158,24 @@ pub enum Event<'a> {
         /// Data of the telemetry.
         data: &'a [u8],
         /// Values of the header and trailer fields of the telemetry.
-        values: Values,
+        values: &'a Values,
     },
     /// Client: a response to a request that has ended.
     Late {
-        /// Id of the response.
+        /// Id of the response; 0 for a packet without id.
         id: u32,
-        /// Data of the response.
+        /// Index of the format of a response that is a packet without a message.
+        packet: Option<usize>,
+        /// Data of the response; the whole packet if it has no message.
         data: &'a [u8],
     },
     /// Client: a response to none of the requests.
     Stray {
-        /// Id of the response.
+        /// Id of the response; 0 for a packet without id.
         id: u32,
-        /// Data of the response.
+        /// Index of the format of a response that is a packet without a message.
+        packet: Option<usize>,
+        /// Data of the response; the whole packet if it has no message.
         data: &'a [u8],
     },
 }
@@ -154,13 +184,41 @@ impl<'a> Event<'a> {
     /// Return id and data of the telemetry that the event is about.
     pub(super) const fn telemetry(&self) -> Option<(u32, &'a [u8])> {
         match *self {
-            Self::Message { id, data, .. } | Self::Late { id, data } | Self::Stray { id, data } => {
-                Some((id, data))
+            Self::Message { id, data, .. }
+            | Self::Late {
+                id,
+                packet: None,
+                data,
             }
-            Self::Done { reply, data, .. }
-            | Self::Refused { reply, data, .. }
-            | Self::Busy { reply, data, .. }
-            | Self::Progress { reply, data, .. }
+            | Self::Stray {
+                id,
+                packet: None,
+                data,
+            } => Some((id, data)),
+            Self::Done {
+                reply,
+                packet: None,
+                data,
+                ..
+            }
+            | Self::Refused {
+                reply,
+                packet: None,
+                data,
+                ..
+            }
+            | Self::Busy {
+                reply,
+                packet: None,
+                data,
+                ..
+            }
+            | Self::Progress {
+                reply,
+                packet: None,
+                data,
+                ..
+            }
             | Self::Reply { reply, data, .. } => Some((reply, data)),
             _ => None,
         }
@@ -177,146 +235,240 @@ pub(super) enum Verdict {
     Doubtful,
 }
 
-/// The sequence numbers of a decoder; `S` is how many it remembers.
-#[derive(Clone, Debug)]
-pub(super) struct Sequences<const S: usize>([Option<u32>; S]);
+/// Last sequence numbers, of each message or of all.
+pub(super) type Sequences = [Option<u32>];
 
-impl<const S: usize> Sequences<S> {
-    pub(super) const fn new() -> Self {
-        Self([None; S])
-    }
-}
-
-/// Says what frames are.
+/// Check of frames of a packet format.
 #[derive(Clone, Copy)]
 pub(super) struct Judge {
     form: &'static Stream,
     direction: Direction,
+    index: usize, // of the packet format
+    pub(super) packet: &'static PacketForm,
 }
 
 impl Judge {
-    pub(super) const fn new(form: &'static Stream, direction: Direction) -> Self {
-        Self { form, direction }
+    /// Return the checks of all packet formats of a direction.
+    pub(super) fn all(
+        form: &'static Stream,
+        direction: Direction,
+    ) -> impl Iterator<Item = Self> + Clone {
+        let packets = form.packets_of(direction);
+        packets.map(move |(index, packet)| Self {
+            form,
+            direction,
+            index,
+            packet,
+        })
     }
 
-    /// Whether the constants of the header are right, as far as it came.
-    pub(super) fn header_is_right(self, frame: &[u8]) -> bool {
-        let fields = self.form.fields.iter();
+    /// Return whether the constants of the header are right, as far as they have arrived.
+    pub(super) fn header_is_right(&self, frame: &[u8]) -> bool {
+        let fields = self.packet.fields.iter();
         let mut came =
             fields.filter(|field| !field.in_trailer && field.at + field.size <= frame.len());
         came.all(|field| self.is_right(field, frame))
     }
 
-    fn is_right(self, field: &EnvelopeField, frame: &[u8]) -> bool {
+    fn is_right(&self, field: &EnvelopeField, frame: &[u8]) -> bool {
         field.role != EnvelopeRole::Constant
-            || field.get(self.form, frame) == field.value(self.direction)
+            || field.get(self.packet, frame) == field.value(self.direction)
     }
 
-    /// Bytes of data that a length means; none if it means none.
-    pub(super) fn length(self, value: u32) -> Option<usize> {
-        let length = i64::from(value).checked_sub(i64::from(self.form.length_plus))?;
+    /// Return whether these bytes can be a packet of this format.
+    fn can_be(&self, frame: &[u8]) -> bool {
+        let mut fields = self.packet.fields.iter();
+        frame.len() >= self.packet.around() && fields.all(|field| self.is_right(field, frame))
+    }
+
+    /// Return the number of data bytes by the length field; None if it is invalid.
+    fn stated_length(&self, field: &EnvelopeField, frame: &[u8]) -> Option<usize> {
+        let length = i64::from(field.get(self.packet, frame));
+        let length = length.checked_sub(i64::from(self.packet.length_plus))?;
         usize::try_from(length).ok()
     }
 
-    fn id(self, frame: &[u8]) -> u32 {
-        self.form.field(EnvelopeRole::Id).map_or_else(
-            || {
-                self.form
-                    .rows(self.direction)
-                    .first()
-                    .map_or(0, |row| row.id)
-            },
-            |field| field.get(self.form, frame),
-        )
-    }
-
-    /// Tells of a frame.
-    pub(super) fn judge<const S: usize>(
-        self,
-        frame: &[u8],
-        sequences: &mut Sequences<S>,
-        on_event: &mut dyn FnMut(Event<'_>),
-    ) -> Verdict {
-        let form = self.form;
-        let behind = frame.len().wrapping_sub(form.trailer_bytes);
-        let parts = (
-            frame.get(..form.header_bytes),
-            frame.get(form.header_bytes..behind),
-            frame.get(behind..),
-        );
-        let (header, data, trailer) = if let (Some(header), Some(data), Some(trailer)) = parts {
-            (header, data, trailer)
-        } else {
-            on_event(Event::Length { id: None });
-            return Verdict::Doubtful;
-        };
-        if !form.fields.iter().all(|field| self.is_right(field, frame)) {
-            on_event(Event::Framing);
-            return Verdict::Doubtful;
-        }
-        if let Some(field) = form.field(EnvelopeRole::Length) {
-            if self.length(field.get(form, frame)) != Some(data.len()) {
-                on_event(Event::Length { id: None });
-                return Verdict::Doubtful;
-            }
+    /// Return the number of data bytes by the header; otherwise the id of the unknown message, or
+    /// None if the length field is invalid.
+    pub(super) fn length(&self, frame: &[u8]) -> Result<usize, Option<u32>> {
+        if let Some(field) = self.packet.field(EnvelopeRole::Length) {
+            return self.stated_length(field, frame).ok_or(None);
         }
         let id = self.id(frame);
-        let known = form.row(self.direction, id);
-        if let (Some(field), Some(check)) = (form.field(EnvelopeRole::Checksum), &form.check) {
-            if check.is_seeded && known.is_none() {
+        match self.packet.content {
+            Content::Nothing => Ok(self.packet.reserved),
+            Content::Request => Ok(self.reserved()),
+            Content::Message => match self.message(id) {
+                Some((_, row)) => Ok(row.most),
+                None if self.requested(id).is_some() => Ok(self.reserved()),
+                None => Err(Some(id)),
+            },
+        }
+    }
+
+    /// Return the number of data bytes of a request.
+    fn reserved(&self) -> usize {
+        self.form.request.map_or(0, |request| request.data.len())
+    }
+
+    fn length_is_right(&self, frame: &[u8]) -> bool {
+        let length = frame.len().checked_sub(self.packet.around());
+        let field = self.packet.field(EnvelopeRole::Length);
+        field.map_or(true, |field| self.stated_length(field, frame) == length)
+    }
+
+    /// Return the id; of a packet without id, that of its only message.
+    fn id(&self, frame: &[u8]) -> u32 {
+        let only = || {
+            let mut rows = self.form.rows(self.direction).iter();
+            rows.find(|row| usize::from(row.packet) == self.index)
+                .map_or(0, |row| row.id)
+        };
+        self.packet.id(frame).unwrap_or_else(only)
+    }
+
+    /// Return a message of this packet format, and its place in the table.
+    fn message(&self, id: u32) -> Option<(usize, &'static StreamRow)> {
+        let row = self.form.row(self.direction, id);
+        row.filter(|(_, row)| usize::from(row.packet) == self.index)
+    }
+
+    /// Return the telemetry that a packet of this format requests.
+    fn requested(&self, id: u32) -> Option<&'static StreamRow> {
+        let request = self.form.request.as_ref()?;
+        let is_request = self.direction == Direction::Telecommand && request.packet == self.index;
+        let (_, row) = self.form.row(Direction::Telemetry, id)?;
+        Some(row).filter(|row| is_request && row.is_requested)
+    }
+
+    /// Check a frame whose size comes from its header, which is right, and report its events.
+    pub(super) fn judge(
+        &self,
+        frame: &[u8],
+        sequences: &mut Sequences,
+        on_event: &mut dyn FnMut(Event<'_>),
+    ) -> Verdict {
+        let mut trailer = self.packet.fields.iter().filter(|field| field.in_trailer);
+        if trailer.all(|field| self.is_right(field, frame)) {
+            return self.judge_contents(frame, sequences, on_event);
+        }
+        on_event(Event::Framing);
+        Verdict::Doubtful
+    }
+
+    /// Check a frame whose constants and length field are right, and report its events.
+    fn judge_contents(
+        &self,
+        frame: &[u8],
+        sequences: &mut Sequences,
+        on_event: &mut dyn FnMut(Event<'_>),
+    ) -> Verdict {
+        let packet = self.packet;
+        let behind = frame.len().saturating_sub(packet.trailer_bytes);
+        let (front, trailer) = frame.split_at(behind);
+        let (header, data) = front.split_at(packet.header_bytes.min(behind));
+        let id = self.id(frame);
+        let message = self.message(id);
+        let row = message.map_or_else(|| self.requested(id), |(_, row)| Some(row));
+        if let (Some(field), Some(check)) = (packet.field(EnvelopeRole::Checksum), &packet.check) {
+            if check.is_seeded && row.is_none() && packet.content != Content::Nothing {
                 on_event(Event::UnknownId { id });
                 return Verdict::Doubtful;
             }
-            let row = known.map(|(_, row)| row);
-            let sum = check::whole(form, check, row, [header, data, trailer]);
-            if field.get(form, frame) != sum {
+            let sum = check::whole(packet, check, row, [header, data, trailer]);
+            if field.get(packet, frame) != sum {
                 on_event(Event::Checksum { id });
                 return Verdict::Doubtful;
             }
         }
-        let (place, row) = if let Some(known) = known {
-            known
-        } else {
-            on_event(Event::UnknownId { id });
-            return Verdict::Proven;
+        let (length, is_nothing) = (data.len(), packet.content == Content::Nothing);
+        let is_right = match (message, row) {
+            _ if is_nothing => length == packet.reserved,
+            (Some((_, row)), _) => (row.least..=row.most).contains(&length),
+            (None, Some(_)) => length == self.reserved(),
+            (None, None) => {
+                on_event(Event::UnknownId { id });
+                return Verdict::Proven;
+            }
         };
-        if data.len() < row.least || data.len() > row.most {
+        if !is_right {
             on_event(Event::Length { id: Some(id) });
             return Verdict::Proven;
         }
-        self.message(place, row, frame, data, sequences, on_event);
+        let values = &self.values(frame);
+        let place = message.map(|(place, _)| place);
+        self.check_sequence(place, id, values, sequences, on_event);
+        on_event(if is_nothing {
+            Event::Packet {
+                packet: self.index,
+                id,
+                data: frame,
+                values,
+            }
+        } else if message.is_some() {
+            Event::Message { id, data, values }
+        } else {
+            Event::Request { id, values }
+        });
         Verdict::Taken
     }
 
-    fn message<const S: usize>(
-        self,
-        place: usize,
-        row: &StreamRow,
-        frame: &[u8],
-        data: &[u8],
-        sequences: &mut Sequences<S>,
-        on_event: &mut dyn FnMut(Event<'_>),
-    ) {
+    fn values(&self, frame: &[u8]) -> Values {
         let mut values = Values::default();
-        for field in self.form.fields {
+        for field in self.packet.fields {
             if let Some(value) = values.place(field.role) {
-                *value = field.get(self.form, frame);
+                *value = Some(field.get(self.packet, frame));
             }
         }
-        let id = row.id;
-        if let Some(field) = self.form.field(EnvelopeRole::Sequence) {
-            let key = if self.form.per_id { place } else { 0 };
-            if let Some(known) = sequences.0.get_mut(key) {
-                let number = values.sequence;
-                if let Some(last) = known.replace(number) {
-                    let missing = number.wrapping_sub(last).wrapping_sub(1) & field.mask();
-                    if missing != 0 {
-                        let missing = if number == last { 0 } else { missing };
-                        on_event(Event::Gap { id, missing });
-                    }
+        values
+    }
+
+    /// Report a gap before this packet. `place` is that of its message in the table.
+    fn check_sequence(
+        &self,
+        place: Option<usize>,
+        id: u32,
+        values: &Values,
+        sequences: &mut Sequences,
+        on_event: &mut dyn FnMut(Event<'_>),
+    ) {
+        // Only messages have a counter for each id.
+        let key = if self.form.per_id { place } else { Some(0) };
+        let counter = key.and_then(|key| sequences.get_mut(key));
+        let field = self.packet.field(EnvelopeRole::Sequence);
+        if let (Some(field), Some(counter), Some(number)) = (field, counter, values.sequence) {
+            if let Some(last) = counter.replace(number) {
+                let missing = number.wrapping_sub(last).wrapping_sub(1) & field.mask();
+                if missing != 0 {
+                    let missing = if number == last { 0 } else { missing };
+                    on_event(Event::Gap { id, missing });
                 }
             }
         }
-        on_event(Event::Message { id, data, values });
     }
+}
+
+/// Check a frame that is delimited on both sides by the first packet format that it can be, and
+/// report its events.
+pub(super) fn judge_delimited(
+    judges: impl Iterator<Item = Judge> + Clone,
+    frame: &[u8],
+    sequences: &mut Sequences,
+    on_event: &mut dyn FnMut(Event<'_>),
+) -> Verdict {
+    let (mut first, mut possible) = (judges.clone(), judges);
+    let fault = match possible.find(|judge| judge.can_be(frame)) {
+        Some(judge) if judge.length_is_right(frame) => {
+            return judge.judge_contents(frame, sequences, on_event);
+        }
+        None if first
+            .next()
+            .map_or(false, |it| it.packet.around() <= frame.len()) =>
+        {
+            Event::Framing
+        }
+        _ => Event::Length { id: None },
+    };
+    on_event(fault);
+    Verdict::Doubtful
 }

@@ -33,9 +33,13 @@ pub enum EnvelopeRole {
     Flags,
     /// When it was sent.
     Time,
+    /// Result of a request.
+    Status,
+    /// Reason of a refusal.
+    Reason,
     /// Always the same.
     Constant,
-    /// The id of the message.
+    /// The id of the message, or a part of it.
     Id,
     /// How long it is.
     Length,
@@ -63,6 +67,8 @@ pub struct EnvelopeField {
     pub little: bool,
     /// Constant or default value in telecommands and in telemetry.
     pub values: [u32; 2],
+    /// Part of an id: bits of the id below it.
+    pub id_shift: u32,
 }
 
 /// How a checksum is computed.
@@ -110,6 +116,10 @@ pub struct StreamRow {
     pub cuts_zeros: bool,
     /// Seed: byte that the checksum covers last.
     pub seed: u8,
+    /// Index of its packet format in [`Stream::packets`].
+    pub packet: u16,
+    /// Telemetry: whether packets of [`Stream::request`] request it.
+    pub is_requested: bool,
     /// Telecommand: index of its exchange in [`Stream::exchanges`]; None if nothing responds to it.
     pub exchange: Option<usize>,
     /// Telecommand: whether it may be sent again after a time-out.
@@ -149,6 +159,17 @@ pub struct NumberPlace {
     pub little: bool,
 }
 
+/// What a response is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ResponseKind {
+    /// Telemetry with this id.
+    Telemetry(u32),
+    /// The telemetry that was requested.
+    Requested,
+    /// A packet without a message: index in [`Stream::packets`].
+    Packet(usize),
+}
+
 /// A number of a response that repeats a number of the telecommand.
 #[derive(Clone, Copy, Debug)]
 pub struct Echo {
@@ -158,11 +179,12 @@ pub struct Echo {
     pub source: usize,
 }
 
-/// Telemetry that can end, refuse, defer or prolong a telecommand.
+/// What can end, refuse, defer or prolong a request. The places are those in the data of telemetry,
+/// or in a whole packet.
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
-    /// Its id.
-    pub telemetry: u32,
+    /// What it is.
+    pub kind: ResponseKind,
     /// What it means; with a status, what a value means that is not in `meanings`.
     pub verdict: Verdict,
     /// Numbers that must be equal to those of the telecommand.
@@ -175,7 +197,7 @@ pub struct Response {
     pub reason: Option<NumberPlace>,
 }
 
-/// The possible responses to a telecommand.
+/// The possible responses to a request.
 #[derive(Clone, Copy, Debug)]
 pub struct Exchange {
     /// Numbers of the telecommand that responses repeat, at most [`Exchange::SOURCES`]: places in
@@ -192,29 +214,70 @@ impl Exchange {
     pub const SOURCES: usize = 4;
 }
 
-/// Framing of messages in a stream of bytes or in packets.
+/// What packets of a format carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// Messages.
+    Message,
+    /// Requests of telemetry.
+    Request,
+    /// No message: the packet itself is a response.
+    Nothing,
+}
+
+/// A packet format: header and trailer around the data of a message.
 #[derive(Clone, Copy, Debug)]
-pub struct Stream {
-    /// How messages are delimited.
-    pub delimited_by: Delimiter,
+pub struct PacketForm {
+    /// Name of the format in the ICD.
+    pub name: &'static str,
+    /// Whether the host sends such packets.
+    pub from_host: bool,
+    /// Whether the device sends such packets.
+    pub from_device: bool,
     /// Size of the header in bytes.
     pub header_bytes: usize,
     /// Size of the trailer in bytes.
     pub trailer_bytes: usize,
     /// Value of the length field minus the number of data bytes.
     pub length_plus: i32,
-    /// Whether each id has its own sequence counter.
-    pub per_id: bool,
     /// The fields.
     pub fields: &'static [EnvelopeField],
     /// The checksum.
     pub check: Option<CheckForm>,
+    /// What it carries.
+    pub content: Content,
+    /// Number of data bytes of packets without a message.
+    pub reserved: usize,
+}
+
+/// Packets that request telemetry.
+#[derive(Clone, Copy, Debug)]
+pub struct RequestForm {
+    /// Index of the packet format in [`Stream::packets`].
+    pub packet: usize,
+    /// Index of the responses in [`Stream::exchanges`].
+    pub exchange: usize,
+    /// The data, which have no meaning.
+    pub data: &'static [u8],
+}
+
+/// Framing of messages in a stream of bytes or in packets of the transport.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    /// How messages are delimited.
+    pub delimited_by: Delimiter,
+    /// Whether each id has its own sequence counter.
+    pub per_id: bool,
+    /// The packet formats.
+    pub packets: &'static [PacketForm],
     /// The telecommands, in ascending order of the ids.
     pub telecommands: &'static [StreamRow],
     /// The telemetry, in ascending order of the ids.
     pub telemetry: &'static [StreamRow],
-    /// The exchanges of the telecommands.
+    /// The exchanges of the telecommands, and of requests of telemetry.
     pub exchanges: &'static [Exchange],
     /// Ids of telemetry that only responds to telecommands, and is not requested.
     pub confirming: &'static [u32],
+    /// Packets that request telemetry.
+    pub request: Option<RequestForm>,
 }

@@ -1,6 +1,6 @@
 //! Responses to requests.
 
-use crate::wire::link::{Exchange, Response, Verdict};
+use crate::wire::link::{Exchange, Response, ResponseKind, Verdict};
 
 /// Exchange of a telecommand to which nothing responds.
 const SILENCE: &Exchange = &Exchange {
@@ -67,8 +67,8 @@ impl Awaited {
         sources: [0; Exchange::SOURCES],
     };
 
-    /// Return the responses to a telecommand with this id and data. `named` is the id of the
-    /// telemetry that the caller names as the reply.
+    /// Return the responses to a request with this id and data. `named` is the id of the telemetry
+    /// that is requested, or that the caller names as the reply.
     pub(super) fn new(
         exchange: Option<&'static Exchange>,
         named: Option<u32>,
@@ -81,9 +81,10 @@ impl Awaited {
             *number = place.get(&id.to_be_bytes(), data);
         }
         let mut replies = exchange.responses.iter();
+        let kind = named.map(ResponseKind::Telemetry);
         // A reply of the exchange stays as it is, with its echo and status.
         let is_described =
-            replies.any(|reply| Some(reply.telemetry) == named && reply.can_be(Verdict::Reply));
+            replies.any(|reply| Some(reply.kind) == kind && reply.can_be(Verdict::Reply));
         Self {
             exchange,
             reply: named.filter(|_| !is_described),
@@ -92,18 +93,25 @@ impl Awaited {
     }
 
     fn responses(&self) -> impl Iterator<Item = Response> {
-        let named = self.reply.map(|telemetry| Response {
-            telemetry,
+        let named = self.reply.map(|id| Response {
+            kind: ResponseKind::Telemetry(id),
             verdict: Verdict::Reply,
             echoes: &[],
             status: None,
             meanings: &[],
             reason: None,
         });
-        let others = self.exchange.responses.iter().copied();
-        others
-            .filter(move |response| named.is_none() || !response.can_be(Verdict::Reply))
-            .chain(named)
+        let others = self.exchange.responses.iter();
+        let requested = self.reply;
+        let others = others.filter_map(move |response| match (requested, response.kind) {
+            (Some(id), ResponseKind::Requested) => Some(Response {
+                kind: ResponseKind::Telemetry(id),
+                ..*response
+            }),
+            (Some(_), _) if response.can_be(Verdict::Reply) => None,
+            _ => Some(*response),
+        });
+        others.chain(named)
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -118,11 +126,11 @@ impl Awaited {
         }
     }
 
-    /// Return the response that telemetry is; None if it is none of them.
-    pub(super) fn matching(&self, telemetry: u32, data: &[u8]) -> Option<Response> {
+    /// Return the response that an arrival is; None if it is none of them.
+    pub(super) fn matching(&self, kind: ResponseKind, data: &[u8]) -> Option<Response> {
         self.responses().find(|response| {
             let mut echoes = response.echoes.iter();
-            response.telemetry == telemetry
+            response.kind == kind
                 && echoes.all(|echo| Some(echo.place.get(data, &[])) == self.source(echo.source))
         })
     }
@@ -134,9 +142,9 @@ impl Awaited {
     /// Return whether a response to one request could be taken for a response to the other.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         self.responses().any(|mine| {
-            other.responses().any(|theirs| {
-                mine.telemetry == theirs.telemetry && !self.differs(&mine, other, &theirs)
-            })
+            other
+                .responses()
+                .any(|theirs| mine.kind == theirs.kind && !self.differs(&mine, other, &theirs))
         })
     }
 

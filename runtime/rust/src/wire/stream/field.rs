@@ -1,7 +1,7 @@
 //! Fields of the header and trailer.
 
 use crate::wire::bits::{head, number};
-use crate::wire::link::{EnvelopeField, EnvelopeRole, NumberPlace, Stream, StreamRow};
+use crate::wire::link::{EnvelopeField, EnvelopeRole, NumberPlace, PacketForm, Stream, StreamRow};
 use crate::wire::Direction;
 
 impl EnvelopeField {
@@ -19,16 +19,21 @@ impl EnvelopeField {
         }
     }
 
+    /// Return the part of an id that it has.
+    pub(super) const fn part(&self, id: u32) -> u32 {
+        id.wrapping_shr(self.id_shift) & self.mask()
+    }
+
     /// Its value in a frame; 0 if that ends before.
-    pub(super) fn get(&self, form: &Stream, frame: &[u8]) -> u32 {
-        let behind = frame.len().saturating_sub(form.trailer_bytes);
+    pub(super) fn get(&self, packet: &PacketForm, frame: &[u8]) -> u32 {
+        let behind = frame.len().saturating_sub(packet.trailer_bytes);
         let at = self.at + if self.in_trailer { behind } else { 0 };
         let bytes = frame.get(at..at + self.size).unwrap_or(&[]);
         let join = |number: u32, byte: &u8| (number << 8) | u32::from(*byte);
-        let number = if self.little {
-            bytes.iter().rev().fold(0, join)
-        } else {
-            bytes.iter().fold(0, join)
+        let number = match bytes {
+            [byte] => u32::from(*byte), // quick, as noise is compared with it
+            _ if self.little => bytes.iter().rev().fold(0, join),
+            _ => bytes.iter().fold(0, join),
         };
         number.wrapping_shr(self.shift) & self.mask()
     }
@@ -80,8 +85,39 @@ impl Stream {
         Some((at, rows.get(at)?))
     }
 
-    /// The field of a role that there is at most once.
+    /// Return the packet formats of a direction and their indices.
+    pub(super) fn packets_of(
+        &self,
+        direction: Direction,
+    ) -> impl Iterator<Item = (usize, &'static PacketForm)> + Clone {
+        let packets = self.packets.iter().enumerate();
+        packets.filter(move |(_, packet)| packet.is_from(direction))
+    }
+}
+
+impl PacketForm {
+    const fn is_from(&self, direction: Direction) -> bool {
+        match direction {
+            Direction::Telecommand => self.from_host,
+            Direction::Telemetry => self.from_device,
+        }
+    }
+
+    /// Return the field of a role that there is at most once.
     pub(super) fn field(&self, role: EnvelopeRole) -> Option<&'static EnvelopeField> {
         self.fields.iter().find(|field| field.role == role)
+    }
+
+    /// Return the size of header and trailer in bytes.
+    pub(super) const fn around(&self) -> usize {
+        self.header_bytes + self.trailer_bytes
+    }
+
+    /// Return the id in a frame; None if the packet has none.
+    pub(super) fn id(&self, frame: &[u8]) -> Option<u32> {
+        let parts = self.fields.iter();
+        let parts = parts.filter(|field| field.role == EnvelopeRole::Id);
+        let parts = parts.map(|part| part.get(self, frame).wrapping_shl(part.id_shift));
+        parts.reduce(|id, part| id | part)
     }
 }

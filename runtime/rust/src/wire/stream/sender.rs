@@ -1,9 +1,17 @@
 //! Sender that does not wait for replies.
 
-use super::encoder::{encode, Values};
-use crate::wire::link::{EnvelopeField, EnvelopeRole, Link};
+use super::encoder::{encode, encode_request, Values};
+use crate::wire::link::{EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
+
+/// What is sent, with its id.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sent {
+    Telecommand(u32),
+    /// The packet that requests telemetry.
+    Request(u32),
+}
 
 /// Encodes telecommands of node `T` with header and trailer. `S` is the number of sequence
 /// counters: `SEQUENCES` of the module of the node.
@@ -21,8 +29,8 @@ use core::marker::PhantomData;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sender<T, const S: usize> {
-    /// Values of the header and trailer fields that the sender chooses. Initially those of the ICD;
-    /// `sequence` is the first number.
+    /// Values of the header and trailer fields that the sender chooses. `sequence` is the first
+    /// number.
     pub values: Values,
     link: &'static Link,
     next: [Option<u32>; S],
@@ -41,7 +49,7 @@ impl<T, const S: usize> Sender<T, S> {
             return Err(Error::Unsupported);
         }
         Ok(Self {
-            values: Values::new(link, Direction::Telecommand),
+            values: Values::default(),
             link,
             next: [None; S],
             node: PhantomData,
@@ -70,18 +78,57 @@ impl<T, const S: usize> Sender<T, S> {
     /// wrong length or `out` is too small, [`Error::Range`] if a header or trailer value does not
     /// fit into its field.
     pub fn put(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
+        self.put_packet(Sent::Telecommand(id), data, out)
+    }
+
+    /// Encode a request of the telemetry with this id and return the number of bytes written to
+    /// `out`.
+    ///
+    /// # Errors
+    ///
+    /// See [`encode_request`].
+    pub fn put_request(&mut self, id: u32, out: &mut [u8]) -> Result<usize, Error> {
+        self.put_packet(Sent::Request(id), &[], out)
+    }
+
+    /// Encode a packet with the next sequence number.
+    pub(super) fn put_packet(
+        &mut self,
+        sent: Sent,
+        data: &[u8],
+        out: &mut [u8],
+    ) -> Result<usize, Error> {
         let form = self.link.stream.as_ref().ok_or(Error::Unsupported)?;
-        let row = form.row(Direction::Telecommand, id);
-        let place = row.map_or(0, |(at, _)| if form.per_id { at } else { 0 });
+        let (place, packet) = match sent {
+            Sent::Telecommand(id) => {
+                let row = form.row(Direction::Telecommand, id);
+                let (place, row) = row.ok_or(Error::UnknownId { id })?;
+                (Some(place), usize::from(row.packet))
+            }
+            Sent::Request(_) => {
+                let request = form.request.as_ref().ok_or(Error::Unsupported)?;
+                (None, request.packet)
+            }
+        };
+        // Only messages have a counter for each id.
+        let key = if form.per_id { place } else { Some(0) };
+        let counter = key.and_then(|key| self.next.get_mut(key));
         let mut values = self.values;
-        if let Some(Some(next)) = self.next.get(place) {
-            values.sequence = *next;
+        if let Some(Some(next)) = counter {
+            values.sequence = Some(*next);
         }
-        let size = encode(self.link, Direction::Telecommand, id, data, &values, out)?;
-        let field = form.field(EnvelopeRole::Sequence);
-        let mask = field.map_or(0, EnvelopeField::mask);
-        if let Some(next) = self.next.get_mut(place) {
-            *next = Some(values.sequence.wrapping_add(1) & mask);
+        let size = match sent {
+            Sent::Telecommand(id) => {
+                encode(self.link, Direction::Telecommand, id, data, &values, out)
+            }
+            Sent::Request(id) => encode_request(self.link, id, &values, out),
+        }?;
+        let packet = form.packets.get(packet);
+        let field = packet.and_then(|packet| packet.field(EnvelopeRole::Sequence));
+        if let (Some(field), Some(counter)) = (field, counter) {
+            let default = field.value(Direction::Telecommand);
+            let number = values.sequence.unwrap_or(default);
+            *counter = Some(number.wrapping_add(1) & field.mask());
         }
         Ok(size)
     }

@@ -3,9 +3,10 @@
 use super::awaited::{Awaited, Needed, Owed};
 use super::encoder::Values;
 use super::judge::Event;
+use super::sender::Sent;
 use super::Request;
 use crate::wire::bits::{head, reached};
-use crate::wire::link::{Response, Settings, Stream, StreamRow, Verdict};
+use crate::wire::link::{Response, ResponseKind, Settings, Stream, StreamRow, Verdict};
 use crate::wire::{Direction, Error};
 
 /// Largest number of requests whose responses are awaited or may still arrive late.
@@ -31,7 +32,7 @@ struct Slot<const N: usize> {
     number: u32, // of the request, in the order of their beginning
     direction: Direction,
     id: u32,
-    sent_id: u32, // of the telecommand
+    sent: Sent,
     data: [u8; N],
     length: usize,
     repeats: bool, // whether it may be sent again after a time-out
@@ -51,7 +52,7 @@ impl<const N: usize> Slot<N> {
         number: 0,
         direction: Direction::Telecommand,
         id: 0,
-        sent_id: 0,
+        sent: Sent::Telecommand(0),
         data: [0; N],
         length: 0,
         repeats: false,
@@ -87,6 +88,21 @@ struct Late {
     awaited: Awaited,
     owed: Owed,
     until: u32,
+}
+
+/// Telemetry or a packet without a message.
+struct Arrival<'a> {
+    id: u32,
+    packet: Option<usize>,
+    data: &'a [u8],
+    values: &'a Values,
+}
+
+impl Arrival<'_> {
+    fn kind(&self) -> ResponseKind {
+        self.packet
+            .map_or(ResponseKind::Telemetry(self.id), ResponseKind::Packet)
+    }
 }
 
 /// The requests of a client.
@@ -127,17 +143,21 @@ impl<const N: usize, const R: usize> Slots<N, R> {
 
     pub(super) fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
         let asks = request.direction == Direction::Telemetry;
-        let row = self.telecommand(request)?;
-        let reply = request.reply.filter(|_| !asks);
-        if let Some(id) = reply {
+        let (sent, row) = self.sent_for(request)?;
+        let named = request.reply.filter(|_| !asks);
+        if let Some(id) = named {
             let known = self.form.row(Direction::Telemetry, id);
             known.ok_or(Error::UnknownId { id })?;
         }
         let mut slots = self.requests.iter_mut();
         let free = slots.find(|slot| slot.state == State::Idle);
         let slot = free.ok_or(Error::Busy)?;
-        let length = if asks { row.least } else { request.data.len() };
-        let expected = length.clamp(row.least, row.most);
+        let (least, most) = match sent {
+            Sent::Telecommand(_) => (row.least, row.most),
+            Sent::Request(_) => (0, 0), // the encoder knows its data
+        };
+        let length = if asks { least } else { request.data.len() };
+        let expected = length.clamp(least, most);
         let room = slot.data.get_mut(..length);
         let data = room.filter(|_| length == expected).ok_or(Error::Length {
             expected,
@@ -148,16 +168,18 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         } else {
             data.copy_from_slice(request.data);
         }
-        let exchange = row
-            .exchange
-            .and_then(|index| self.form.exchanges.get(index));
+        let (exchange, reply) = match sent {
+            Sent::Telecommand(_) => (row.exchange, named),
+            Sent::Request(id) => (self.form.request.map(|form| form.exchange), Some(id)),
+        };
+        let exchange = exchange.and_then(|index| self.form.exchanges.get(index));
         let timeout = exchange.map_or(0, |exchange| exchange.timeout_ms);
         *slot = Slot {
             state: State::Queued,
             number: self.begun,
             direction: request.direction,
             id: request.id,
-            sent_id: row.id,
+            sent,
             length,
             repeats: asks || request.repeat || row.repeats,
             awaited: Awaited::new(exchange, reply, row.id, data),
@@ -173,21 +195,25 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         Ok(())
     }
 
-    /// Return the telecommand that is sent.
-    fn telecommand(&self, request: &Request<'_>) -> Result<&'static StreamRow, Error> {
+    /// Return what is sent for a request: its telecommand, or a packet that requests telemetry; and
+    /// the message of its id.
+    fn sent_for(&self, request: &Request<'_>) -> Result<(Sent, &'static StreamRow), Error> {
         let id = request.id;
+        let message = self.form.row(request.direction, id).map(|(_, row)| row);
         if request.direction == Direction::Telecommand {
-            let row = self.form.row(Direction::Telecommand, id);
-            return row.map(|(_, row)| row).ok_or(Error::UnknownId { id });
+            let row = message.ok_or(Error::UnknownId { id })?;
+            return Ok((Sent::Telecommand(id), row));
         }
         let mut rows = self.form.telecommands.iter();
-        let asking = rows.find(|row| row.requests == Some(id));
-        let is_known = self.form.row(Direction::Telemetry, id).is_some();
-        asking.ok_or(if is_known {
-            Error::Unsupported
+        if let Some(row) = rows.find(|row| row.requests == Some(id)) {
+            return Ok((Sent::Telecommand(row.id), row));
+        }
+        let row = message.ok_or(Error::UnknownId { id })?;
+        if row.is_requested {
+            Ok((Sent::Request(id), row))
         } else {
-            Error::UnknownId { id }
-        })
+            Err(Error::Unsupported)
+        }
     }
 
     /// Store the time, and drop responses that can no longer arrive.
@@ -207,10 +233,10 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         oldest.map(|(place, _)| place)
     }
 
-    /// Write the next message to send, by `put` with its id and data.
+    /// Write the next message to send, by `put` with its data.
     pub(super) fn output(
         &mut self,
-        put: impl FnOnce(u32, &[u8]) -> Result<usize, Error>,
+        put: impl FnOnce(Sent, &[u8]) -> Result<usize, Error>,
     ) -> Result<Option<usize>, Error> {
         let place = self.oldest(|slot| slot.state == State::Queued);
         let sent = place.filter(|place| self.may_be_sent(*place));
@@ -218,7 +244,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
             Some(slot) => slot,
             None => return Ok(None),
         };
-        let size = put(slot.sent_id, head(&slot.data, slot.length))?;
+        let size = put(slot.sent, head(&slot.data, slot.length))?;
         let now = self.now;
         slot.attempts = slot.attempts.saturating_add(1);
         slot.missing = slot.awaited.needed();
@@ -291,42 +317,56 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         })
     }
 
-    /// Return what telemetry is: a response to a request, late, stray or unsolicited.
+    /// Return what arrived: a response to a request, late, stray or unsolicited.
     pub(super) fn found<'a>(&mut self, found: Event<'a>) -> Event<'a> {
-        let (id, data, values) = match found {
-            Event::Message { id, data, values } => (id, data, values),
+        let arrival = match found {
+            Event::Message { id, data, values } => Arrival {
+                id,
+                packet: None,
+                data,
+                values,
+            },
+            Event::Packet {
+                packet,
+                id,
+                data,
+                values,
+            } => Arrival {
+                id,
+                packet: Some(packet),
+                data,
+                values,
+            },
             other => return other,
         };
-        let matches = |awaited: &Awaited| awaited.matching(id, data);
+        let (kind, data) = (arrival.kind(), arrival.data);
+        let matches = |awaited: &Awaited| awaited.matching(kind, data);
         let place = self.oldest(|slot| slot.is_awaited() && matches(&slot.awaited).is_some());
         if let Some(place) = place {
-            return self.responded(place, id, data, values).unwrap_or(found);
+            return self.responded(place, &arrival).unwrap_or(found);
         }
+        let (id, packet) = (arrival.id, arrival.packet);
         for entry in &mut self.late {
             let response = entry.as_ref().and_then(|late| matches(&late.awaited));
             if let (Some(late), Some(response)) = (entry.as_mut(), response) {
                 late.owed.remove(response.verdict_of(data));
                 *entry = entry.filter(|late| late.owed != Owed::NONE);
-                return Event::Late { id, data };
+                return Event::Late { id, packet, data };
             }
         }
-        if self.form.confirming.contains(&id) {
-            return Event::Stray { id, data };
+        if packet.is_some() || self.form.confirming.contains(&id) {
+            return Event::Stray { id, packet, data };
         }
         found
     }
 
     /// Process a response to a request.
-    fn responded<'a>(
-        &mut self,
-        place: usize,
-        reply: u32,
-        data: &'a [u8],
-        values: Values,
-    ) -> Option<Event<'a>> {
+    fn responded<'a>(&mut self, place: usize, arrival: &Arrival<'a>) -> Option<Event<'a>> {
+        let (reply, packet) = (arrival.id, arrival.packet);
+        let (data, values) = (arrival.data, arrival.values);
         let (now, settings) = (self.now, self.settings);
         let slot = self.requests.get_mut(place)?;
-        let response: Response = slot.awaited.matching(reply, data)?;
+        let response: Response = slot.awaited.matching(arrival.kind(), data)?;
         let verdict = response.verdict_of(data);
         let code = response.reason.map(|reason| reason.get(data, &[]));
         let (direction, id, attempts) = (slot.direction, slot.id, slot.attempts);
@@ -358,6 +398,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
                 attempts,
                 code,
                 reply,
+                packet,
                 data,
             },
             Verdict::Busy if is_ended => Event::Busy {
@@ -366,6 +407,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
                 attempts,
                 code,
                 reply,
+                packet,
                 data,
             },
             Verdict::Ack | Verdict::Reply if is_ended => Event::Done {
@@ -373,6 +415,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
                 id,
                 attempts,
                 reply,
+                packet,
                 data,
                 values,
             },
@@ -387,6 +430,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
                 direction,
                 id,
                 reply,
+                packet,
                 data,
             },
         })

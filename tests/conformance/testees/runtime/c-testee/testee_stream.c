@@ -4,7 +4,9 @@
 
 #include <stdlib.h>
 
-static const char *const roles[ICD_ENVELOPE_VALUES] = {"sequence", "source", "destination", "type", "flags", "time"};
+static const char *const roles[ICD_ENVELOPE_VALUES] = {
+    "sequence", "source", "destination", "type", "flags", "time", "status", "reason",
+};
 
 static icd_direction_t next_direction(void)
 {
@@ -12,11 +14,12 @@ static icd_direction_t next_direction(void)
 }
 
 /* The field that does not hold its value. */
-static void refuse_range(const icd_link_t *link, const icd_envelope_values_t *values)
+static void refuse_range(const icd_packet_form_t *packet, const icd_envelope_values_t *values)
 {
-    for (size_t i = 0; i < link->stream->field_count; ++i) {
-        const icd_envelope_field_t *field = &link->stream->fields[i];
-        if (field->role < ICD_ENVELOPE_CONSTANT && ((uint64_t)values->of[field->role] >> field->bits) != 0u) {
+    for (size_t i = 0; i < packet->field_count; ++i) {
+        const icd_envelope_field_t *field = &packet->fields[i];
+        if (field->role < ICD_ENVELOPE_CONSTANT && values->of[field->role] != ICD_ENVELOPE_DEFAULT &&
+            ((uint64_t)values->of[field->role] >> field->bits) != 0u) {
             refuse("range");
             put_text("field", roles[field->role]);
             return;
@@ -25,22 +28,39 @@ static void refuse_range(const icd_link_t *link, const icd_envelope_values_t *va
     refuse_status(ICD_ERROR_RANGE);
 }
 
-/* The length that is nearest. */
-static size_t nearest(const icd_link_t *link, icd_direction_t direction, uint32_t id, size_t length)
+/* The message with this id, NULL if there is none. */
+static const icd_stream_row_t *row_of(const icd_link_t *link, icd_direction_t direction, uint32_t id)
 {
     for (size_t i = 0; i < link->stream->row_counts[direction]; ++i) {
         const icd_stream_row_t *row = &link->stream->rows[direction][i];
         if (row->id == id) {
-            return length > row->most ? row->most : row->least;
+            return row;
         }
     }
-    return length;
+    return NULL;
+}
+
+/* The length that is nearest. */
+static size_t nearest(const icd_link_t *link, icd_direction_t direction, uint32_t id, size_t length)
+{
+    const icd_stream_row_t *row = row_of(link, direction, id);
+    return row == NULL ? length : length > row->most ? row->most : row->least;
+}
+
+/* Encodes a message, or the packet that requests telemetry. */
+static icd_status_t stream_line(const icd_link_t *link, bool requests, icd_direction_t direction, uint32_t id, octets_t data,
+                           const icd_envelope_values_t *values, uint8_t *line, size_t capacity, size_t *written)
+{
+    return requests ? icd_stream_encode_request(link, id, values, line, capacity, written)
+                    : icd_stream_encode(link, direction, id, data.data, data.length, values, line, capacity, written);
 }
 
 static void stream_encode(void)
 {
     const icd_link_t *link = next_link();
-    const icd_direction_t direction = next_direction();
+    const uint32_t kind = next_number();
+    const bool requests = kind == 2u;
+    const icd_direction_t direction = kind == 1u ? ICD_TELEMETRY : ICD_TELECOMMAND;
     const uint32_t id = next_number();
     const octets_t data = next_octets();
     const size_t capacity = 2u * data.length + 300u;
@@ -50,20 +70,19 @@ static void stream_encode(void)
     for (size_t i = 0; i < ICD_ENVELOPE_VALUES; ++i) {
         values.of[i] = next_or(values.of[i]);
     }
-    const icd_status_t status =
-        icd_stream_encode(link, direction, id, data.data, data.length, &values, line, capacity, &written);
+    const icd_status_t status = stream_line(link, requests, direction, id, data, &values, line, capacity, &written);
     if (status == ICD_ERROR_RANGE) {
-        refuse_range(link, &values);
+        const size_t packet = requests ? link->stream->request->packet : row_of(link, direction, id)->packet;
+        refuse_range(&link->stream->packets[packet], &values);
     } else if (status == ICD_ERROR_LENGTH) {
         refuse_length("length", nearest(link, direction, id, data.length), data.length);
     } else if (answers(status)) {
         uint8_t *exact = memory(written);
         size_t again = 0;
         put_octets("bytes", line, written);
-        if (icd_stream_encode(link, direction, id, data.data, data.length, &values, exact, written, &again) != ICD_OK ||
-            again != written ||
-            (written != 0u && icd_stream_encode(link, direction, id, data.data, data.length, &values, exact,
-                                                written - 1u, &again) != ICD_ERROR_LENGTH)) {
+        if (stream_line(link, requests, direction, id, data, &values, exact, written, &again) != ICD_OK || again != written ||
+            (written != 0u && stream_line(link, requests, direction, id, data, &values, exact, written - 1u, &again) !=
+                                  ICD_ERROR_LENGTH)) {
             refuse("room"); /* it takes just as many bytes as it says */
         }
     }
@@ -73,11 +92,14 @@ static void on_stream_event(void *context, const icd_stream_event_t *event)
 {
     static const char *const names[] = {"message", "gap",     "checksum", "length", "unknown_id", "overrun",
                                         "framing", "done",    "timeout",  "sent",   "refused",    "busy",
-                                        "progress", "reply", "late",     "stray"};
+                                        "progress", "reply", "late",     "stray",  "request",    "packet"};
     const icd_link_t *link = context;
     const icd_stream_kind_t kind = event->kind;
     const bool has_code = kind == ICD_STREAM_REFUSED || kind == ICD_STREAM_BUSY;
     put_row(names[kind]);
+    if (kind == ICD_STREAM_PACKET) {
+        put_number("packet", event->packet);
+    }
     if (event->has_id) {
         put_number("id", event->id);
     }
@@ -87,18 +109,20 @@ static void on_stream_event(void *context, const icd_stream_event_t *event)
     if (has_code && event->has_code) {
         put_number("code", event->code);
     }
-    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_REPLY) {
+    if ((kind == ICD_STREAM_DONE || kind == ICD_STREAM_REPLY) && event->has_reply) {
         put_number("reply", event->reply);
     }
-    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_MESSAGE || kind >= ICD_STREAM_PROGRESS) {
+    if (kind == ICD_STREAM_DONE || kind == ICD_STREAM_MESSAGE ||
+        (kind >= ICD_STREAM_PROGRESS && kind != ICD_STREAM_REQUEST)) {
         put_octets("bytes", event->data, event->length);
     }
     if (kind == ICD_STREAM_GAP) {
         put_number("missing", event->missing);
     }
-    if (kind == ICD_STREAM_MESSAGE) {
-        for (size_t i = 0; i < link->stream->field_count; ++i) {
-            const icd_envelope_role_t role = link->stream->fields[i].role;
+    if (kind == ICD_STREAM_MESSAGE || kind >= ICD_STREAM_REQUEST) {
+        const icd_packet_form_t *packet = &link->stream->packets[event->packet];
+        for (size_t i = 0; i < packet->field_count; ++i) {
+            const icd_envelope_role_t role = packet->fields[i].role;
             if (role < ICD_ENVELOPE_CONSTANT) {
                 put_number(roles[role], event->values.of[role]);
             }
@@ -172,7 +196,7 @@ static void start_stream(icd_stream_client_t *client, uint32_t now, icd_directio
     if (status == ICD_ERROR_LENGTH) {
         put_row("error");
         put_word("error", "length");
-        put_number("expected", nearest(client->link, direction, request.id, request.length));
+        put_number("expected", nearest(client->sender.link, direction, request.id, request.length));
         put_number("actual", request.length);
     } else if (status != ICD_OK) {
         put_row("error");
@@ -226,7 +250,7 @@ static void stream_client(void)
     while (has_words()) {
         const uint32_t now = next_number();
         const bool takes = next_number() != 0u;
-        const size_t capacity = 2u * client->link->longest + 8u;
+        const size_t capacity = 2u * client->sender.link->longest + 8u;
         uint8_t *line = memory(capacity);
         size_t written = 0;
         put_row("step");

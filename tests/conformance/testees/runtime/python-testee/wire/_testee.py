@@ -28,7 +28,7 @@ from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
 from .link import CanKind, Link
 from .logs import LogFrame, LogMessage, LogReader, LogWriter
-from .stream import StreamDecoder, StreamEvent, stream_encode
+from .stream import StreamDecoder, StreamEvent, stream_encode, stream_encode_request
 from .times import DosTime, dos_time_pack, dos_time_unpack
 from .uart import UartDecoder, uart_encode, uart_kind
 
@@ -226,14 +226,27 @@ def _link_data(link: Link, words: Words) -> str:
 
 
 _DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
-_VALUES = ("sequence", "source", "destination", "type", "flags", "time")
+_REQUEST = len(_DIRECTIONS)
+_VALUES = (
+    "sequence",
+    "source",
+    "destination",
+    "type",
+    "flags",
+    "time",
+    "status",
+    "reason",
+)
 
 
 def _stream_encode(link: Link, words: Words) -> str:
-    direction, id, data = _DIRECTIONS[number(words)], number(words), octets(words)
+    direction, id, data = number(words), number(words), octets(words)
     given = {role: maybe(words) for role in _VALUES}
     values = {role: value for role, value in given.items() if value is not None}
-    return f" bytes={stream_encode(link, id, data, direction, **values).hex()}"
+    if direction == _REQUEST:
+        return f" bytes={stream_encode_request(link, id, **values).hex()}"
+    line = stream_encode(link, id, data, _DIRECTIONS[direction], **values)
+    return f" bytes={line.hex()}"
 
 
 def _stream_events(link: Link, words: Words) -> str:
@@ -248,9 +261,11 @@ def _stream_events(link: Link, words: Words) -> str:
 
 def _stream_event(event: StreamEvent) -> str:
     said = f" {event.event}" + ("" if event.id is None else f" id={event.id}")
-    if event.event == "message":
+    if event.packet is not None:
+        said += f" packet={event.packet}"
+    if event.event in ("message", "packet"):
         said += f" bytes={event.data.hex()}"
-        said += "".join(f" {role}={value}" for role, value in event.values.items())
+    said += "".join(f" {role}={value}" for role, value in event.values.items())
     return f"{said} missing={event.missing}" if event.event == "gap" else said
 
 

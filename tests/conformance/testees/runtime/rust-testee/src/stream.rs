@@ -3,8 +3,10 @@
 use crate::line::{hex, Answer, Words};
 use crate::nodes::LONGEST;
 use crate::wire::explained;
-use icd::wire::link::{EnvelopeRole, Link, Stream};
-use icd::wire::stream::{encode, Client, Decoder, Event, NodeEvent, Request, Values};
+use icd::wire::link::Link;
+use icd::wire::stream::{
+    encode, encode_request, Client, Decoder, Event, NodeEvent, Request, Values,
+};
 use icd::wire::{Direction, Error, Settings};
 use std::fmt::Write;
 
@@ -18,9 +20,13 @@ fn direction(words: &mut Words) -> Direction {
 }
 
 pub fn stream_encode(link: &'static Link, words: &mut Words) -> Answer {
-    let direction = direction(words);
+    let direction = match words.word() {
+        "0" => Some(Direction::Telecommand),
+        "1" => Some(Direction::Telemetry),
+        _ => None, // the packet that requests telemetry
+    };
     let (id, data) = (words.number(), words.octets());
-    let mut values = Values::new(link, direction);
+    let mut values = Values::default();
     for place in [
         &mut values.sequence,
         &mut values.source,
@@ -28,16 +34,21 @@ pub fn stream_encode(link: &'static Link, words: &mut Words) -> Answer {
         &mut values.kind,
         &mut values.flags,
         &mut values.time,
+        &mut values.status,
+        &mut values.reason,
     ] {
-        *place = words.maybe().unwrap_or(*place);
+        *place = words.maybe();
     }
-    let mut out = vec![0; data.len() * 2 + 300];
-    let size = encode(link, direction, id, &data, &values, &mut out)?;
+    let encoded = |out: &mut [u8]| match direction {
+        Some(direction) => encode(link, direction, id, &data, &values, out),
+        None => encode_request(link, id, &values, out),
+    };
+    let mut out = vec![0; 2 * LONGEST + 300];
+    let size = encoded(&mut out)?;
     // It takes just as many bytes as it says.
     let mut exact = vec![0; size];
-    encode(link, direction, id, &data, &values, &mut exact)?;
-    let short = exact.get_mut(1..).unwrap_or(&mut []);
-    match encode(link, direction, id, &data, &values, short) {
+    encoded(&mut exact)?;
+    match encoded(exact.get_mut(1..).unwrap_or(&mut [])) {
         Err(Error::Length { expected, .. }) if expected == size => {
             Ok(format!(" bytes={}", hex(&out[..size])))
         }
@@ -47,11 +58,10 @@ pub fn stream_encode(link: &'static Link, words: &mut Words) -> Answer {
 
 pub fn stream_events(link: &'static Link, words: &mut Words) -> Answer {
     let (direction, limit) = (direction(words), words.number());
-    let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
     let mut decoder = Decoder::<LONGEST, SEQUENCES>::with_limit(link, direction, limit)?;
     let mut answer = String::new();
     while words.more() {
-        decoder.feed(&words.octets(), |event| answer += &shown(form, &event));
+        decoder.feed(&words.octets(), |event| answer += &shown(&event));
     }
     let (discarded, pending) = (decoder.discarded(), decoder.pending());
     Ok(format!(
@@ -59,23 +69,23 @@ pub fn stream_events(link: &'static Link, words: &mut Words) -> Answer {
     ))
 }
 
-fn shown(form: &Stream, event: &Event<'_>) -> String {
+fn shown(event: &Event<'_>) -> String {
     match *event {
         Event::Message { id, data, values } => {
-            let mut row = format!(" message id={id} bytes={}", hex(data));
-            for field in form.fields {
-                let (name, value) = match field.role {
-                    EnvelopeRole::Sequence => ("sequence", values.sequence),
-                    EnvelopeRole::Source => ("source", values.source),
-                    EnvelopeRole::Destination => ("destination", values.destination),
-                    EnvelopeRole::Type => ("type", values.kind),
-                    EnvelopeRole::Flags => ("flags", values.flags),
-                    EnvelopeRole::Time => ("time", values.time),
-                    _ => continue,
-                };
-                let _ = write!(row, " {name}={value}");
-            }
-            row
+            format!(" message id={id} bytes={}{}", hex(data), chosen(values))
+        }
+        Event::Request { id, values } => format!(" request id={id}{}", chosen(values)),
+        Event::Packet {
+            packet,
+            id,
+            data,
+            values,
+        } => {
+            let bytes = hex(data);
+            format!(
+                " packet packet={packet} id={id} bytes={bytes}{}",
+                chosen(values)
+            )
         }
         Event::Gap { id, missing } => format!(" gap id={id} missing={missing}"),
         Event::Checksum { id } => format!(" checksum id={id}"),
@@ -88,11 +98,16 @@ fn shown(form: &Stream, event: &Event<'_>) -> String {
             id,
             attempts,
             reply,
+            packet,
             data,
             ..
         } => {
             let bytes = hex(data);
-            format!(" done id={id} attempts={attempts} reply={reply} bytes={bytes}")
+            let reply = match packet {
+                Some(_) => String::new(), // not telemetry
+                None => format!(" reply={reply}"),
+            };
+            format!(" done id={id} attempts={attempts}{reply} bytes={bytes}")
         }
         Event::Sent { id, attempts, .. } => format!(" sent id={id} attempts={attempts}"),
         Event::Refused {
@@ -106,10 +121,30 @@ fn shown(form: &Stream, event: &Event<'_>) -> String {
         Event::Reply {
             id, reply, data, ..
         } => format!(" reply id={id} reply={reply} bytes={}", hex(data)),
-        Event::Late { id, data } => format!(" late id={id} bytes={}", hex(data)),
-        Event::Stray { id, data } => format!(" stray id={id} bytes={}", hex(data)),
+        Event::Late { id, data, .. } => format!(" late id={id} bytes={}", hex(data)),
+        Event::Stray { id, data, .. } => format!(" stray id={id} bytes={}", hex(data)),
         _ => " other".into(),
     }
+}
+
+fn chosen(values: &Values) -> String {
+    let values = [
+        ("sequence", values.sequence),
+        ("source", values.source),
+        ("destination", values.destination),
+        ("type", values.kind),
+        ("flags", values.flags),
+        ("time", values.time),
+        ("status", values.status),
+        ("reason", values.reason),
+    ];
+    let mut row = String::new();
+    for (name, value) in values {
+        if let Some(value) = value {
+            let _ = write!(row, " {name}={value}");
+        }
+    }
+    row
 }
 
 fn coded(code: Option<u32>) -> String {
@@ -125,7 +160,6 @@ pub fn stream_client(link: &'static Link, words: &mut Words) -> Answer {
 }
 
 fn scripted<const R: usize>(link: &'static Link, words: &mut Words) -> Answer {
-    let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
     let settings = Settings {
         reply_timeout_ms: words.maybe().unwrap_or(link.client.reply_timeout_ms),
         retries: words.maybe().unwrap_or(link.client.retries),
@@ -143,7 +177,7 @@ fn scripted<const R: usize>(link: &'static Link, words: &mut Words) -> Answer {
     while words.more() {
         let (now, takes) = (words.number(), words.flag());
         answer += " step";
-        happen(&mut client, form, now, words, &mut answer);
+        happen(&mut client, now, words, &mut answer);
         if takes {
             while let Some(bytes) = client.output(&mut room)? {
                 let _ = write!(answer, " stream bytes={}", hex(bytes));
@@ -158,12 +192,11 @@ fn scripted<const R: usize>(link: &'static Link, words: &mut Words) -> Answer {
 
 fn happen<const R: usize>(
     client: &mut Client<(), LONGEST, SEQUENCES, R>,
-    form: &Stream,
     now: u32,
     words: &mut Words,
     answer: &mut String,
 ) {
-    let on_event = |event: NodeEvent<'_, ()>| *answer += &shown(form, &event);
+    let on_event = |event: NodeEvent<'_, ()>| *answer += &shown(&event);
     match words.word() {
         "telecommand" => {
             let (id, repeat, is_named) = (words.number(), words.flag(), words.flag());

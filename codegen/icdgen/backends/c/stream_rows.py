@@ -1,0 +1,106 @@
+"""Rows of the tables of framed links."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.backends.c.facts import boolean
+from icdgen.backends.c.text import plain
+from icdgen.backends.lines import STEP
+from icdgen.protocol.envelope import EnvelopeField, Stream, StreamRow
+from icdgen.protocol.exchange import NumberPlace
+
+
+class Row(NamedTuple):
+    """Value of an initialiser, with a comment; subject to a condition of the
+    preprocessor if there is one.
+    """
+
+    value: str
+    text: str = ""
+    condition: str = ""
+
+    def __str__(self) -> str:
+        row = f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
+        return (
+            f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
+        )
+
+
+def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
+    """Return the sizes of buffers of a node with packets."""
+    return [
+        (
+            "LONGEST",
+            form.longest,
+            "Buffer size of a decoder in bytes: the longest message with header and trailer.",
+        ),
+        (
+            "LINE_BYTES",
+            form.longest_line,
+            "Largest size in bytes of an encoded message.",
+        ),
+        (
+            "SEQUENCES",
+            form.sequences,
+            "Number of sequence counters that a decoder or a sender needs.",
+        ),
+        (
+            "REQUEST_BYTES",
+            form.longest_request,
+            "Buffer size of a client per request in bytes, in addition to LONGEST.",
+        ),
+    ]
+
+
+def field_row(field: EnvelopeField) -> Row:
+    """Return the row of a field of packets."""
+    # An id has no values. Its row has the shift of the part instead.
+    has_values = field.role != "id"
+    pair = field.values if has_values else (field.id_shift, field.id_shift)
+    values = ", ".join(f"{value:#x}u" for value in pair)
+    numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
+    return Row(
+        f"{{ICD_ENVELOPE_{field.role.upper()}, {boolean(field.in_trailer)}, {numbers}}}"
+    )
+
+
+def number_place(place: NumberPlace | None, offset: int = 0) -> str:
+    """Return the initialiser of the place of a number; ``offset``: bytes in front of
+    it. All zeros if there is no number.
+    """
+    if place is None:
+        return "{0u, 0u, 0u, 0u, false}"
+    numbers = (place.at + offset, place.size, place.shift, place.bits)
+    return (
+        f"{{{', '.join(f'{number}u' for number in numbers)}, {boolean(place.little)}}}"
+    )
+
+
+def verdict_name(verdict: str) -> str:
+    """Return the enumerator of a verdict."""
+    return f"ICD_VERDICT_{verdict.upper()}"
+
+
+def only_id(form: Stream, packet: int, direction: str) -> int:
+    """Return the id of the only message of a packet, 0 without one."""
+    ids = (row.id for row in form.rows(direction) if row.packet == packet)
+    return min(ids, default=0)
+
+
+def message_row(row: StreamRow, exchange: str | None) -> Row:
+    """Return the row of a message in packets."""
+    flags = {
+        "CUTS_ZEROS": row.cuts_zeros,
+        "REPEATS": row.repeats,
+        "REQUESTS": row.requests is not None,
+        "REQUESTED": row.is_requested,
+    }
+    values = (
+        f"{row.id:#x}u, {row.least}u, {row.most}u",
+        " | ".join(f"ICD_STREAM_{name}" for name, is_set in flags.items() if is_set)
+        or "0u",
+        f"{row.seed}u, {row.packet}u, {row.requests or 0:#x}u",
+        exchange or "NULL",
+    )
+    return Row(f"{{{', '.join(values)}}}", plain(row.name))

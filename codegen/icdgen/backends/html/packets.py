@@ -1,0 +1,159 @@
+"""Packet formats of a link on the page of its protocol: fields, sender and content."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from icdgen.backends.html import envelopes
+from icdgen.backends.html.links import free_name, slug
+from icdgen.backends.html.relations import Place, Relations
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.icd.packets import BOTH, DEVICE, HOST, Packet, Packets, declared_packets
+from icdgen.icd.responses import declared_responses, responses_in
+from icdgen.protocol.envelope import NOTHING, REQUEST, PacketFormat, Stream
+from icdgen.wording import count
+
+_SENDERS = {HOST: "host", DEVICE: "device", BOTH: "host and device"}
+
+
+class Content(NamedTuple):
+    """Something that a packet carries, in words, with links to the messages."""
+
+    label: str
+    text: str
+    messages: list[Place]
+
+
+class PacketView(NamedTuple):
+    """Packet format as its page shows it.
+
+    ``name`` and ``contents`` are empty if the link has one format.
+    """
+
+    name: str
+    anchor: str
+    summary: str
+    contents: list[Content]
+    boxes: list[tuple[str, str, float, str]]
+    places: list[envelopes.Place]
+
+
+def packet_views(relations: Relations, node: Node, stream: Stream) -> list[PacketView]:
+    """Return the packet formats of a link, in the order of the ICD."""
+    packets, urls = _declared(relations, node), packet_urls(relations, node)
+    enum_urls = {
+        enum.name: relations.links.enum(enum)
+        for owner in (*relations.icd.included(node), node)
+        for enum in owner.enums
+    }
+    return [
+        PacketView(
+            packet.name,
+            urls[packet.name].partition("#")[2],
+            packet.section.get("summary", "") if packet.name else "",
+            (
+                _contents(relations, node, packets, packet, form, stream)
+                if packet.name
+                else []
+            ),
+            envelopes.boxes(packet, form),
+            envelopes.places(packet, enum_urls),
+        )
+        for packet, form in zip(packets.all, stream.packets, strict=True)
+    ]
+
+
+def packet_urls(relations: Relations, node: Node) -> dict[str, str]:
+    """Return the links to the packet formats of a link, by name; the name is empty if
+    there is one.
+    """
+    page, taken = relations.links.protocol(node.name), set[str]()
+    return {
+        packet.name: f"{page}#{_anchor(packet.name, node, taken)}"
+        for packet in _declared(relations, node).all
+    }
+
+
+def _anchor(packet: str, node: Node, taken: set[str]) -> str:
+    if not packet:
+        return "envelope"
+    return free_name(f"packet-{slug(packet, node.vocabulary)}", taken)
+
+
+def _section(relations: Relations, node: Node) -> Mapping[str, Any]:
+    """Return the `stream` of a node; empty without one."""
+    section: Mapping[str, Any] = relations.icd.protocol_of(node).get("stream", {})
+    return section
+
+
+def _declared(relations: Relations, node: Node) -> Packets:
+    messages = relations.icd.messages_of(node)
+    return declared_packets(_section(relations, node), messages)
+
+
+def _contents(
+    relations: Relations,
+    node: Node,
+    packets: Packets,
+    packet: Packet,
+    form: PacketFormat,
+    stream: Stream,
+) -> list[Content]:
+    """Return the sender of a packet, and what it carries."""
+    messages = relations.icd.messages_of(node)
+    contents = [Content("Sent by", _SENDERS[packet.section["from"]], [])]
+    if form.content == NOTHING:
+        section = _section(relations, node)
+        refused = _responded_to(section.get("commands", {}), messages, packet.name)
+        is_of_request = packet.name in _packets_in(section.get("requests", {}))
+        text = "requests of telemetry" if is_of_request else ""
+        return [
+            *contents,
+            Content("Carries", "no message", []),
+            Content("Responds to", text, [*map(relations.place, refused)]),
+        ]
+    carried = [
+        relations.place(message)
+        for message in messages
+        if form.content != REQUEST and packet in _packets_of(packets, message)
+    ]
+    if carried:
+        contents.append(Content("Carries", "", carried))
+    if packet.name == packets.requesting and stream.request:
+        ids = {row.id for row in stream.telemetry if row.is_requested}
+        requested = [
+            relations.place(each) for each in messages if each.telemetry_id in ids
+        ]
+        reserved = stream.request.reserved
+        text = f"with {count(reserved, 'byte')} of zeros as data" if reserved else ""
+        contents.append(Content("Requests", text, requested))
+    return contents
+
+
+def _packets_of(packets: Packets, message: Message) -> list[Packet]:
+    """Return the packets in which a message is sent."""
+    ids = {TELECOMMAND: message.telecommand_id, TELEMETRY: message.telemetry_id}
+    return [
+        packet
+        for direction, id in ids.items()
+        if id is not None
+        for packet in packets.of(message.name, direction)
+    ]
+
+
+def _packets_in(keys: Mapping[str, Any]) -> set[str]:
+    """Return the packets that respond, of `commands`, `requests` or a `response`."""
+    return {row["packet"] for row in responses_in(keys).values() if "packet" in row}
+
+
+def _responded_to(
+    commands: Mapping[str, Any], messages: Iterable[Message], packet: str
+) -> Iterator[Message]:
+    """Yield the telecommands to which a packet responds."""
+    for message in messages:
+        rows = declared_responses(commands, message).values()
+        if message.telecommand_id is not None and any(
+            row.get("packet") == packet for row in rows
+        ):
+            yield message

@@ -1,0 +1,202 @@
+"""Packet formats of a framed link, as the ICD declares them: ``packets`` of a `stream`,
+or its ``header`` and ``trailer`` alone.
+
+`icdgen.icd.rules.packets` checks them; `icdgen.protocol.enveloping` makes tables of
+them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
+from icdgen.icd.responses import Section, declared_responses, responses_in
+
+HOST, DEVICE, BOTH = "host", "device", "both"
+SENDERS = {HOST: (TELECOMMAND,), DEVICE: (TELEMETRY,), BOTH: (TELECOMMAND, TELEMETRY)}
+"""Value of ``from`` -> directions of a packet."""
+
+LENGTH_ROLE, ID_ROLE = "length", "id"
+
+
+class Packet(NamedTuple):
+    """Packet format as the ICD declares it.
+
+    ``name`` is empty if the link has one format, which then is that of both directions.
+    """
+
+    name: str
+    section: Section
+    header: Sequence[Section]
+    trailer: Sequence[Section]
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """Return the directions in which the packet is sent."""
+        sender = self.section.get("from", BOTH)
+        return SENDERS.get(sender, ()) if isinstance(sender, str) else ()
+
+    @property
+    def messages(self) -> Sequence[str] | None:
+        """Return the names of the messages that are listed; None without a list."""
+        names = self.section.get("messages")
+        return names if isinstance(names, list | tuple) else None
+
+    @property
+    def reserved(self) -> int:
+        """Return the bytes of data without meaning, in a packet without a message."""
+        reserved: int = self.section.get("reserved", 0)
+        return reserved
+
+    @property
+    def rows(self) -> list[Section]:
+        """Return the fields of header and trailer."""
+        return [*self.header, *self.trailer]
+
+    def of(self, role: str) -> list[Section]:
+        """Return the fields of a role."""
+        return [row for row in self.rows if row.get("role") == role]
+
+    def named(self, name: str) -> Section | None:
+        """Return the first field with a name or role; None without one."""
+        for row in self.rows:
+            if name in (row.get("name"), row.get("role")):
+                return row
+        return None
+
+
+class Packets(NamedTuple):
+    """Packet formats of a link, and what each carries."""
+
+    all: tuple[Packet, ...]
+    responding: frozenset[str]  # packets without a message, named by responses
+    requesting: str | None  # packet by which telemetry is requested; None without
+    requested_bytes: int = 0  # bytes of data of a request of telemetry
+
+    def by_name(self, name: str) -> Packet | None:
+        """Return a packet by its name."""
+        return next((packet for packet in self.all if packet.name == name), None)
+
+    def carrying(self, direction: str) -> list[Packet]:
+        """Return the packets of messages of a direction: not those that only respond,
+        and not those that only request telemetry.
+        """
+        return [
+            packet
+            for packet in self.all
+            if direction in packet.directions
+            and packet.name not in self.responding
+            and not (direction == TELECOMMAND and self.only_requests(packet))
+        ]
+
+    def only_requests(self, packet: Packet) -> bool:
+        """Return whether telecommands have packets of their own."""
+        return packet.name == self.requesting and any(
+            TELECOMMAND in other.directions
+            and other.name not in (self.requesting, *self.responding)
+            for other in self.all
+        )
+
+    def reserved_in(self, packet: Packet) -> int:
+        """Return the bytes of data of a packet without a message."""
+        return self.requested_bytes if self.only_requests(packet) else packet.reserved
+
+    def of(self, message: str, direction: str) -> list[Packet]:
+        """Return the packets in which a message can be sent: those that list it,
+        otherwise those without a list.
+        """
+        carrying = self.carrying(direction)
+        listed = [packet for packet in carrying if message in (packet.messages or ())]
+        return listed or [packet for packet in carrying if packet.messages is None]
+
+
+def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packets:
+    """Return the packet formats of a `stream`.
+
+    ``messages``: those of the node, whose responses can name packets.
+    """
+    own = stream.get("packets")
+    header, trailer = (_fields(stream.get(part)) for part in ("header", "trailer"))
+    if not isinstance(own, Mapping):
+        packets = [Packet("", stream, header, trailer)]
+    else:
+        packets = [
+            Packet(
+                name,
+                row,
+                _fields(row["header"]) if "header" in row else header,
+                _fields(row["trailer"]) if "trailer" in row else trailer,
+            )
+            for name, row in own.items()
+            if isinstance(row, Mapping)
+        ]
+    requests = stream.get("requests")
+    requesting, requested_bytes = None, 0
+    if isinstance(requests, Mapping):
+        requested_bytes = requests.get("reserved", 0)
+        from_host = [each for each in packets if TELECOMMAND in each.directions]
+        only = from_host[0].name if len(from_host) == 1 else None
+        name = requests.get("packet", only)
+        requesting = name if isinstance(name, str) else None
+    responses = _responses(stream, messages)
+    named = [row.get("packet") for row in responses]  # may be no text
+    # The other ones that responses name are mistakes, which rule ICD176 reports.
+    responding = {
+        packet.name
+        for packet in packets
+        if packet.name in named
+        and packet.messages is None
+        and TELEMETRY in packet.directions
+    }
+    return Packets(tuple(packets), frozenset(responding), requesting, requested_bytes)
+
+
+def _fields(rows: object) -> list[Section]:
+    """Return the fields of a header or trailer; the schema check reports the others."""
+    fields = rows if isinstance(rows, list | tuple) else ()
+    return [row for row in fields if isinstance(row, Mapping)]
+
+
+def _responses(stream: Section, messages: Iterable[Message]) -> Iterator[Section]:
+    """Yield all responses of a link."""
+    commands = stream.get("commands", {})
+    for section in (commands, stream.get("requests", {})):
+        if isinstance(section, Mapping):
+            yield from responses_in(section).values()
+    for message in messages:
+        if isinstance(commands, Mapping) and message.telecommand_id is not None:
+            yield from declared_responses(commands, message).values()
+
+
+def id_shifts(rows: Sequence[Section]) -> Iterator[tuple[Section, int]]:
+    """Yield the fields of the id, and how far the id is shifted right to give each: the
+    first has the most significant bits.
+    """
+    parts = [row for row in rows if row.get("role") == ID_ROLE]
+    left = sum(row["bits"] for row in parts)
+    for row in parts:
+        left -= row["bits"]
+        yield row, left
+
+
+def is_requested(
+    packets: Packets,
+    message: Message,
+    telecommand_ids: Iterable[int],
+    unrequested: Iterable[int],
+) -> bool:
+    """Return whether telemetry can be requested by the packet of ``requests``.
+
+    ``telecommand_ids``: ids of all telecommands, ``unrequested``: of the telemetry that
+    a telecommand requests, or that only responds.
+    """
+    id, requesting = message.telemetry_id, packets.requesting
+    packet = packets.by_name(requesting) if requesting is not None else None
+    if packet is None or id is None or not message.requested or id in unrequested:
+        return False
+    sent_in = packets.of(message.name, TELEMETRY)
+    has_id = any(each.of(ID_ROLE) for each in sent_in)
+    # A telecommand in the same packet has the id for itself.
+    is_free = packets.only_requests(packet) or id not in telecommand_ids
+    return has_id and is_free and bool(packet.of(ID_ROLE))

@@ -1,0 +1,179 @@
+"""Packet formats of framed links: ``packets`` and ``requests`` of `stream`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from icdgen.icd.fault import Fault
+from icdgen.icd.located import Map, Seq
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
+from icdgen.icd.packets import HOST, is_requested
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.envelopes import (
+    DIRECTIONS,
+    FIXED,
+    Link,
+    LinkPacket,
+    ids_of,
+    links,
+)
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.suggestions import suggestion
+from icdgen.wording import quote
+
+
+@rule("ICD184")
+def messages_have_one_packet(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        packets = link.section.get("packets")
+        if not isinstance(packets, Map):
+            continue
+        yield from _lists(ctx, link, packets)
+        for direction in DIRECTIONS:
+            for _, message in ids_of(ctx, link.node, direction):
+                yield from _packet_of(link, message, direction)
+
+
+def _lists(ctx: Context, link: Link, packets: Map) -> Iterator[Fault]:
+    """Yield the faults of the messages that packets list."""
+    listed: dict[tuple[str, str], str] = {}
+    broken = ctx.broken_messages(link.node)
+    for packet in link.declared.all:
+        names = packets[packet.name].get("messages")
+        sent = {
+            message.name
+            for direction in packet.directions
+            for _, message in ids_of(ctx, link.node, direction)
+        }
+        for name, place in names.placed() if isinstance(names, Seq) else ():
+            if not isinstance(name, str) or name in broken:
+                continue
+            if name not in sent:
+                text = f"the node has no message {quote(name)} in the direction of the packet {quote(packet.name)}"
+                remedy = suggestion(name, sent, "correct the name, or `from`")
+                yield Fault.of_place(packets[packet.name], place, text, *remedy)
+            for direction in packet.directions:
+                other = listed.setdefault((direction, name), packet.name)
+                if other != packet.name:
+                    text = f"{quote(name)} is in the packet {quote(other)} already"
+                    help = "list it in one packet"
+                    yield Fault(packets[packet.name], place, text, help)
+
+
+def _packet_of(link: Link, message: Message, direction: str) -> Iterator[Fault]:
+    """Yield the fault of a message that is in no packet, or in one of several."""
+    packets = link.declared.of(message.name, direction)
+    if len(packets) == 1 or any(packet.messages for packet in packets):
+        return
+    what = f"{direction} {quote(message.name)}"
+    if packets:
+        names = " or ".join(quote(packet.name) for packet in packets)
+        text = f"nothing says whether the {what} is sent in the packet {names}"
+        help = "list the messages of one of them in `messages`"
+    else:
+        text = f"no packet carries the {what}"
+        help = f"add a packet of the {'host' if direction == TELECOMMAND else 'device'}, or list the message in one"
+    yield Fault.at(message.source, "name", text, help)
+
+
+@rule("ICD185")
+def packets_can_be_distinguished(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        for direction in DIRECTIONS:
+            packets = [
+                packet
+                for packet in link.packets
+                if direction in packet.packet.directions
+            ]
+            for first, second in combinations(packets, 2):
+                if _precedes(link, first, second, direction):
+                    name, other = first.packet.name, second.packet.name
+                    text = f"{quote(other)} is received as {quote(name)}, which precedes it and has no other constants"
+                    help = f"give them different constants in the header, or move {quote(other)} in front if its constants are more"
+                    yield Fault.at(*link.place(second), text, help)
+                    break
+
+
+def _precedes(
+    link: Link, first: LinkPacket, second: LinkPacket, direction: str
+) -> bool:
+    """Return whether every packet of the second format also has the constants of the
+    first.
+    """
+    bits = _constant_bits(link, second, direction)
+    return all(
+        bits.get(place) == value
+        for place, value in _constant_bits(link, first, direction).items()
+    )
+
+
+def _constant_bits(
+    link: Link, packet: LinkPacket, direction: str
+) -> dict[tuple[int, int], int]:
+    """Return the constant bits of a header: byte and bit (0: least significant) ->
+    value.
+    """
+    bits: dict[tuple[int, int], int] = {}
+    for part, row in packet.rows:
+        value = row.get("value")
+        if isinstance(value, Map):
+            value = value.get(direction)
+        if part != "header" or row["role"] not in FIXED or value is None:
+            continue
+        is_little = row.get("byte_order", link.node.byte_order) == "little"
+        if isinstance(value, Seq | list):
+            value = int.from_bytes(bytes(value), "little" if is_little else "big")
+        first, last = row["at"] // 8, (row["at"] + row["bits"] - 1) // 8
+        is_msb = link.node.bit_order == "msb0"
+        shift = (last + 1) * 8 - row["at"] - row["bits"] if is_msb else row["at"] % 8
+        for bit in range(row["bits"]):
+            byte, at = divmod(shift + bit, 8)
+            byte = first + byte if is_little else last - byte
+            bits[byte, at] = value >> bit & 1
+    return bits
+
+
+@rule("ICD186")
+def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        requests = link.section.get("requests")
+        telemetry = ids_of(ctx, link.node, TELEMETRY)
+        if not isinstance(requests, Map):
+            for _, message in telemetry:
+                if "requested" in message.source:
+                    text = "`requested` has an effect on links with `stream: requests` only"
+                    yield Fault.at_key(message.source, "requested", text, "remove it")
+            continue
+        name = link.declared.requesting
+        packet = link.declared.by_name(name) if name is not None else None
+        if packet is None:
+            names = [each.name for each in link.declared.all if each.name]
+            if isinstance(name, str):
+                text = f"there is no packet {quote(name)}"
+                yield Fault.at(
+                    requests, "packet", text, *suggestion(name, names, "correct it")
+                )
+            else:
+                text = "nothing says which packet of the host requests telemetry"
+                help = "add `packet:` with its name"
+                yield Fault.at_key(link.section, "requests", text, help)
+            continue
+        owner, key = (
+            (requests, "packet") if "packet" in requests else (link.section, "requests")
+        )
+        if TELECOMMAND not in packet.directions:
+            text = f"the device sends the packet {quote(packet.name)}, and a request comes from the host"
+            yield Fault.at_key(owner, key, text, f"name a packet `from: {HOST}`")
+        elif not packet.of("id"):
+            text = "the packet has no field with the role `id`, so a request could not say what it requests"
+            yield Fault.at_key(owner, key, text, "add one, or name another packet")
+        else:
+            ids = [id for id, _ in ids_of(ctx, link.node, TELECOMMAND)]
+            if telemetry and not any(
+                is_requested(link.declared, message, ids, ())
+                for _, message in telemetry
+            ):
+                text = "no telemetry can be requested: its packets have no id, or telecommands have the same ids"
+                help = "remove `requests`, or correct the packets"
+                yield Fault.at_key(link.section, "requests", text, help)
