@@ -3,13 +3,6 @@
 
 #include "crc.h"
 
-ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form)
-{
-    crc->form = form;
-    crc->value = form->init;
-    crc->fed = false;
-}
-
 static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
 {
     uint32_t reflected = 0;
@@ -19,44 +12,51 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
     return reflected;
 }
 
-/* Reverse the bits of a byte: swap halves, then quarters, then bits. */
-static inline uint32_t icdgen_reflected_byte(uint32_t byte)
+/*
+ * The register of a CRC is left-aligned in 32 bits. If bytes enter least significant bit first, it is reflected and
+ * right-aligned instead: otherwise each byte would have to be reflected.
+ */
+static inline uint32_t icdgen_crc_aligned(const icd_crc_form_t *form, uint32_t value)
 {
-    const uint32_t halves = ((byte & 0x0Fu) << 4) | (byte >> 4);
-    const uint32_t quarters = ((halves & 0x33u) << 2) | ((halves >> 2) & 0x33u);
-    return ((quarters & 0x55u) << 1) | ((quarters >> 1) & 0x55u);
+    return form->reflect_in ? icdgen_reflected(value, ICDGEN_CAST(unsigned, form->width))
+                            : value << (32u - form->width);
+}
+
+ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form)
+{
+    crc->form = form;
+    crc->value = icdgen_crc_aligned(form, form->init);
+    crc->fed = false;
 }
 
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
 {
     const icd_crc_form_t *const form = crc->form;
-    const unsigned width = ICDGEN_CAST(unsigned, form->width);
-    const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
-    const uint32_t top = UINT32_C(1) << (width - 1u);
+    const bool reflect = form->reflect_in;
+    const uint32_t polynomial = icdgen_crc_aligned(form, form->polynomial);
 #ifndef ICDGEN_NO_TABLES
-    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below the byte */
-    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of the byte below the register */
+    const uint32_t shift = reflect ? 0u : 32u - form->width;
 #endif
     uint32_t value = crc->value;
     for (size_t i = 0; i < length; ++i) {
-        const uint32_t byte = form->reflect_in ? icdgen_reflected_byte(bytes[i]) : bytes[i];
+        const uint32_t row = ((reflect ? value : value >> 24) ^ bytes[i]) & 0xFFu;
+        value = reflect ? value >> 8 : value << 8;
 #ifndef ICDGEN_NO_TABLES
-        if ((form->table8 != NULL) || (form->table16 != NULL)) {
-            const uint32_t row = (((value >> beyond) << missing) ^ byte) & 0xFFu;
-            uint32_t entry;
-            if (form->table8 != NULL) {
-                entry = form->table8[row];
-            } else {
-                entry = form->table16[row];
-            }
-            value = ((value << 8) ^ entry) & mask;
+        if (form->table16 != NULL) {
+            value ^= ICDGEN_U32(form->table16[row]) << shift;
+            continue;
+        }
+        if (form->table8 != NULL) {
+            value ^= ICDGEN_U32(form->table8[row]) << shift;
             continue;
         }
 #endif
+        uint32_t entry = reflect ? row : row << 24;
         for (unsigned bit = 0; bit < 8u; ++bit) {
-            const bool out = ((value & top) != 0u) != (((byte >> (7u - bit)) & 1u) != 0u);
-            value = ((value << 1) & mask) ^ (out ? form->polynomial : 0u);
+            const bool out = (reflect ? entry & 1u : entry >> 31) != 0u;
+            entry = (reflect ? entry >> 1 : entry << 1) ^ (out ? polynomial : 0u);
         }
+        value ^= entry;
     }
     crc->value = value;
     crc->fed = crc->fed || length != 0u;
@@ -68,7 +68,9 @@ ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc)
     if (!crc->fed && form->has_empty) {
         return form->empty;
     }
-    return (form->reflect_out ? icdgen_reflected(crc->value, ICDGEN_CAST(unsigned, form->width)) : crc->value) ^
+    const uint32_t value = form->reflect_in ? crc->value : crc->value >> (32u - form->width);
+    return (form->reflect_in != form->reflect_out ? icdgen_reflected(value, ICDGEN_CAST(unsigned, form->width))
+                                                  : value) ^
         form->xor_out;
 }
 
