@@ -106,6 +106,41 @@ void program(volatile uint32_t *place)
     {input};
 }}
 """
+FRAMED = """\
+#include "receiver.h"
+uint32_t program_time;
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    receiver_navigation_clock_t clock;
+    (void)context;
+    if (receiver_receive_navigation_clock(&clock, event) == ICD_OK) {
+        program_time = clock.time_of_week;
+    }
+}
+void program(volatile uint32_t *place);
+void program(volatile uint32_t *place)
+{
+    static receiver_client_t client;
+    static icd_stream_slot_t slots[1];
+    static uint8_t buffer[RECEIVER_LONGEST + RECEIVER_REQUEST_BYTES];
+    uint8_t line[RECEIVER_LINE_BYTES];
+    size_t count = 0;
+    uint32_t next = 0;
+    (void)receiver_client_init(&client, slots, 1, buffer, sizeof buffer);
+    for (;;) {
+        const uint32_t now = *place;
+        const uint8_t byte = (uint8_t)*place;
+        if (now - next < 0x80000000u) {
+            next += 1000u;
+            (void)receiver_request_navigation_clock(&client, now);
+        }
+        icd_stream_client_received(&client.client, now, &byte, 1, on_event, NULL);
+        while (icd_stream_client_output(&client.client, line, sizeof line, &count)) {
+            *place = (uint32_t)((uintptr_t)line + count);
+        }
+    }
+}
+"""
 CHOSEN = (
     "-DCUBEACP_CHOSEN",
     "-DCUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES",
@@ -186,6 +221,13 @@ def linked_bytes(cc: str, folder: Path, bus: str, *options: str) -> int:
     return int(size_output.splitlines()[1].split()[0])
 
 
+def generate(icd: Path, folder: Path) -> None:
+    """Write the C of an ICD into a folder."""
+    for path, text in CBackend().files(load([icd], check=False).icd, Renderer("c")):
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -194,11 +236,7 @@ def main() -> None:
     cc = parser.parse_args().cc
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for path, text in CBackend().files(
-            load([BENCH.parent / "icd"], check=False).icd, Renderer("c")
-        ):
-            (folder / path).parent.mkdir(parents=True, exist_ok=True)
-            (folder / path).write_text(text, encoding="utf-8")
+        generate(BENCH.parent / "icd", folder)
         (folder / "unit.c").write_text(UNIT, encoding="utf-8")
         for way, options in WAYS.items():
             print(
@@ -217,6 +255,12 @@ def main() -> None:
                 print(
                     f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes"
                 )
+        framed = folder / "framed"
+        generate(BENCH.parent / "examples" / "links" / "ubx.yaml", framed)
+        (framed / "program.c").write_text(FRAMED, encoding="utf-8")
+        for option in ("-UICDGEN_NO_TABLES", "-DICDGEN_NO_TABLES"):
+            size = text_bytes(cc, framed, "program.c", option)
+            print(f"a client of a framed link {option}: {size} bytes")
 
 
 if __name__ == "__main__":
