@@ -12,7 +12,7 @@ from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Array, Overlay, integer_range
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.packets import Packet
+from icdgen.icd.packets import ID_ROLE, Packet
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
     ID,
@@ -21,7 +21,6 @@ from icdgen.icd.responses import (
     NEEDED,
     NONE,
     STATUS_SETS,
-    Section,
     declared_responses,
     echoes_of,
     field_of,
@@ -208,7 +207,7 @@ def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
             response = _response(ctx, declared)
             if response is None:
                 continue  # ICD176
-            yield from _echoes(declared, response)
+            yield from _echoes(ctx, declared, response)
             yield from _status(declared, response)
             yield from _reason(declared, response)
         yield from _reasons(ctx, link)
@@ -244,42 +243,34 @@ def _numbers_of_packet(ctx: Context, declared: Declared) -> Iterator[Fault]:
             help = "give the field `enum:` with the reasons of the manual"
             yield Fault.at(mapping, place, text, help)
         elif isinstance(repeated, str):
-            yield from _echo_in_packet(ctx, declared, mapping, place, field, repeated)
+            width = field["bits"]
+            if field["role"] == ID_ROLE and repeated == ID:
+                width = sum(row["bits"] for row in packet.of(ID_ROLE))  # all its parts
+            text, help = _no_echo(ctx, declared, name, width, repeated)
+            if text:
+                yield Fault.at_key(mapping, place, text, help)
 
 
-def _echo_in_packet(
-    ctx: Context,
-    declared: Declared,
-    owner: Map,
-    key: str,
-    field: Section,
-    repeated: str,
-) -> Iterator[Fault]:
-    """Yield the fault of a field of a packet that cannot repeat a part of a telecommand
-    or request.
+def _no_echo(
+    ctx: Context, declared: Declared, name: str, width: int, repeated: str
+) -> tuple[str, str]:
+    """Return why a field of ``width`` bits cannot repeat a part of the telecommands, or
+    of a request of telemetry, and the remedy; two empty texts if it can.
     """
-    node, packet = declared.link.node, declared.packet
-    name, width = field.get("name", field["role"]), field["bits"]
-    if packet is not None and field["role"] == "id" and repeated == ID:
-        width = sum(row["bits"] for row in packet.of("id"))  # all its parts
-    messages = declared.telecommands
+    node = declared.link.node
     if declared.is_of_request:
         if repeated != ID and id_byte_of(node, repeated) is None:
-            text = "a request of telemetry has no part but its id"
-            yield Fault.at_key(owner, key, text, "write `id`")
-            return
-        messages = []
-        bits = max(
-            (id.bit_length() for id, _ in ids_of(ctx, node, TELEMETRY)), default=0
-        )
+            return "a request of telemetry has no part but its id", "write `id`"
+        ids = [id for id, _ in ids_of(ctx, node, TELEMETRY)]
+        bits = max(ids, default=0).bit_length()
         if repeated == ID and bits > width:
             text = f"{quote(name)} of {count(width, 'bit')} cannot repeat an id of {count(bits, 'bit')}"
-            yield Fault.at_key(owner, key, text, "name another field")
-    for message in messages:
+            return text, "name another field"
+    for message in declared.telecommands:
         text, help = _misfit(node, name, width, message, repeated)
         if text:
-            yield Fault.at_key(owner, key, text, help)
-            return
+            return text, help
+    return "", ""
 
 
 def _numbers_of_parts(ctx: Context, link: Link) -> Iterator[Fault]:
@@ -340,7 +331,7 @@ def _obstacle(message: Message, node: Node, name: str, field: NodePlace | None) 
     return ""
 
 
-def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
+def _echoes(ctx: Context, declared: Declared, response: Message) -> Iterator[Fault]:
     """Yield the faults of fields that repeat parts of the telecommand."""
     node, row = declared.link.node, declared.row
     echo = row.get("echo")
@@ -358,11 +349,9 @@ def _echoes(declared: Declared, response: Message) -> Iterator[Fault]:
                 text = f"{quote(name)} repeats a part of the telecommand, so it cannot be the {other}"
                 help = f"let `echo` or `{other}` name another field"
                 yield Fault.at(row, other, text, help)
-        for message in declared.telecommands:
-            text, help = _misfit(node, field.name, field.bits, message, repeated)
-            if text:
-                yield Fault.at(owner, key, text, help)
-                break
+        text, help = _no_echo(ctx, declared, field.name, field.bits, repeated)
+        if text:
+            yield Fault.at(owner, key, text, help)
 
 
 def _misfit(
