@@ -40,7 +40,12 @@ def _lists(ctx: Context, link: Link, packets: Map) -> Iterator[Fault]:
     listed: dict[tuple[str, str], str] = {}
     broken = ctx.broken_messages(link.node)
     for packet in link.declared.all:
-        names = packets[packet.name].get("messages")
+        section = packets[packet.name]
+        if "reserved" in section and packet.name not in link.declared.responding:
+            text = f"the packet {quote(packet.name)} carries messages or requests, so `reserved` has no effect"
+            help = "remove it; the reserved bytes of a request are `requests: reserved`"
+            yield Fault.at_key(section, "reserved", text, help)
+        names = section.get("messages")
         sent = {
             message.name
             for direction in packet.directions
