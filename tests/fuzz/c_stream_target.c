@@ -58,6 +58,17 @@ static void on_event(void *context, const icd_stream_event_t *event)
         seen->on_line += written;
         free(line);
     }
+    if (event->kind == ICD_STREAM_REQUEST) {
+        uint8_t line[600];
+        size_t written = 0;
+        note(seen, &event->values, sizeof event->values);
+        require(icd_stream_encode_request(seen->link, event->id, &event->values, line, sizeof line, &written) == ICD_OK);
+        seen->on_line += written;
+    }
+    if (event->kind == ICD_STREAM_PACKET) { /* all its bytes */
+        note(seen, &event->values, sizeof event->values);
+        seen->on_line += event->length;
+    }
 }
 
 /* Feeds all in pieces of a size that `cut` says, or at once if it is 0. */

@@ -29,6 +29,8 @@ int main(int argc, char **argv)
     }
     zero.width = form.width;
     zero.polynomial = form.polynomial;
+    zero.reflect_in = form.reflect_in; /* the register is reflected then, and so is the table */
+    zero.reflect_out = form.reflect_in;
     for (unsigned i = 0; i < 256u; ++i) {
         const uint8_t byte = (uint8_t)i;
         table8[i] = (uint8_t)icd_crc(&zero, &byte, 1);
