@@ -14,6 +14,7 @@ from icdgen.icd.fmt import emit, read, scalars
 from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import KEYS_OF_IDS, TELECOMMAND, TELEMETRY, Icd, Node
+from icdgen.icd.packets import ID_ROLE, declared_packets
 from icdgen.icd.rules.protocol_names import MESSAGES
 
 # Protocol sections about links. The other sections are about files, logs and programs
@@ -77,6 +78,8 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
             "take the style of another node",
         )
     lacks_responses = "commands" in (sections.get("stream") or {})
+    if "packets" in protocol.get("stream", {}):
+        protocol["stream"] = _without_listed_messages(protocol["stream"])
     for key, omitted in _KEYS_ABOUT_MESSAGES.items():
         if key in protocol:
             protocol[key] = {
@@ -139,7 +142,16 @@ def in_style(text: str, style: Style, origin: str) -> str:
     parts["node"].value.children += added.children  # type: ignore[union-attr]
     parts["protocol"].value = emit.branch(_seeded(style.protocol, own_messages))
     parts["protocol"].trailing = [f"# how messages travel, as {origin} has it"]
-    for key, more in (("enums", style.enums), ("messages", style.messages)):
+    # An enumeration and a message of one name have the same name in generated code.
+    enums = [
+        (
+            {**enum, "identifier": f"Link {enum['name']}"}
+            if enum["name"] in own_messages and "identifier" not in enum
+            else enum
+        )
+        for enum in style.enums
+    ]
+    for key, more in (("enums", enums), ("messages", style.messages)):
         names = {item["name"] for item in more}
         own = [child for child in _children(parts[key]) if _name(child) not in names]
         if key == "enums":
@@ -151,6 +163,26 @@ def in_style(text: str, style: Style, origin: str) -> str:
     if style.units:
         root.children.append(Child(Text("units", "units"), emit.branch(style.units)))
     return emit.of(root)
+
+
+def _without_listed_messages(stream: Tree) -> Tree:
+    """Return the section `stream` with the packets of all messages, of requests and of
+    refused requests only: other packets have messages that are not copied.
+    """
+    requests = stream.get("requests", {})
+    responses = (row for row in requests.values() if isinstance(row, dict))
+    named = {row.get("packet") for row in responses}
+    responding = {
+        row.get("packet")
+        for row in stream.get("commands", {}).values()
+        if isinstance(row, dict)
+    }
+    packets = {
+        name: packet
+        for name, packet in stream["packets"].items()
+        if "messages" not in packet and (name in named or name not in responding)
+    }
+    return {**stream, "packets": packets}
 
 
 def _seeded(protocol: Tree, messages: list[str]) -> Tree:
@@ -193,10 +225,10 @@ def _renumber(messages: list[Child], style: Style) -> None:
 
 def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
     """Return the first and last id of each direction."""
-    section, rows = protocol.get("message_id") or {}, protocol.get("stream", {}).get(
-        "header", ()
-    )
-    bits = min((row["bits"] for row in rows if row["role"] == "id"), default=8)
+    section = protocol.get("message_id") or {}
+    packets = declared_packets(protocol.get("stream", {})).all
+    widths = (sum(row["bits"] for row in packet.of(ID_ROLE)) for packet in packets)
+    bits = min((width for width in widths if width), default=8)
     # Ids of the first ICD are small numbers, also if the link could carry larger ones.
     most = (1 << min(bits, 8)) - 1
     ranges: dict[str, tuple[int, int]] = {}
