@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from tests.site.pages import KINDS
-from tests.site.test_browser import opened
+from tests.site.test_browser import opened, wait_until
 
 DESK, PHONE = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
 
@@ -22,8 +22,9 @@ def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
         folded = page.locator("#sidebar details:not([open]) > summary")
         while folded.count():
             folded.first.click()
-        page.wait_for_function(
-            "!document.querySelector('#sidebar').innerText.includes('All on one page')"
+        wait_until(
+            page,
+            "!document.querySelector('#sidebar').innerText.includes('All on one page')",
         )
         listed = {
             link.inner_text(): link.get_attribute("href")
