@@ -17,7 +17,7 @@ HOST, DEVICE, BOTH = "host", "device", "both"
 SENDERS = {HOST: (TELECOMMAND,), DEVICE: (TELEMETRY,), BOTH: (TELECOMMAND, TELEMETRY)}
 """Value of ``from`` -> directions of a packet."""
 
-LENGTH_ROLE, ID_ROLE = "length", "id"
+ID_ROLE = "id"
 
 
 class Packet(NamedTuple):
@@ -167,6 +167,20 @@ def _responses(stream: Section, messages: Iterable[Message]) -> Iterator[Section
     for message in messages:
         if isinstance(commands, Mapping) and message.telecommand_id is not None:
             yield from declared_responses(commands, message).values()
+
+
+def value_of(row: Section, direction: str, is_little: bool) -> int:
+    """Return the value of a constant, or the default of another field, in a direction.
+
+    A list of bytes is in the order of transmission.
+    """
+    value = row.get("value", 0)
+    if isinstance(value, Mapping):
+        value = value.get(direction, 0)
+    if isinstance(value, list):
+        return int.from_bytes(bytes(value), "little" if is_little else "big")
+    number: int = value
+    return number
 
 
 def id_shifts(rows: Sequence[Section]) -> Iterator[tuple[Section, int]]:

@@ -125,16 +125,3 @@ def number_of(value: object, enum: Enum | None) -> int | None:
         return int(value)
     members = enum.members if enum else ()
     return next((member.value for member in members if member.name == value), None)
-
-
-def status_value(field: NodePlace, value: object) -> int | None:
-    """Return a value of the status; None if its enumeration has no such member."""
-    return number_of(value, field.scalar.enum)
-
-
-def raw_status(field: NodePlace, value: object) -> int | None:
-    """Return a value of the status as the number without sign that clients compare;
-    None if there is no such member.
-    """
-    number = status_value(field, value)
-    return None if number is None else number & (1 << field.bits) - 1

@@ -16,12 +16,12 @@ from icdgen.icd.packets import (
     declared_packets,
     id_shifts,
     is_requested,
+    value_of,
 )
 from icdgen.icd.places import raw_fields_in
 from icdgen.icd.variants import Ids, Variant
 from icdgen.protocol.envelope import (
     DATA,
-    DIRECTIONS,
     MESSAGE,
     NOTHING,
     REQUEST,
@@ -71,29 +71,8 @@ def field_of(
         shift,
         bits,
         little,
-        values_of(row, little),
+        (value_of(row, TELECOMMAND, little), value_of(row, TELEMETRY, little)),
         id_shift,
-    )
-
-
-def values_of(row: Section, little: bool) -> tuple[int, int]:
-    """Return the values of a row in both directions.
-
-    A list of bytes is in sending order.
-    """
-    value = row.get("value", 0)
-    sent, received = (
-        value.get(direction, 0) if isinstance(value, Mapping) else value
-        for direction in DIRECTIONS
-    )
-    return _number(sent, little), _number(received, little)
-
-
-def _number(value: Any, little: bool) -> int:
-    return (
-        int.from_bytes(bytes(value), "little" if little else "big")
-        if isinstance(value, list)
-        else value
     )
 
 

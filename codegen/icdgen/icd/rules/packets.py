@@ -8,7 +8,8 @@ from itertools import combinations
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
-from icdgen.icd.packets import HOST, is_requested
+from icdgen.icd.packets import HOST, is_requested, value_of
+from icdgen.icd.pieces import bits_of
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import (
     DIRECTIONS,
@@ -113,29 +114,16 @@ def _precedes(
     )
 
 
-def _constant_bits(
-    link: Link, packet: LinkPacket, direction: str
-) -> dict[tuple[int, int], int]:
-    """Return the constant bits of a header: byte and bit (0: least significant) ->
-    value.
-    """
-    bits: dict[tuple[int, int], int] = {}
+def _constant_bits(link: Link, packet: LinkPacket, direction: str) -> dict[int, int]:
+    """Return the constant bits of a header, by their place in it."""
+    bits: dict[int, int] = {}
     for part, row in packet.rows:
-        value = row.get("value")
-        if isinstance(value, Map):
-            value = value.get(direction)
-        if part != "header" or row["role"] not in FIXED or value is None:
+        if part != "header" or row["role"] not in FIXED:
             continue
-        is_little = row.get("byte_order", link.node.byte_order) == "little"
-        if isinstance(value, Seq | list):
-            value = int.from_bytes(bytes(value), "little" if is_little else "big")
-        first, last = row["at"] // 8, (row["at"] + row["bits"] - 1) // 8
-        is_msb = link.node.bit_order == "msb0"
-        shift = (last + 1) * 8 - row["at"] - row["bits"] if is_msb else row["at"] % 8
-        for bit in range(row["bits"]):
-            byte, at = divmod(shift + bit, 8)
-            byte = first + byte if is_little else last - byte
-            bits[byte, at] = value >> bit & 1
+        order = row.get("byte_order", link.node.byte_order)
+        value = value_of(row, direction, order == "little")
+        places = bits_of(row["at"], row["bits"], order, link.node.bit_order)
+        bits.update((place, value >> bit & 1) for bit, place in enumerate(places))
     return bits
 
 

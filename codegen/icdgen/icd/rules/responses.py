@@ -25,10 +25,9 @@ from icdgen.icd.responses import (
     echoes_of,
     field_of,
     id_byte_of,
+    number_of,
     number_run,
-    raw_status,
     reason_of,
-    status_value,
 )
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.envelopes import Link, ids_of, links
@@ -201,63 +200,79 @@ def _of_packet(declared: Declared) -> Iterator[Fault]:
 def responses_can_be_compared(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         for declared in _declared(ctx, link):
-            if declared.is_packet:
-                yield from _numbers_of_packet(ctx, declared)
-                continue
-            response = _response(ctx, declared)
-            if response is None:
+            if declared.packet is None and _response(ctx, declared) is None:
                 continue  # ICD176
-            yield from _echoes(ctx, declared, response)
-            yield from _status(declared, response)
-            yield from _reason(declared, response)
+            yield from _echoes(ctx, declared)
+            yield from _status(ctx, declared)
+            yield from _reason(ctx, declared)
         yield from _reasons(ctx, link)
         yield from _numbers_of_parts(ctx, link)
 
 
-def _numbers_of_packet(ctx: Context, declared: Declared) -> Iterator[Fault]:
-    """Yield the faults of the fields of a packet that a client compares."""
-    packet, row, node = declared.packet, declared.row, declared.link.node
-    if packet is None:
-        return  # ICD176
-    echo = row.get("echo")
-    owner = echo if isinstance(echo, Map) else row
-    # Key of the response, the mapping and the key in it that name the field, the name
-    # and what the field repeats.
-    named: list[tuple[str, Map, str, str, str | None]] = [
-        (key, row, key, row[key], None) for key in ("status", "reason") if key in row
-    ]
-    for name, part in echoes_of(row).items():
-        named.append(("echo", owner, name if owner is echo else "echo", name, part))
-    enums = {enum.name for each in ctx.scope(node) for enum in each.enums}
-    for key, mapping, place, name, repeated in named:
-        field = packet.named(name)
-        if field is None:
-            known = [row.get("name", row["role"]) for row in packet.rows]
-            message = f"the packet {quote(packet.name)} has no field {quote(name)}"
-            remedy = suggestion(name, known, "name a field by its name or role")
-            yield Fault.at_key(mapping, place, message, *remedy)
-        elif key == "reason" and field.get("enum") not in enums:
-            text = (
-                f"{quote(name)} has no enumeration, so a refusal would be a bare number"
-            )
-            help = "give the field `enum:` with the reasons of the manual"
-            yield Fault.at(mapping, place, text, help)
-        elif isinstance(repeated, str):
-            width = field["bits"]
-            if field["role"] == ID_ROLE and repeated == ID:
-                width = sum(row["bits"] for row in packet.of(ID_ROLE))  # all its parts
-            text, help = _no_echo(ctx, declared, name, width, repeated)
-            if text:
-                yield Fault.at_key(mapping, place, text, help)
+class Compared(NamedTuple):
+    """Field of a response that a client compares with a number."""
+
+    name: str
+    bits: int
+    enum: Enum | None
+    is_signed: bool
+    id_bits: int  # bits of the whole id for a part of it, otherwise those of the field
+
+    @property
+    def range(self) -> tuple[int, int]:
+        """Return the least and the largest raw value."""
+        return integer_range(self.bits, self.is_signed)
+
+
+def _compared(
+    ctx: Context, declared: Declared, name: str, key: str
+) -> tuple[Compared | None, str, str]:
+    """Return the field that ``key`` of a response names; otherwise what is wrong, and
+    its remedy.
+    """
+    enum, packet = _enum_of(ctx, declared, name), declared.packet
+    if packet is not None:
+        row = packet.named(name)
+        if row is not None:
+            parts = packet.of(ID_ROLE) if row["role"] == ID_ROLE else [row]
+            id_bits = sum(part["bits"] for part in parts)
+            return Compared(name, row["bits"], enum, False, id_bits), "", ""
+        known = [row.get("name", row["role"]) for row in packet.rows]
+        text = f"the packet {quote(packet.name)} has no field {quote(name)}"
+        return (
+            None,
+            text,
+            suggestion(name, known, "name a field by its name or role")[0],
+        )
+    response = _response(ctx, declared)
+    assert response is not None, "rule ICD176 checks the telemetry"
+    field, text, help = _number(response, declared.link.node, name, key)
+    if field is None:
+        return None, text, help
+    signed = field.scalar.is_signed
+    return Compared(name, field.bits, enum, signed, field.bits), "", ""
+
+
+def _enum_of(ctx: Context, declared: Declared, name: str | None) -> Enum | None:
+    """Return the enumeration of a field of a response; None without one."""
+    if declared.packet is not None:
+        row = declared.packet.named(name or "") or {}
+        scope = ctx.scope(declared.link.node)
+        enums = {enum.name: enum for node in scope for enum in node.enums}
+        return enums.get(row.get("enum", ""))
+    response = _response(ctx, declared)
+    field = response and field_of(response, name)
+    return field.scalar.enum if field else None
 
 
 def _no_echo(
-    ctx: Context, declared: Declared, name: str, width: int, repeated: str
+    ctx: Context, declared: Declared, field: Compared, repeated: str
 ) -> tuple[str, str]:
-    """Return why a field of ``width`` bits cannot repeat a part of the telecommands, or
-    of a request of telemetry, and the remedy; two empty texts if it can.
+    """Return why a field cannot repeat a part of the telecommands, or of a request of
+    telemetry, and the remedy; two empty texts if it can.
     """
-    node = declared.link.node
+    node, name = declared.link.node, field.name
+    width = field.id_bits if repeated == ID else field.bits
     if declared.is_of_request:
         if repeated != ID and id_byte_of(node, repeated) is None:
             return "a request of telemetry has no part but its id", "write `id`"
@@ -331,16 +346,16 @@ def _obstacle(message: Message, node: Node, name: str, field: NodePlace | None) 
     return ""
 
 
-def _echoes(ctx: Context, declared: Declared, response: Message) -> Iterator[Fault]:
+def _echoes(ctx: Context, declared: Declared) -> Iterator[Fault]:
     """Yield the faults of fields that repeat parts of the telecommand."""
-    node, row = declared.link.node, declared.row
+    row = declared.row
     echo = row.get("echo")
     owner = echo if isinstance(echo, Map) else row
     for name, repeated in echoes_of(row).items():
         if not isinstance(repeated, str):
             continue
         key = name if isinstance(echo, Map) else "echo"
-        field, text, help = _number(response, node, name, "echo")
+        field, text, help = _compared(ctx, declared, name, "echo")
         if field is None:
             yield Fault.at_key(owner, key, text, help)
             continue
@@ -349,7 +364,7 @@ def _echoes(ctx: Context, declared: Declared, response: Message) -> Iterator[Fau
                 text = f"{quote(name)} repeats a part of the telecommand, so it cannot be the {other}"
                 help = f"let `echo` or `{other}` name another field"
                 yield Fault.at(row, other, text, help)
-        text, help = _no_echo(ctx, declared, field.name, field.bits, repeated)
+        text, help = _no_echo(ctx, declared, field, repeated)
         if text:
             yield Fault.at(owner, key, text, help)
 
@@ -387,9 +402,9 @@ def _misfit(
     return text, "give both the same width, or name another field"
 
 
-def _status(declared: Declared, response: Message) -> Iterator[Fault]:
+def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
     """Yield the faults of the field that says whether the telecommand was executed."""
-    row, node = declared.row, declared.link.node
+    row = declared.row
     name = row.get("status")
     if declared.kind not in NEEDED:
         return  # The schema check reports a status.
@@ -399,7 +414,7 @@ def _status(declared: Declared, response: Message) -> Iterator[Fault]:
                 text = f"`{key}` lists values of a status, and there is no `status`"
                 yield Fault.at_key(row, key, text, f"add `status`, or remove `{key}`")
         return
-    field, text, help = _number(response, node, name, "status")
+    field, text, help = _compared(ctx, declared, name, "status")
     if field is None:
         yield Fault.at(row, "status", text, help)
         return
@@ -407,46 +422,41 @@ def _status(declared: Declared, response: Message) -> Iterator[Fault]:
         text = "no value of the status confirms the telecommand"
         yield Fault.at(row, "status", text, "add `success:`, the values that do")
     seen: dict[int, str] = {}
+    members = field.enum.members if field.enum else ()
+    least, most = field.range
     for key in STATUS_SETS:
         values = row.get(key)
         for value, place in values.placed() if isinstance(values, Seq) else ():
-            raw, number = raw_status(field, value), status_value(field, value)
-            members = field.scalar.enum.members if field.scalar.enum else ()
+            number = number_of(value, field.enum)
             ranges = [member for member in members if member.to is not None]
             member = next((each for each in ranges if each.name == value), None)
             if member is not None:
                 text = f"{quote(member.name)} is a range of values ({member.values})"
                 help = f"list the values that mean `{key}` as numbers, such as {member.value}"
                 yield Fault(row, place, text, help)
-            elif raw is None or number is None:
+            elif number is None:
                 names = [member.name for member in members]
                 text = f"{quote(name)} has no value {quote(str(value))}"
                 remedy = suggestion(str(value), names, "correct it, or write a number")
                 yield Fault.of_place(row, place, text, *remedy)
-            elif not _fits(field, number):
+            elif not least <= number <= most:
                 text = (
                     f"{number} does not fit {count(field.bits, 'bit')} of {quote(name)}"
                 )
                 yield Fault(
                     row, place, text, "correct the value, or name another field"
                 )
-            elif raw in seen:
-                text = f"{quote(str(value))} is in `{seen[raw]}` already"
+            elif number in seen:
+                text = f"{quote(str(value))} is in `{seen[number]}` already"
                 yield Fault(row, place, text, "remove it from one of the two lists")
             else:
-                seen[raw] = key
+                seen[number] = key
 
 
-def _fits(field: NodePlace, number: int) -> bool:
-    """Return whether a raw value fits into a field."""
-    least, most = integer_range(field.bits, field.scalar.is_signed)
-    return least <= number <= most
-
-
-def _reason(declared: Declared, response: Message) -> Iterator[Fault]:
+def _reason(ctx: Context, declared: Declared) -> Iterator[Fault]:
     """Yield the faults of the field with the reason of a refusal."""
-    row, node = declared.row, declared.link.node
-    yield from _ranges_of_reasons(declared, response)
+    row = declared.row
+    yield from _ranges_of_reasons(ctx, declared)
     name = row.get("reason")
     if name is None:
         return
@@ -454,39 +464,26 @@ def _reason(declared: Declared, response: Message) -> Iterator[Fault]:
         text = f"a response `{declared.kind}` without a status refuses nothing, so it has no reason"
         yield Fault.at_key(row, "reason", text, "add `status`, or remove `reason`")
         return
-    field, text, help = _number(response, node, name, "reason")
+    field, text, help = _compared(ctx, declared, name, "reason")
     if field is None:
         yield Fault.at(row, "reason", text, help)
-    elif field.scalar.enum is None:
+    elif field.enum is None:
         text = f"{quote(name)} has no enumeration, so a refusal would be a bare number"
-        help = "give the field `type: enum` with the reasons of the manual"
+        key = "enum:" if declared.is_packet else "type: enum"
+        help = f"give the field `{key}` with the reasons of the manual"
         yield Fault.at(row, "reason", text, help)
 
 
-def _ranges_of_reasons(declared: Declared, response: Message) -> Iterator[Fault]:
+def _ranges_of_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
     """Yield the faults of reasons that are too many values."""
-    field = field_of(response, reason_of(declared.row))
-    for member in field.scalar.enum.members if field and field.scalar.enum else ():
+    enum = _enum_of(ctx, declared, reason_of(declared.row))
+    for member in enum.members if enum else ():
         values = member.last - member.value + 1
         if values > MOST_VALUES:
             text = f"the reason {quote(member.name)} is a range of {values} values, more than {MOST_VALUES}"
             help = "shorten the range to the values that the device uses, or remove it"
             key = "reason" if "reason" in declared.row else "status"
             yield Fault.at(declared.row, key, text, help)
-
-
-def _enum_of_reason(ctx: Context, declared: Declared) -> Enum | None:
-    """Return the enumeration of the reason of a refusal; None without one."""
-    name = reason_of(declared.row)
-    if declared.packet is not None:
-        row = declared.packet.named(name or "")
-        enums = (enum for node in ctx.scope(declared.link.node) for enum in node.enums)
-        return next(
-            (enum for enum in enums if row and enum.name == row.get("enum")), None
-        )
-    response = _response(ctx, declared)
-    field = response and field_of(response, name)
-    return field.scalar.enum if field else None
 
 
 def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
@@ -497,7 +494,7 @@ def _reasons(ctx: Context, link: Link) -> Iterator[Fault]:
         return
     members: list[str] = []
     for declared in _declared(ctx, link):
-        enum = _enum_of_reason(ctx, declared)
+        enum = _enum_of(ctx, declared, reason_of(declared.row))
         members += [member.name for member in enum.members] if enum else []
     for cause, name in reasons.items():
         if isinstance(name, str) and cause != "assumptions" and name not in members:
