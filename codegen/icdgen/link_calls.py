@@ -323,9 +323,7 @@ def _stream(form: Stream) -> Call:
     request = parts.pop("request")
     if isinstance(request, TelemetryRequest):
         exchange = form.exchanges.index(request.exchange)
-        parts["request"] = _row(
-            "TelemetryRequest", request.packet, exchange, request.reserved
-        )
+        parts["request"] = _row("TelemetryRequest", request.packet, exchange)
     if form.exchanges:
         parts["exchanges"] = tuple(map(_exchange, form.exchanges))
         parts["confirming"] = form.confirming
@@ -352,7 +350,9 @@ def _packet(packet: PacketFormat) -> Call:
     if packet.name:
         parts |= {"name": packet.name, "directions": packet.directions}
     if packet.content != MESSAGE:
-        parts |= {"content": packet.content, "reserved": packet.reserved}
+        parts["content"] = packet.content
+    if packet.reserved:
+        parts["reserved"] = packet.reserved
     return _call("PacketForm", **parts)
 
 

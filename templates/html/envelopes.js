@@ -98,7 +98,7 @@ const icdgenEnvelopes = ((frames) => {
 
   /** The smallest and the largest number of data bytes of a packet with the message of `row`, or without a message. */
   function boundsOf(form, packet, row) {
-    if (isRequested(packet, row)) return [form.request.reserved, form.request.reserved];
+    if (isRequested(packet, row)) return [packet.reserved, packet.reserved];
     return row ? [row[1], row[2]] : [packet.reserved, packet.reserved];
   }
 

@@ -163,7 +163,7 @@ class Script:
             return b""
         row, started = self.source.choice(self.begun[-4:]) if self.begun else (None, {})
         chance = self.source.random()
-        exchange = self._exchange(row) if row else None
+        exchange = self.form.exchange_of(row) if row else None
         if exchange and chance < 0.8:
             return self.response(exchange, started)
         frame = self.source.choice(self.form.telemetry)
@@ -171,12 +171,6 @@ class Script:
         if chance < 0.9:
             frame = next((row for row in self.form.telemetry if row.id == named), frame)
         return self.encoded(frame, self.data(frame.most))
-
-    def _exchange(self, row: StreamRow) -> Exchange | None:
-        """Return the responses to a telecommand, or to a request of telemetry."""
-        if row.is_requested and self.form.request:
-            return self.form.request.exchange
-        return row.exchange
 
     def response(self, exchange: Exchange, started: Row) -> bytes:
         """Return a response to a telecommand, sometimes with a foreign echo."""

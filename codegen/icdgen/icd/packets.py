@@ -74,9 +74,15 @@ class Packets(NamedTuple):
     requesting: str | None  # packet by which telemetry is requested; None without
     requested_bytes: int = 0  # bytes of data of a request of telemetry
 
-    def by_name(self, name: str) -> Packet | None:
-        """Return a packet by its name."""
-        return next((packet for packet in self.all if packet.name == name), None)
+    def number_of(self, name: object) -> int | None:
+        """Return the number of a packet; None if there is no such packet."""
+        names = [packet.name for packet in self.all]
+        return names.index(name) if isinstance(name, str) and name in names else None
+
+    def by_name(self, name: object) -> Packet | None:
+        """Return a packet by its name; None if there is no such packet."""
+        number = self.number_of(name)
+        return None if number is None else self.all[number]
 
     def carrying(self, direction: str) -> list[Packet]:
         """Return the packets of messages of a direction: not those that only respond,
@@ -99,8 +105,9 @@ class Packets(NamedTuple):
         )
 
     def reserved_in(self, packet: Packet) -> int:
-        """Return the bytes of data of a packet without a message."""
-        return self.requested_bytes if self.only_requests(packet) else packet.reserved
+        """Return the bytes of data of a packet if it has no message."""
+        is_of_request = packet.name == self.requesting
+        return self.requested_bytes if is_of_request else packet.reserved
 
     def of(self, message: str, direction: str) -> list[Packet]:
         """Return the packets in which a message can be sent: those that list it,
@@ -206,7 +213,7 @@ def is_requested(
     a telecommand requests, or that only responds.
     """
     id, requesting = message.telemetry_id, packets.requesting
-    packet = packets.by_name(requesting) if requesting is not None else None
+    packet = packets.by_name(requesting)
     if packet is None or id is None or not message.requested or id in unrequested:
         return False
     sent_in = packets.of(message.name, TELEMETRY)

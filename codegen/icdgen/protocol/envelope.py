@@ -111,7 +111,7 @@ class PacketFormat:
     header_bytes: int
     trailer_bytes: int
     length_plus: int  # value of the length field minus bytes of data
-    reserved: int  # bytes of data in packets without a message
+    reserved: int  # bytes of data without meaning, in packets without a message
     fields: tuple[EnvelopeField, ...]
     check: Check | None
 
@@ -131,7 +131,6 @@ class TelemetryRequest:
 
     packet: int  # index of `Stream.packets`
     exchange: Exchange
-    reserved: int  # bytes of data without meaning
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
@@ -147,7 +146,9 @@ class Stream:
 
     @property
     def exchanges(self) -> tuple[Exchange, ...]:
-        """Return the different exchanges of the telecommands, in order."""
+        """Return the different exchanges of the telecommands and of requests of
+        telemetry, in order.
+        """
         exchanges = [row.exchange for row in self.telecommands if row.exchange]
         if self.request:
             exchanges.append(self.request.exchange)
@@ -172,6 +173,14 @@ class Stream:
         """Return the ids of the telemetry that a client can request."""
         asked = {row.requests for row in self.telecommands if row.requests is not None}
         return frozenset(asked | {row.id for row in self.telemetry if row.is_requested})
+
+    def exchange_of(self, row: StreamRow) -> Exchange | None:
+        """Return the responses to a telecommand, or to the request of telemetry by a
+        packet; None if nothing responds.
+        """
+        if row.is_requested and self.request:
+            return self.request.exchange
+        return row.exchange
 
     def rows(self, direction: str) -> tuple[StreamRow, ...]:
         """Return the messages of a direction."""
@@ -201,9 +210,11 @@ class Stream:
 
     @property
     def longest_request(self) -> int:
-        """Largest number of data bytes of a telecommand."""
-        reserved = self.request.reserved if self.request else 0
-        return max([reserved, *(row.most for row in self.telecommands)])
+        """Largest number of data bytes of a telecommand or a request of telemetry."""
+        sizes = [row.most for row in self.telecommands]
+        if self.request:
+            sizes.append(self.packets[self.request.packet].reserved)
+        return max(sizes, default=0)
 
     @property
     def longest(self) -> int:
@@ -213,9 +224,6 @@ class Stream:
         sizes = [each.overhead + each.reserved for each in self.packets]
         for row in (*self.telecommands, *self.telemetry):
             sizes.append(self.packets[row.packet].overhead + row.most)
-        if self.request:
-            packet = self.packets[self.request.packet]
-            sizes.append(packet.overhead + self.request.reserved)
         return max(sizes)
 
     @property

@@ -232,13 +232,10 @@ def stream_of(
     check = place_of(rows, "checksum") or {}
     seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
     telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, seeds, exchanges)
-    requests = section.get("requests", {})
-    request = None
-    if packets.requesting is not None:
-        number = [packet.name for packet in packets.all].index(packets.requesting)
-        reserved = packets.requested_bytes
-        exchange = request_exchange(sources, requests)
-        request = TelemetryRequest(number, exchange, reserved)
+    request, requesting = None, packets.number_of(packets.requesting)
+    if requesting is not None:
+        exchange = request_exchange(sources, section["requests"])
+        request = TelemetryRequest(requesting, exchange)
     stream = Stream(
         delimited_by=section["delimited_by"],
         per_id=sequence.get("per", "link") == "id",

@@ -69,8 +69,7 @@ class Sources(NamedTuple):
 
     def packet_of(self, row: Section) -> int | None:
         """Return the index of the packet of a response; None for telemetry."""
-        names = [packet.name for packet in self.packets.all]
-        return names.index(row["packet"]) if row.get("packet") in names else None
+        return self.packets.number_of(row.get("packet"))
 
     def number(self, row: Section, name: str | None) -> Number | None:
         """Return a number of a response; None without a name, or a field of it."""

@@ -199,7 +199,7 @@ def _fault_in(
             count,
             is_of_message=row is not None,
         )
-    least, most = data_bounds(stream, received, row)
+    least, most = received.bounds(row)
     if received.length and needed is not None:
         is_certain = row is not None and least <= needed - form.overhead <= most
     else:
@@ -258,19 +258,6 @@ def _title(
     return f"{title}, {'request of ' if is_request else ''}{names}"
 
 
-def data_bounds(
-    stream: Stream, received: ReceivedPacket, row: StreamRow | None
-) -> tuple[int, int]:
-    """Return the smallest and largest number of data bytes of a packet with the message
-    of a row, or without a message.
-    """
-    if row is None:
-        return received.form.reserved, received.form.reserved
-    if stream.request and received.requested.get(row.id) is row:
-        return stream.request.reserved, stream.request.reserved
-    return row.least, row.most
-
-
 def _fault_of_whole(
     endpoint: Endpoint,
     direction: Direction,
@@ -318,7 +305,7 @@ def _fault_of_whole(
             return Fault(rank + 200, text, help, count, count, is_certain=is_certain)
     if row is None and has_message:
         return _no_message(endpoint, direction, packet, title, id, rank, size)
-    least, most = data_bounds(stream, received, row)
+    least, most = received.bounds(row)
     if not least <= size <= most:
         lengths = f"{least}" if least == most else f"{least} to {most}"
         text = f"a {title} has {byte_count(size)} of data, the ICD says {lengths}"
@@ -431,15 +418,10 @@ def packet_size(stream: Stream, received: ReceivedPacket, packet: bytes) -> int 
     form = received.form
     if len(packet) < form.header_bytes:
         return None
-    if received.length:
-        count = _get(form, received.length, packet, len(packet)) - form.length_plus
-        return form.overhead + count
-    if stream.delimited_by != LENGTH:
+    if not received.length and stream.delimited_by != LENGTH:
         return None
-    row = received.row(_id_of(form, packet, len(packet)))
-    if row is None and form.content == "message":
-        return None
-    return form.overhead + data_bounds(stream, received, row)[1]
+    count = received.data_bytes(packet, len(packet))
+    return None if count is None else form.overhead + count
 
 
 def _id(form: PacketForm, packet: bytes, is_whole: bool) -> int | None:

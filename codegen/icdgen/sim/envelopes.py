@@ -174,16 +174,10 @@ class EnvelopeLine(DeviceLine):
     def _request(self, now: int, id: int) -> None:
         """Respond to the request of telemetry."""
         program = self.computer.program
-        fault = self.faults.fault("nak", "request")
-        if fault is not None:
-            self._refuse(now, id, b"", "value", fault.reason, is_request=True)
-            return
-        is_busy = now < program.free_at or self.faults.hits("busy", "request")
-        if is_busy and self._defer(now, id, b"", is_request=True):
+        if now < program.free_at and self._defer(now, id, b"", is_request=True):
             return
         program.count("requests")
-        if not self.faults.hits("silence", "request"):
-            self._respond(now, id, b"", "reply", is_request=True)
+        self._respond(now, id, b"", "reply", is_request=True)
 
     def _message(self, id: int, data: bytes) -> Message | Cause:
         """Return the telecommand, or the cause why it is refused."""

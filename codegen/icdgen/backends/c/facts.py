@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
+from icdgen.backends.lines import STEP
 from icdgen.protocol import sections
 from icdgen.protocol.declared import Fact, Kind
 from icdgen.protocol.sections import BUSES
@@ -19,6 +20,22 @@ TYPES: dict[type, str] = {
     sections.Download: "icd_download_form_t", sections.Upload: "icd_upload_form_t",
     sections.Erasure: "icd_erase_form_t", sections.Operation: "icd_operation_form_t",
 }  # fmt: skip
+
+
+class Row(NamedTuple):
+    """Value of an initialiser, with a comment; subject to a condition of the
+    preprocessor if there is one.
+    """
+
+    value: str
+    text: str = ""
+    condition: str = ""
+
+    def __str__(self) -> str:
+        row = f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
+        return (
+            f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
+        )
 
 
 def has_presence_flag(fact: Fact) -> bool:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
+from icdgen.backends.c.facts import TYPES, Row, boolean, or_none, spelled
 from icdgen.backends.c.stream_rows import (
-    Row,
     field_row,
     message_row,
     number_place,
@@ -465,7 +464,7 @@ class _Tables:
         )
         request = "NULL"
         if form.request:
-            zeros = ("0u" for _ in range(form.request.reserved))
+            zeros = ("0u" for _ in range(form.packets[form.request.packet].reserved))
             data = self.numbers("reserved", "uint8_t", zeros, 16)
             exchange = exchanges[form.request.exchange]
             row = Row(f"{exchange}, {data}, {form.request.packet}u")
@@ -526,13 +525,10 @@ class _Tables:
             "0x0u" if has_id else f"{only_id(form, number, each):#x}u"
             for each in DIRECTIONS
         )
-        reserved = packet.reserved
-        if form.request and form.request.packet == number:
-            reserved = form.request.reserved
         sent = ", ".join(boolean(each in packet.directions) for each in DIRECTIONS)
         return Row(
             f"{{{{{ids}}}, {packet.length_plus}, {fields}, {check}, {sizes}, "
-            f"ICD_PACKET_{content}, {{{sent}}}, {reserved}u}}",
+            f"ICD_PACKET_{content}, {{{sent}}}, {packet.reserved}u}}",
             plain(packet.name),
         )
 

@@ -2,29 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-from icdgen.backends.c.facts import boolean
+from icdgen.backends.c.facts import Row, boolean
 from icdgen.backends.c.text import plain
-from icdgen.backends.lines import STEP
 from icdgen.protocol.envelope import EnvelopeField, Stream, StreamRow
 from icdgen.protocol.exchange import NumberPlace
-
-
-class Row(NamedTuple):
-    """Value of an initialiser, with a comment; subject to a condition of the
-    preprocessor if there is one.
-    """
-
-    value: str
-    text: str = ""
-    condition: str = ""
-
-    def __str__(self) -> str:
-        row = f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
-        return (
-            f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
-        )
 
 
 def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:

@@ -121,7 +121,6 @@ def script_facts(
         requested = [row.id for row in form.telemetry if row.is_requested]
         script_data["request"] = {
             "packet": form.request.packet,
-            "reserved": form.request.reserved,
             "ids": [id for id in requested if ids is None or id in ids["telemetry"]],
         }
     responses = list(_responses(form))
@@ -172,16 +171,10 @@ def _responses(form: Stream) -> Iterator[dict[str, object]]:
     and where status and reason are in the frame.
     """
     exchanges = [
-        *(
-            ("telemetry", row.id, form.request.exchange)
-            for row in form.telemetry
-            if form.request and row.is_requested
-        ),
-        *(
-            ("telecommand", row.id, row.exchange)
-            for row in form.telecommands
-            if row.exchange
-        ),
+        (direction, row.id, exchange)
+        for direction in ("telemetry", "telecommand")
+        for row in form.rows(direction)
+        if (exchange := form.exchange_of(row))
     ]
     # Responses that differ in what they repeat only are the same for a reader.
     ids: dict[Response, dict[str, list[int]]] = {}

@@ -120,12 +120,12 @@ def _contents(
     ]
     if carried:
         contents.append(Content("Carries", "", carried))
-    if packet.name == packets.requesting and stream.request:
+    if packet.name == packets.requesting:
         ids = {row.id for row in stream.telemetry if row.is_requested}
         requested = [
             relations.place(each) for each in messages if each.telemetry_id in ids
         ]
-        reserved = stream.request.reserved
+        reserved = form.reserved
         text = f"with {count(reserved, 'byte')} of zeros as data" if reserved else ""
         contents.append(Content("Requests", text, requested))
     return contents

@@ -30,7 +30,6 @@ from icdgen.protocol.envelope import (
     PacketFormat,
     Stream,
     StreamRow,
-    TelemetryRequest,
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 
@@ -54,20 +53,19 @@ def stream_of(form: Stream) -> Brackets:
         part("telemetry", rows(_row(row, indices) for row in form.telemetry)),
         part("exchanges", rows(map(_exchange, form.exchanges))),
         part("confirming", flat_rows(map(spelled, form.confirming))),
-        part("request", some(_request(form.request, indices))),
+        part("request", some(_request(form, indices))),
     )
 
 
-def _request(
-    request: TelemetryRequest | None, indices: Mapping[Exchange, int]
-) -> Brackets | None:
+def _request(form: Stream, indices: Mapping[Exchange, int]) -> Brackets | None:
+    request = form.request
     if request is None:
         return None
     return flat(
         "RequestForm",
         packet=request.packet,
         exchange=indices[request.exchange],
-        data=f"&[0; {request.reserved}]",
+        data=f"&[0; {form.packets[request.packet].reserved}]",
     )
 
 

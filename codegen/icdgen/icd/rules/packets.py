@@ -139,7 +139,7 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
                     yield Fault.at_key(message.source, "requested", text, "remove it")
             continue
         name = link.declared.requesting
-        packet = link.declared.by_name(name) if name is not None else None
+        packet = link.declared.by_name(name)
         if packet is None:
             names = [each.name for each in link.declared.all if each.name]
             if isinstance(name, str):

@@ -137,8 +137,10 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
             }
             yield f"client of {requests}: {why}", request
     for exchange in form.exchanges:
-        row = next((row for row in form.telecommands if row.exchange == exchange), None)
-        row = row or next((row for row in form.telemetry if row.is_requested), None)
+        rows_of_link = (*form.telecommands, *form.telemetry)
+        row = next(
+            (row for row in rows_of_link if form.exchange_of(row) == exchange), None
+        )
         if row is None:
             continue  # no telemetry can be requested
         for why, more, rows in _outcomes(row, exchange, sample):

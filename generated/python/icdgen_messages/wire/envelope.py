@@ -190,7 +190,7 @@ class PacketForm(NamedTuple):
     directions: tuple[Direction, ...] = ("telecommand", "telemetry")
     content: Content = "message"
     reserved: int = 0
-    """Bytes of the data of a packet without a message."""
+    """Bytes of data, which are zeros, if the packet has no message."""
 
     def of(self, role: str) -> Optional[EnvelopeField]:
         """Return the first field of a role, or None."""
@@ -209,8 +209,6 @@ class TelemetryRequest(NamedTuple):
     """Index in `Stream.packets`."""
     exchange: int
     """Index in `Stream.exchanges`."""
-    reserved: int
-    """Bytes of data, which are zeros."""
 
 
 class Stream(NamedTuple):

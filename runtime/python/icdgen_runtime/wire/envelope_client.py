@@ -13,6 +13,7 @@ from .client import Request
 from .envelope import (
     Direction,
     Exchange,
+    PacketForm,
     Response,
     StreamRow,
     TelemetryRequest,
@@ -398,8 +399,8 @@ class EnvelopeClient(Generic[N]):
     ) -> list[Event]:
         row = self._row(request)
         if request.kind == "telemetry":
-            data = bytes(row.least) if row else bytes(self._request_form().reserved)
-            request = Request("telemetry", request.id, data, True)
+            size = row.least if row else self._requesting_packet().reserved
+            request = Request("telemetry", request.id, bytes(size), True)
         elif reply is not None and self._form.row("telemetry", reply) is None:
             raise UnknownIdError(self.link.node, "telemetry", reply)
         if self._max_requests is not None and len(self._slots) >= self._max_requests:
@@ -466,6 +467,9 @@ class EnvelopeClient(Generic[N]):
 
     def _request_form(self) -> TelemetryRequest:
         return need(self._form.request, "requests")
+
+    def _requesting_packet(self) -> PacketForm:
+        return self._form.packets[self._request_form().packet]
 
     def _set_time(self, now: float) -> None:
         """Store the time, and drop responses that can no longer arrive."""

@@ -115,7 +115,8 @@ def stream_encode_request(link: Link, telemetry: int, **values: int) -> bytes:
     row = form.row("telemetry", telemetry)
     if row is None or not row.is_requested:
         raise UnknownIdError(link.node, "telemetry", telemetry)
-    packet, data = form.packets[request.packet], bytes(request.reserved)
+    packet = form.packets[request.packet]
+    data = bytes(packet.reserved)
     return _encoded(form, packet, "telecommand", telemetry, data, values, row)
 
 
@@ -257,6 +258,27 @@ class ReceivedPacket(NamedTuple):
             for field, value in self.constants
         )
 
+    def data_bytes(self, frame: Buffer, size: int) -> Optional[int]:
+        """Return the bytes of the data: by the length field, otherwise those of the
+        message. None for the id of no message.
+
+        ``size``: bytes of the frame, to find fields of the trailer.
+        """
+        if self.length:
+            return _get(self.form, self.length, frame, size) - self.form.length_plus
+        row = self.row(_id_of(self.form, frame, size))
+        if row is None and self.form.content == "message":
+            return None
+        return self.bounds(row)[1]
+
+    def bounds(self, row: Optional[StreamRow]) -> tuple[int, int]:
+        """Return the smallest and largest number of bytes of the data: of a message, a
+        request or, without ``row``, a packet without a message.
+        """
+        if row is None or self.requested.get(row.id) is row:
+            return (self.form.reserved, self.form.reserved)
+        return (row.least, row.most)
+
     def row(self, id: Optional[int]) -> Optional[StreamRow]:
         """Return the message, or the requested telemetry, of an id."""
         number = self.only if id is None else id
@@ -387,7 +409,7 @@ class StreamDecoder:
             return 1
         if left < form.header_bytes:
             return None
-        data = self._length(packet, front)
+        data = packet.data_bytes(front, 0)
         if data is None:
             events.append(StreamEvent("unknown_id", _id_of(form, front, 0)))
             self.discarded += 1
@@ -406,25 +428,6 @@ class StreamDecoder:
             self.discarded += size
         return size
 
-    def _length(self, packet: ReceivedPacket, front: Buffer) -> Optional[int]:
-        """Return the bytes of the data that follow a header: from its length field,
-        otherwise those of the message. None for the id of no message.
-        """
-        if packet.length:
-            return _get(packet.form, packet.length, front, 0) - packet.form.length_plus
-        if packet.form.content != "message":
-            return packet.form.reserved
-        id = _id_of(packet.form, front, 0)
-        row = packet.row(id)
-        return None if row is None else self._size(packet, row)[1]
-
-    def _size(self, packet: ReceivedPacket, row: StreamRow) -> tuple[int, int]:
-        """Return the smallest and largest number of bytes of the data of a packet."""
-        request = self._form.request
-        if request and packet.requested.get(row.id) is row:
-            return (request.reserved, request.reserved)
-        return (row.least, row.most)
-
     def _judge(
         self, packet: ReceivedPacket, frame: bytes, events: list[StreamEvent]
     ) -> Literal["message", "proven", "doubtful"]:
@@ -439,10 +442,8 @@ class StreamDecoder:
             return self._doubtful("length", None, events)
         if not packet.fits(frame):
             return self._doubtful("framing", None, events)
-        if packet.length:
-            stated = _get(form, packet.length, frame, size) - form.length_plus
-            if stated != count:
-                return self._doubtful("length", None, events)
+        if packet.length and packet.data_bytes(frame, size) != count:
+            return self._doubtful("length", None, events)
         given_id = _id_of(form, frame, size)
         row = packet.row(given_id)
         id = packet.only if given_id is None else given_id
@@ -456,8 +457,8 @@ class StreamDecoder:
         if row is None and has_row:
             events.append(StreamEvent("unknown_id", id))
             return "proven"
-        bounds = self._size(packet, row) if row else (form.reserved, form.reserved)
-        if not bounds[0] <= count <= bounds[1]:
+        least, most = packet.bounds(row)
+        if not least <= count <= most:
             events.append(StreamEvent("length", id))
             return "proven"
         values = {entry.role: _get(form, entry, frame, size) for entry in packet.values}

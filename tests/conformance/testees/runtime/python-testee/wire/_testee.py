@@ -21,7 +21,7 @@ from . import _testee_scripts
 from ._testee_scripts import packet
 from .can import CanEvent, CanJoiner, CanMessage, can_split
 from .crc import crc8, crc16
-from .envelope import Direction
+from .envelope import CHOSEN_ROLES, Direction
 from .errors import ChecksumError, TooLongError, UnsupportedError
 from .files import HoleMap, IndexEntry, read_index, write_index
 from .i2c import i2c_read_length, i2c_reply, i2c_write
@@ -227,21 +227,11 @@ def _link_data(link: Link, words: Words) -> str:
 
 _DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
 _REQUEST = len(_DIRECTIONS)
-_VALUES = (
-    "sequence",
-    "source",
-    "destination",
-    "type",
-    "flags",
-    "time",
-    "status",
-    "reason",
-)
 
 
 def _stream_encode(link: Link, words: Words) -> str:
     direction, id, data = number(words), number(words), octets(words)
-    given = {role: maybe(words) for role in _VALUES}
+    given = {role: maybe(words) for role in CHOSEN_ROLES}
     values = {role: value for role, value in given.items() if value is not None}
     if direction == _REQUEST:
         return f" bytes={stream_encode_request(link, id, **values).hex()}"
