@@ -102,6 +102,32 @@ def test_a_message_after_noise_is_found_once_a_longest_one_has_passed(
     assert sent[0][0] in [event.id for event in found if event.event == "message"]
 
 
+SEEDED = """
+icdgen: 1
+node: {name: device, title: Device, byte_order: big, bit_order: msb0}
+protocol:
+  stream:
+    delimited_by: length
+    packets:
+      host: {from: host, header: [{at: 0, bits: 8, role: id}], trailer: [{at: 0, bits: 8, role: checksum, checksum: sent}]}
+      device: {from: device, header: [{at: 0, bits: 8, role: id}], trailer: [{at: 0, bits: 8, role: checksum, checksum: received}]}
+  checksums:
+    sent: {kind: sum, width: 8, covers: {from: id, to: data}, seeds: {Go: 1, Status: 2}}
+    received: {kind: sum, width: 8, covers: {from: id, to: data}, seeds: {Go: 3, Status: 4}}
+messages:
+  - {name: Go, id: 1, kind: telecommand, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}
+  - {name: Status, id: 2, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Mode, type: uint}]}
+"""
+
+
+def test_a_message_has_the_seed_of_the_checksum_of_its_packet(tmp_path):
+    (tmp_path / "device.yaml").write_text(SEEDED)
+    icd = icd_of([tmp_path / "device.yaml"])
+    link = link_of(icd, facts.of(icd, icd.node("device")))
+    assert stream_encode(link, 1, b"\7", "telecommand").hex() == "010709"
+    assert stream_encode(link, 2, b"\7", "telemetry").hex() == "02070d"
+
+
 def test_a_packet_is_a_message_by_itself():
     link = links()["datagram"]
     line = stream_encode(link, 0, b"\x07", "telemetry")

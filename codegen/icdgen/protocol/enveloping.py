@@ -80,7 +80,7 @@ def rows_of(
     ids: Mapping[int, tuple[Variant, ...]],
     direction: str,
     packets: Packets,
-    seeds: Mapping[str, int],
+    checksums: Section,
     exchanges: Mapping[str, Exchange],
     requested: Container[int] = (),
 ) -> tuple[StreamRow, ...]:
@@ -106,7 +106,7 @@ def rows_of(
                 min(message.layout.shortest for message in messages),
                 max(message.length for message in messages),
                 bool(first.may_end_early),
-                seeds.get(first.name, 0),
+                declaration_of(packet, checksums).get("seeds", {}).get(first.name, 0),
                 name,
                 exchange,
                 all(message.repeat for message in messages),
@@ -129,10 +129,16 @@ def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
     return matches[-1 if last else 0] if matches else None
 
 
+def declaration_of(packet: Packet, checksums: Section) -> Section:
+    """Return the declaration of the checksum of a packet; empty without one."""
+    row = place_of(packet.rows, "checksum") or {}
+    declaration: Section = checksums.get(row.get("checksum", ""), {})
+    return declaration
+
+
 def check_of(packet: Packet, checksums: Section) -> Check | None:
-    """Return the checksum that a checksum row refers to."""
-    row = place_of(packet.rows, "checksum")
-    declaration = checksums.get(row.get("checksum", "")) if row else None
+    """Return the checksum of a packet; None without one."""
+    declaration = declaration_of(packet, checksums)
     if not declaration:
         return None
     kind = declaration["kind"]
@@ -226,12 +232,9 @@ def stream_of(
         for message in sent
         if (exchange := exchange_of(sources, commands, message))
     }
-    # At most one field has each of these roles in a packet (rule ICD171).
     rows = [row for packet in packets.all for row in packet.rows]
     sequence = place_of(rows, "sequence") or {}
-    check = place_of(rows, "checksum") or {}
-    seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
-    telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, seeds, exchanges)
+    telecommands = rows_of(ids.telecommand, TELECOMMAND, packets, checksums, exchanges)
     request, requesting = None, packets.number_of(packets.requesting)
     if requesting is not None:
         exchange = request_exchange(sources, section["requests"])
@@ -254,5 +257,7 @@ def stream_of(
             for variant in variants
         )
     }
-    rows_of_telemetry = rows_of(ids.telemetry, TELEMETRY, packets, seeds, {}, requested)
+    rows_of_telemetry = rows_of(
+        ids.telemetry, TELEMETRY, packets, checksums, {}, requested
+    )
     return replace(stream, telemetry=rows_of_telemetry)
