@@ -8,9 +8,9 @@ import threading
 from urllib.parse import urlsplit
 
 import pytest
+from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from icdgen.protocol import facts, uart
-from tests import documents
+from tests import documents, links
 from tests.c import harness
 from tests.conformance import ROOT
 from tests.sim.device import simulator
@@ -45,17 +45,15 @@ class Node(threading.Thread):
         self.start()
 
     def run(self) -> None:
-        known = facts.of(harness.shipped(), harness.shipped().node("cubeacp"))
-        decoder = uart.Decoder(known.framing, known.longest)
+        link = links.link(harness.shipped(), "cubeacp")
+        decoder = UartDecoder(link)
         connection, _ = self.server.accept()
         with connection:
             while data := connection.recv(4096):
                 for event in decoder.feed(data):
                     self.asked.append(event.message)
                     if len(self.asked) > self.silent:
-                        line = b"noise\x1f" + uart.encode(
-                            known.framing, event.message + FRAME
-                        )
+                        line = b"noise\x1f" + uart_encode(link, event.message + FRAME)
                         for byte in line:  # a byte at a time
                             connection.sendall(bytes((byte,)))
 

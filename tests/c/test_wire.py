@@ -13,8 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from icdgen.protocol import crc, facts, ops
+from icdgen.protocol import facts
 from icdgen.runtime_objects import reference
+from tests import links
 from tests.c import harness, odd_protocol
 from tests.conformance import wire, wire_changed, wire_random
 from tests.conformance.build import build
@@ -91,7 +92,7 @@ def agree(icd, vectors, testee, count=3000):
         "stream_events",
         "stream_client",
     }  # the shipped ICDs have none: tests/conformance/test_links.py asks them
-    assert {request["op"] for request, _ in asked} == set(ops.OPS) - of_envelopes
+    assert {request["op"] for request, _ in asked} == set(reference.OPS) - of_envelopes
 
 
 def differences(asked, testee):
@@ -250,7 +251,7 @@ def test_checksums_are_the_same_with_tables_and_without(headers, tmp_path, optio
     known = facts.of(icd, icd.node("cubeacp"))
     data = b"123456789 and so on\0"
     expected = [
-        (crc.compute(known.checksum.crc, data[:n]), crc.compute(known.crc16, data[:n]))
+        (links.crc(known.checksum.crc, data[:n]), links.crc(known.crc16, data[:n]))
         for n in range(len(data))
     ]
     assert [

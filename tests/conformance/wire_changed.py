@@ -9,11 +9,14 @@ import random
 import re
 from collections.abc import Iterator
 
+from icdgen_runtime._errors import IcdError
+from icdgen_runtime.wire.client import Request
+
 from icdgen.icd.model import Icd
-from icdgen.protocol import errors, facts, scripts
-from icdgen.protocol.client import TELEMETRY, Request
-from icdgen.protocol.request_keys import Refusal
 from icdgen.runtime_objects import reference
+from icdgen.runtime_objects.procedures import event_of, procedure_of
+from icdgen.runtime_objects.refusals import Refusal
+from tests import links
 
 FRAMING = (0x1F, 0x7F, 0xFF)
 CAN_BYTES = 8  # a bus carries no longer packet, and not every language can hold one
@@ -129,25 +132,23 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
     """Whether every frame that is handed over has its length: the client lets no other
     pass.
     """
-    known = facts.of(icd, icd.node(request["node"]))
+    link = links.link(icd, request["node"])
     try:
-        procedure = scripts.procedure_of(known, request)
-    except (Refusal, facts.Unsupported, errors.RangeError, errors.TooLongError):
+        procedure = procedure_of(link, request)
+    except (Refusal, IcdError):
         return True
     for row in request["script"]:
-        event, want = row.get("event"), procedure._pending
+        event, asked = row.get("event"), procedure._action
         if (
             event
             and event["event"] == "done"
-            and procedure._is_outstanding
-            and isinstance(want, Request)
+            and procedure._is_requested
+            and isinstance(asked, Request)
+            and asked.kind == "telemetry"
+            and len(event["bytes"]) != 2 * link.frames[asked.id]
         ):
-            if (
-                want.kind == TELEMETRY
-                and len(event["bytes"]) != 2 * known.telemetry[want.id].length
-            ):
-                return False
+            return False
         if event:
-            procedure.event(row["at"], event)
+            procedure.event(row["at"], event_of(event))
         procedure.next(row["at"])
     return True

@@ -7,9 +7,16 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
+from icdgen_runtime.wire.can import CanMessage, can_split
+from icdgen_runtime.wire.crc import crc16
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.transfer import Download, Upload
+from icdgen_runtime.wire.uart import uart_encode
+
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, facts, i2c, uart
-from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects.procedures import event_of, procedure_of
+from tests import links
 
 MOST_PACKET_GAP_MS = 700
 
@@ -20,10 +27,10 @@ def requests(icd: Icd, count: int, seed: int = 1) -> Iterator[dict]:
     for node in icd.nodes:
         if not icd.protocol_of(node):
             continue
-        known = facts.of(icd, node)
+        link = links.link(icd, node.name)
         for _ in range(count):
             for make in (stream, _packets, _client, _transfer):
-                yield {"node": node.name, **make(known, source)}
+                yield {"node": node.name, **make(link, source)}
 
 
 def _cut(data: bytes, source: random.Random) -> list[bytes]:
@@ -35,8 +42,8 @@ def _cut(data: bytes, source: random.Random) -> list[bytes]:
     return [data[a:b] for a, b in zip([0, *cuts], [*cuts, len(data)], strict=True)]
 
 
-def _noise(known: Facts, source: random.Random, most: int) -> bytes:
-    form = known.framing
+def _noise(link: Link, source: random.Random, most: int) -> bytes:
+    form = link.framing
     assert form
     marks = [form.escape, form.escape, form.start, form.end, form.escaped]
     return bytes(
@@ -45,39 +52,37 @@ def _noise(known: Facts, source: random.Random, most: int) -> bytes:
     )
 
 
-def stream(known: Facts, source: random.Random) -> dict:
+def stream(link: Link, source: random.Random) -> dict:
     """A stream of messages and noise, cut anywhere."""
-    assert known.framing
+    assert link.framing
     stream = b""
     for _ in range(source.randrange(4)):
         message = bytes(
             [source.choice([31, 119, 146, 255, source.randrange(256)])]
-        ) + _noise(known, source, 24)
-        stream += _noise(known, source, 12) + uart.encode(known.framing, message)
+        ) + _noise(link, source, 24)
+        stream += _noise(link, source, 12) + uart_encode(link, message)
         stream = stream[: -source.randrange(1, 5)] if source.random() < 0.2 else stream
     chunks = [piece.hex() for piece in _cut(stream, source)]
     return {
         "op": "uart_events",
         "chunks": chunks,
-        "limit": min(source.choice([1, 2, 8, known.longest]), known.longest),
+        "limit": min(source.choice([1, 2, 8, link.longest]), link.longest),
     }
 
 
-def _packets(known: Facts, source: random.Random) -> dict:
+def _packets(link: Link, source: random.Random) -> dict:
     rows, now = [], 0
-    long = [
-        id for id, message in known.telemetry.items() if 8 < message.length < 60
-    ] or [200]
+    long = [id for id, length in link.frames.items() if 8 < length < 60] or [200]
     for _ in range(source.randrange(1, 5)):
         id = source.choice([source.choice(long), 3, source.randrange(256)])
-        message = can.Message(
+        message = CanMessage(
             "reply",
             id,
             source.choice([1, 2]),
             source.choice([0, 9]),
             source.randbytes(source.randrange(60)),
         )
-        found = can.split(known, message)
+        found = can_split(link, message)
         found = [one for one in found if source.random() < 0.95] + source.choices(
             found, k=source.randrange(3)
         )
@@ -103,7 +108,7 @@ def _packets(known: Facts, source: random.Random) -> dict:
     }
 
 
-def _client(known: Facts, source: random.Random) -> dict:
+def _client(link: Link, source: random.Random) -> dict:
     bus, checked = source.choice(["uart", "i2c", "can"]), source.random() < 0.5
     now, script = source.choice([0, 0, 1000]), []
     asked: tuple[str, int] = ("telemetry", 128)
@@ -113,14 +118,14 @@ def _client(known: Facts, source: random.Random) -> dict:
         kind = source.random()
         if kind < 0.3:
             if source.random() < 0.5:
-                asked = ("telemetry", source.choice([*known.telemetry, 128, 128, 3]))
+                asked = ("telemetry", source.choice([*link.frames, 128, 128, 3]))
                 row["telemetry"] = asked[1]
             else:
-                asked = ("telecommand", source.choice([*known.telecommands, 31, 200]))
-                message = known.telecommands.get(asked[1])
+                asked = ("telecommand", source.choice([*link.commands, 31, 200]))
+                command = link.commands.get(asked[1])
                 size = (
-                    message.length
-                    if message and source.random() < 0.95
+                    command.length
+                    if command and source.random() < 0.95
                     else source.randrange(9)
                 )
                 row |= {
@@ -129,7 +134,7 @@ def _client(known: Facts, source: random.Random) -> dict:
                     "repeat": source.random() < 0.5,
                 }
         elif kind < 0.85:
-            row["receive"] = _heard(known, bus, checked, asked, source)
+            row["receive"] = _heard(link, bus, checked, asked, source)
         elif kind < 0.9:
             row["cancel"] = True
         script.append(row)
@@ -150,14 +155,18 @@ def _client(known: Facts, source: random.Random) -> dict:
 
 
 def _heard(
-    known: Facts, bus: str, checked: bool, asked: tuple[str, int], source: random.Random
+    link: Link, bus: str, checked: bool, asked: tuple[str, int], source: random.Random
 ) -> object:
     kind, id = asked
-    message = (known.telecommands if kind == "telecommand" else known.telemetry).get(id)
-    size = message.length if message and source.random() < 0.9 else source.randrange(12)
+    command = link.commands.get(id)
+    length = command and command.length
+    if kind == "telemetry":
+        length = link.frames.get(id)
+    is_whole = length is not None and source.random() < 0.9
+    size = length if is_whole else source.randrange(12)
     code = source.choice([0, 0, 1, 4, 4, 9])
     if bus == "uart":
-        assert known.framing
+        assert link.framing
         answer = (
             bytes([id, code])
             if kind == "telecommand"
@@ -165,11 +174,11 @@ def _heard(
         )
         if source.random() < 0.1:
             answer = bytes([119]) + source.randbytes(22)
-        stream = uart.encode(known.framing, answer) * source.choice([1, 1, 2, 3])
+        stream = uart_encode(link, answer) * source.choice([1, 1, 2, 3])
         return (
             stream
             if source.random() < 0.8
-            else stream[: source.randrange(len(stream))] + _noise(known, source, 9)
+            else stream[: source.randrange(len(stream))] + _noise(link, source, 9)
         ).hex()
     if bus == "can":
         answer_kind = source.choice(
@@ -179,39 +188,35 @@ def _heard(
         )
         data = source.randbytes(min(size, 300)) if answer_kind == "reply" else b""
         found = source.choice(
-            can.split(
-                known,
-                can.Message(answer_kind, id, source.choice([1, 1, 1, 2]), 9, data),
+            can_split(
+                link,
+                CanMessage(answer_kind, id, source.choice([1, 1, 1, 2]), 9, data),
             )
             or [None]
         )
         return {"id": found.id, "bytes": found.data.hex()}
     if source.random() < 0.15:
         return None
-    polled = known.polled
+    polled = link.polled
     assert polled
     if kind == "telecommand" and source.random() < 0.6:
-        id, data = (
-            polled.message.ids[0],
-            bytes([id, source.choice([1, 1, 0]), code, 7])[: polled.message.length],
-        )
+        about = bytes([id, source.choice([1, 1, 0]), code, 7])
+        id, data = polled.telemetry, about[: link.frames[polled.telemetry]]
     else:
         data = source.randbytes(size if kind == "telemetry" else 0)
     checks = (
-        checked
-        and known.checksum is not None
-        and "i2c" in known.checksum.telemetry_buses
+        checked and link.checksum is not None and "i2c" in link.checksum.telemetry_buses
     )
     if checks and data and source.random() < 0.9:
-        data += bytes([i2c.checksum(known, id, data)])
+        data = i2c_write(link, id, data, crc=True)[1:]
     return data.hex()
 
 
-def _transfer(known: Facts, source: random.Random) -> dict:
-    uploads = ["upload", "upload"] if known.files and known.files.upload else []
+def _transfer(link: Link, source: random.Random) -> dict:
+    uploads = ["upload", "upload"] if link.files and link.files.upload else []
     operations = (
         ["program_copy", "program_information"]
-        if known.program_copy and known.program_information
+        if link.program_copy and link.program_information
         else []
     )
     what = source.choice(
@@ -245,14 +250,12 @@ def _transfer(known: Facts, source: random.Random) -> dict:
         request |= {"type": 1, "counter": 2, "all": source.random() < 0.5}
     if source.random() < 0.6:
         request["block"] = source.choice([1, 20, 45])
-    return {**request, "script": _played(known, request, source)}
+    return {**request, "script": _played(link, request, source)}
 
 
-def _played(known: Facts, request: dict, source: random.Random) -> list[dict]:
+def _played(link: Link, request: dict, source: random.Random) -> list[dict]:
     """A script whose outcomes fit what the procedure asks for, most of the time."""
-    from icdgen.protocol import crc, scripts, transfer
-
-    procedure = scripts.procedure_of(known, request)
+    procedure = procedure_of(link, request)
     script: list[dict] = []
     now = 0
     content: dict[int, bytes] = {}
@@ -262,84 +265,64 @@ def _played(known: Facts, request: dict, source: random.Random) -> list[dict]:
         now += source.choice([0, 1, 10, 50, 50, 500])
         row: dict = {"at": now}
         chance = source.random()
-        packets = (
-            isinstance(procedure, transfer.Download) and procedure.count and not pending
-        )
+        packets = isinstance(procedure, Download) and procedure._count and not pending
         if pending and chance < 0.9:
             row["event"], pending = pending, None
         elif packets and chance < 0.9:
             position = source.choice(
-                [n for n in range(procedure.count) if n not in procedure.packets] or [0]
+                [n for n in range(procedure._count) if n not in procedure._packets]
+                or [0]
             )
-            piece = loaded[position * 20 : position * 20 + 20].ljust(20, b"\xee")
             row["event"] = {
                 "event": "packet",
                 "number": position + (chance < 0.03),
-                "bytes": piece.hex(),
+                "bytes": _piece(loaded, position).hex(),
             }
         if "event" in row:
-            procedure.event(now, row["event"])
+            procedure.event(now, event_of(row["event"]))
         asked = procedure.next(now)
         script.append(row)
         if asked is None:
             continue
-        message = (
-            known.telecommands if asked.kind == "telecommand" else known.telemetry
-        )[asked.id]
         pending = {"event": source.choice(["done"] * 30 + ["refused", "timeout"])}
         if pending["event"] != "done":
             continue
         data = b""
         if asked.kind == "telemetry":
+            length = link.frames[asked.id]
             data = source.choice(
-                [
-                    bytes(message.length),
-                    source.randbytes(message.length),
-                    b"\xff" * message.length,
-                ]
+                [bytes(length), source.randbytes(length), b"\xff" * length]
             )
             if (
-                isinstance(procedure, transfer.Download)
-                and message.length == 5
+                isinstance(procedure, Download)
+                and length == 5
                 and source.random() < 0.9
             ):
-                want = (
-                    procedure.block
-                    if procedure.size is None
-                    else min(procedure.block, procedure.size - procedure.offset)
-                )
-                size = (
-                    want
-                    if procedure.size is not None or source.random() < 0.5
-                    else source.randrange(want + 1)
-                )
-                loaded = content.setdefault(procedure.offset, source.randbytes(size))[
-                    :want
-                ]
-                check = crc.compute(known.crc16, loaded) ^ (source.random() < 0.1)
+                size, at = procedure.size, procedure.progress[0]
+                want = procedure._block_bytes
+                want = want if size is None else min(want, size - at)
+                short = size is None and source.random() < 0.5
+                size = source.randrange(want + 1) if short else want
+                loaded = content.setdefault(at, source.randbytes(size))[:want]
+                check = crc16(link, loaded) ^ (source.random() < 0.1)
                 data = (
                     bytes([source.choice([1, 1, 0])])
                     + check.to_bytes(2, "little")
                     + len(loaded).to_bytes(2, "little")
                 )
+            elif isinstance(procedure, Download) and length == 22 and procedure._count:
+                position = source.randrange(procedure._count)
+                data = position.to_bytes(2, "little") + _piece(loaded, position)
             elif (
-                isinstance(procedure, transfer.Download)
-                and message.length == 22
-                and procedure.count
+                isinstance(procedure, Upload) and length == 2 and source.random() < 0.8
             ):
-                position = source.randrange(procedure.count)
-                data = position.to_bytes(2, "little") + loaded[
-                    position * 20 : position * 20 + 20
-                ].ljust(20, b"\xee")
-            elif (
-                isinstance(procedure, transfer.Upload)
-                and message.length == 2
-                and source.random() < 0.8
-            ):
-                block = procedure.data[
-                    procedure.sent : procedure.sent + procedure.block
-                ]
+                block = procedure._data[procedure.sent :][: procedure._block_bytes]
                 filled = block.ljust(-(-len(block) // 20) * 20, b"\xff")
-                data = crc.compute(known.crc16, filled).to_bytes(2, "little")
+                data = crc16(link, filled).to_bytes(2, "little")
         pending["bytes"] = data.hex()
     return script
+
+
+def _piece(block: bytes, position: int) -> bytes:
+    """A packet of a block."""
+    return block[position * 20 :][:20].ljust(20, b"\xee")

@@ -29,7 +29,7 @@ from icdgen.icd.variants import ids_of
 from icdgen.loading import load
 from icdgen.logfile import text
 from icdgen.logfile.log import open_log
-from icdgen.protocol import facts, logs
+from icdgen.protocol import facts
 from icdgen.recognize import recognize
 from icdgen.show import machine, people
 from icdgen.sim.control import fields_of, raw_value_of
@@ -40,6 +40,7 @@ from icdgen.values import text as values_text
 from icdgen.values.encode import encode
 from icdgen.values.frame import frame
 from icdgen.vectors.make import make
+from tests import links
 from tests.conformance.build import renderer
 from tests.features import enveloped
 from tests.features.data import Feature
@@ -345,9 +346,9 @@ def _log(subject: Subject) -> tuple[object, object]:
             example.linked[0], example.linked[0].node(name), subject.frames
         )
         return enveloped.log(icd, icd.node(name), sent, subject.folder)
-    known = facts.of(icd, icd.node(name))
-    mask = bytes([(1 << len(known.mask.bits)) - 1, 0])
-    slots = known.mask.selected(mask)
+    link = links.link(icd, name)
+    mask = bytes([(1 << len(link.mask.bits)) - 1, 0])
+    slots = link.mask.selected(mask)
     names = {message.telemetry_id: message.name for message in subject.node.messages}
     entries = []
     for number in range(FRAMES):
@@ -358,7 +359,7 @@ def _log(subject: Subject) -> tuple[object, object]:
         ]
         entries.append((1_600_000_000, number, cut))
     file = Path(tempfile.mkdtemp(dir=subject.folder)) / "log.bin"
-    file.write_bytes(logs.encode(known, mask, entries))
+    file.write_bytes(links.log_file(link, mask, entries))
     opened = open_log(icd, icd.node(name), file, "telemetry", [])
     written = io.StringIO()
     text.to_csv(opened.names, opened.rows(None, lambda _: None), written)

@@ -4,9 +4,13 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.logs import LogEntry, LogReader
 
-from icdgen.protocol import facts, logs
+from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects.links import link_of
+from tests import links
 from tests.conformance.icds import icd_of
 
 
@@ -22,6 +26,11 @@ def known(icd) -> Facts:
 
 
 @pytest.fixture(scope="session")
+def link(icd, known) -> Link:
+    return link_of(icd, known)
+
+
+@pytest.fixture(scope="session")
 def everything(known) -> bytes:
     """A mask with every frame, and a bit that is not assigned."""
     mask = bytearray(known.mask.size)
@@ -32,13 +41,13 @@ def everything(known) -> bytes:
 
 
 @pytest.fixture
-def write(tmp_path, known):
+def write(tmp_path, link):
     """Writes a log of random frames: path, and its entries."""
 
     def write(
         mask: bytes, count: int, truncated: bytes = b""
-    ) -> tuple[Path, list[logs.Entry]]:
-        source, slots = Random(count), known.mask.selected(mask)
+    ) -> tuple[Path, list[LogEntry]]:
+        source, slots = Random(count), link.mask.selected(mask)
         entries = [
             (
                 1_600_000_000 + n,
@@ -47,9 +56,9 @@ def write(tmp_path, known):
             )
             for n in range(count)
         ]
-        data = logs.encode(known, mask, entries)
+        data = links.log_file(link, mask, entries)
         path = tmp_path / "log.bin"
         path.write_bytes(data + truncated)
-        return path, logs.decode(known, data).entries
+        return path, LogReader(link).feed(data)
 
     return write

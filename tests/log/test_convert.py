@@ -10,12 +10,15 @@ import re
 from datetime import datetime
 
 import pytest
+from icdgen_runtime.wire.logs import LogReader
 
 from icdgen import codec
 from icdgen.logfile import parquet, text
 from icdgen.logfile.log import open_log
 from icdgen.logfile.source import open_source
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.frame import Row
+from tests import links
 
 COUNT = 300
 
@@ -196,7 +199,7 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     import pyarrow.parquet as pq
 
     from icdgen.loading import load
-    from icdgen.protocol import facts, logs
+    from icdgen.protocol import facts
 
     (tmp_path / "odd.yaml").write_text(text_of_icd)
     loaded = load([tmp_path / "odd.yaml"])
@@ -204,12 +207,13 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     assert icd is not None and loaded.ok, loaded.findings
     known, random = facts.of(icd, icd.nodes[0]), Random(1)
     entries = [(n, 0, [random.randbytes(36)]) for n in range(200)]
-    data = logs.encode(known, b"\x40", entries)
+    link = link_of(icd, known)
+    data = links.log_file(link, b"\x40", entries)
     (tmp_path / "log").write_bytes(data)
     found = open_source(icd, known.node, tmp_path / "log")
     parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
     table = pq.read_table(tmp_path / "log.parquet")
-    wanted = expected(icd, known, logs.decode(known, data).entries)
+    wanted = expected(icd, known, LogReader(link).feed(data))
     rows = zip(
         *(table[column.name].to_pylist() for column in found.plan.columns), strict=True
     )

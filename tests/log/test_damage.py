@@ -22,7 +22,7 @@ from icdgen.icd.model import Icd
 from icdgen.loading import load
 from icdgen.logfile import integrity, parquet
 from icdgen.logfile.source import open_source
-from icdgen.protocol import facts, logs
+from tests import links
 
 COUNT = 60
 FIRST = 1_700_000_000  # s
@@ -81,7 +81,7 @@ def log_of(icd: Icd, kind: str, times: list[int]) -> tuple[bytes, list[bytes]]:
         (*divmod(t, 1000), [frame(kind, n, *divmod(t, 1000))])
         for n, t in enumerate(times)
     ]
-    data = logs.encode(facts.of(icd, icd.nodes[0]), b"\x01", entries)
+    data = links.log_file(links.link(icd, "probe"), b"\x01", entries)
     return data, [
         data[at : at + ENTRY]
         for at in range(len(data) - ENTRY * len(times), len(data), ENTRY)

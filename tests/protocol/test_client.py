@@ -3,177 +3,183 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from icdgen_runtime._errors import LengthError, UnknownIdError
+from icdgen_runtime.wire.can import CanMessage, can_split
+from icdgen_runtime.wire.client import Client, Request
+from icdgen_runtime.wire.errors import BusyError
+from icdgen_runtime.wire.events import (
+    OUTCOMES,
+    Done,
+    Refused,
+    Stray,
+    Timeout,
+)
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.link import Settings
+from icdgen_runtime.wire.uart import uart_encode
 
-from icdgen.protocol import can, uart
-from icdgen.protocol.client import Client, Request
-from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
-from icdgen.protocol.sections import Settings
-from tests.protocol import quick
+from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
+from tests.protocol import NOISE
 
-SETTINGS = Settings(reply_timeout=100, retries=2, poll_interval=10, poll_timeout=50)
-OUTCOMES = {"done", "refused", "timeout"}
+QUICK = Settings(reply_timeout=100, retries=2, poll_interval=10, poll_timeout=50)
+OURS, NODE = 0x42, 1
+TELECOMMANDS, TELEMETRY = [1, 2, 7, 31, 37], [128, 144, 146, 240]
 
 
-def talking(known, bus="uart", **options):
-    return Client(known, bus, settings=SETTINGS, **options)
+def talking(link, bus="uart", **options):
+    return Client(link, bus, settings=QUICK, **options)
 
 
-def line(known, *data):
-    return uart.encode(known.framing, bytes(data))
+def line(link, *data):
+    return uart_encode(link, bytes(data))
 
 
-def test_the_next_telecommand_waits_for_the_acknowledge(known):
-    client = talking(known)
+def test_the_next_telecommand_waits_for_the_acknowledge(link):
+    client = talking(link)
     client.start(0, Request("telecommand", 31, b"\1"))
-    assert client.out == [line(known, 31, 1)]
-    client.out.clear()
+    assert client.output() == line(link, 31, 1)
     with pytest.raises(BusyError):
         client.start(1, Request("telecommand", 31, b"\1"))
-    (event,) = client.received(2, line(known, 31, 0))
-    assert (event["event"], event["attempts"]) == ("done", 1)
+    assert client.received(2, line(link, 31, 0)) == [Done(31, 1)]
     client.start(3, Request("telecommand", 31, b"\1"))
 
 
-def test_what_the_node_does_not_have_is_refused_before_it_is_sent(known):
-    client = talking(known)
+def test_what_the_node_does_not_have_is_refused_before_it_is_sent(link):
+    client = talking(link)
     with pytest.raises(UnknownIdError):
         client.start(0, Request("telecommand", 0))
     with pytest.raises(LengthError):
         client.start(0, Request("telecommand", 31, b""))
-    assert client.out == [] and client.deadline is None
+    assert (client.output(), client.deadline) == (b"", None)
 
 
-def test_a_telecommand_without_acknowledge_is_not_sent_twice_unless_it_may_be(known):
+def test_a_telecommand_without_acknowledge_is_not_sent_twice_unless_it_may_be(link):
     for repeat, attempts in ((False, 1), (True, 3)):
-        client, events, now = talking(known), [], 0
+        client, events = talking(link), []
         client.start(0, Request("telecommand", 31, b"\1", repeat))
         while client.deadline is not None:
-            now = client.deadline
-            events += client.tick(now)
-        assert [(e["event"], e["attempts"]) for e in events] == [("timeout", attempts)]
-        assert len(client.out) == attempts
+            events += client.tick(client.deadline)
+        assert events == [Timeout(31, attempts)]
+        assert client.output() == attempts * line(link, 31, 1)
 
 
-def test_a_setting_may_always_be_sent_again(known):
-    client = talking(known)
+def test_a_setting_may_always_be_sent_again(link):
+    client = talking(link)
     client.start(0, Request("telecommand", 3, b"\1"))
-    assert client.tick(100) == [] and len(client.out) == 2
+    assert client.tick(100) == [] and client.output() == 2 * line(link, 3, 1)
 
 
-def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(known):
-    client = talking(known)
+def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(link):
+    client = talking(link)
     client.start(0, Request("telecommand", 31, b"\1", repeat=True))
     client.tick(100)
-    assert client.received(110, line(known, 31, 0))[0]["event"] == "done"
-    client.out.clear()
+    assert client.received(110, line(link, 31, 0)) == [Done(31, 2)]
+    client.output()
     client.start(111, Request("telecommand", 31, b"\2"))
-    assert client.out == []
-    assert client.received(150, line(known, 31, 0))[0]["event"] == "stray"
+    assert client.output() == b""
+    assert client.received(150, line(link, 31, 0)) == [Stray(bytes([31, 0]))]
     client.tick(210)
-    assert client.out == [line(known, 31, 2)]
-    assert client.received(220, line(known, 31, 3))[0]["reason"] == "parameter"
+    assert client.output() == line(link, 31, 2)
+    assert client.received(220, line(link, 31, 3)) == [Refused(31, 1, 3, "parameter")]
 
 
-actions = st.one_of(
-    st.tuples(
-        st.just("ask"),
-        st.sampled_from(
-            [Request("telecommand", 31, b"\1"), Request("telecommand", 31, b"\1", True)]
-        ),
-    ),
-    st.tuples(
-        st.just("ask"),
-        st.sampled_from(
-            [Request("telemetry", 146), Request("telecommand", 115, bytes(22))]
-        ),
-    ),
-    st.tuples(
-        st.just("reply"),
-        st.sampled_from(
-            [
-                bytes([31, 0]),
-                bytes([31, 4]),
-                bytes([146, *bytes(6)]),
-                bytes([146]),
-                bytes([119, 0]),
-            ]
-        ),
-    ),
-    st.tuples(st.just("noise"), st.binary(max_size=20)),
-    st.tuples(st.just("wait"), st.integers(0, 150)),
-)
-
-
-@quick
-@given(st.lists(actions, max_size=40), st.booleans())
-def test_every_request_has_exactly_one_outcome(known, script, checked):
-    client, now, asked, outcomes = talking(known, crc=checked), 0, 0, 0
-    for action, value in script:
-        now += 1
-        events = []
-        if action == "ask":
-            client.out.clear()
-            try:
-                events = client.start(now, value)
-                asked += 1
-            except BusyError:
-                assert client.deadline is not None
-        elif action == "wait":
-            now += value
-            events = client.tick(now)
-        else:
-            events = client.received(
-                now, line(known, *value) if action == "reply" else value
-            )
-        outcomes += sum(event["event"] in OUTCOMES for event in events)
-        assert asked - outcomes == (client.deadline is not None)
-    for _ in range(10):
-        if client.deadline is not None:
-            outcomes += sum(
-                event["event"] in OUTCOMES for event in client.tick(client.deadline)
-            )
-    assert asked == outcomes
-
-
-@quick
-@given(
-    st.lists(
-        st.tuples(
-            st.booleans(),
-            st.one_of(st.none(), st.binary(max_size=9)),
-            st.integers(0, 60),
-        ),
-        max_size=30,
-    )
-)
-def test_on_i2c_nothing_hangs_either(known, script):
-    client, now = talking(known, "i2c", crc=True), 0
-    for telecommand, data, pause in script:
-        client.out.clear()
-        if client.deadline is None:
-            client.start(
-                now,
-                (
-                    Request("telecommand", 31, b"\1")
-                    if telecommand
-                    else Request("telemetry", 146)
-                ),
-            )
-        now += pause
-        client.transferred(now, data)
-    for _ in range(100):
-        if client.deadline is not None:
-            client.tick(client.deadline)
-    assert client.deadline is None
-
-
-def test_on_can_a_frame_is_split_and_joined(known):
-    client = talking(known, "can", address=0x42)
+def test_on_can_a_frame_is_split_and_joined(link):
+    client, data = talking(link, "can", address=OURS), bytes(range(252)) * 2
     client.start(0, Request("telemetry", 206))
-    packets = can.split(
-        known, can.Message("reply", 206, 1, 0x42, bytes(range(252)) * 2)
-    )
-    events = [event for packet in packets for event in client.packet(5, packet)]
-    assert [bytes.fromhex(e["bytes"]) for e in events] == [bytes(range(252)) * 2]
+    packets = can_split(link, CanMessage("reply", 206, NODE, OURS, data))
+    (event,) = [event for packet in packets for event in client.packet(5, packet)]
+    assert event.data == data
+
+
+@st.composite
+def requests(draw, link):
+    """A request, now and then one that the node does not have."""
+    if draw(st.booleans()):
+        return Request("telemetry", draw(st.sampled_from([*TELEMETRY, 5])))
+    id = draw(st.sampled_from([*TELECOMMANDS, 200]))
+    known = id in link.commands and draw(st.integers(0, 9))
+    length = link.commands[id].length if known else 3
+    data = draw(st.binary(min_size=length, max_size=length))
+    return Request("telecommand", id, data, draw(st.booleans()))
+
+
+@st.composite
+def frames(draw, link):
+    """Id and data of a frame, whose length is wrong now and then."""
+    id = draw(st.sampled_from(TELEMETRY))
+    if id == 240:  # tells what became of a telecommand
+        about = draw(st.sampled_from(TELECOMMANDS)), draw(st.integers(0, 1))
+        return id, bytes((*about, draw(st.integers(0, 5)), 9))
+    length = link.frames[id] + (not draw(st.integers(0, 7)))
+    return id, draw(st.binary(min_size=length, max_size=length))
+
+
+@st.composite
+def received(draw, link, bus):
+    """What the client receives: an answer, part of one, or noise."""
+    id, frame = draw(frames(link))
+    if bus == "i2c":
+        checked = i2c_write(link, id, frame, True)[1:]
+        wrong = checked[:-1] + bytes([checked[-1] ^ 1])
+        return draw(st.sampled_from([None, b"", b"", frame, checked, checked, wrong]))
+    about = draw(st.sampled_from(TELECOMMANDS))
+    if bus == "can":
+        kind = draw(st.sampled_from(CAN_KINDS))
+        source = draw(st.sampled_from([NODE, NODE, 9]))
+        if kind not in CAN_WITH_DATA:
+            id, frame = draw(st.sampled_from([about, id])), b""
+        message = CanMessage(kind, id, source, OURS, frame)
+        return draw(st.sampled_from(can_split(link, message)))
+    acknowledge = bytes((about, draw(st.sampled_from([0, 0, 1, 4, 77]))))
+    whole = line(link, *draw(st.sampled_from([acknowledge, bytes((id,)) + frame])))
+    place = draw(st.integers(0, len(whole)))
+    pieces = [whole, whole, whole[:place], whole[place:]]
+    return draw(st.sampled_from(pieces)) + draw(NOISE)
+
+
+@given(st.data(), st.sampled_from(["uart", "i2c", "can"]), st.booleans())
+@settings(max_examples=300)
+def test_every_request_has_exactly_one_outcome(link, data, bus, checked):
+    client, now, asked, ended = talking(link, bus, crc=checked, address=OURS), 0, [], []
+    receive = {"uart": client.received, "i2c": client.transferred, "can": client.packet}
+
+    def told(events):
+        for event in events:
+            if isinstance(event, OUTCOMES):
+                ended.append(event.id)
+                assert event.attempts <= 1 + QUICK.retries
+                if isinstance(event, Done) and event.type:
+                    assert len(event.data) == link.frames[event.id]
+        assert ended == asked[: len(ended)]
+        assert len(asked) - len(ended) == (client.deadline is not None) == client.busy
+
+    for action in data.draw(st.lists(st.sampled_from("srrtc"), max_size=25)):
+        now += data.draw(st.sampled_from([0, 1, 5, 10, 49, 60, 100, 150]))
+        for take in (client.output, client.packets, client.transfers):
+            take()
+        if action == "r":
+            told(receive[bus](now, data.draw(received(link, bus))))
+        elif action == "t":
+            told(client.tick(now))
+        elif action == "c":
+            client.cancel()
+            del asked[len(ended) :]
+            told([])
+        else:
+            request, is_busy = data.draw(requests(link)), client.busy
+            try:
+                events = client.start(now, request)
+            except (UnknownIdError, LengthError):
+                continue
+            except BusyError:
+                assert is_busy
+                continue
+            asked.append(request.id)
+            told(events)
+    for _ in range(100):
+        if client.busy:
+            client.transfers()
+            told(client.tick(client.deadline))
+    assert asked == ended

@@ -1,50 +1,78 @@
-"""Checksums: those of the catalogues, and of the listings that the manual prints."""
+"""Checksums of the runtime: those of the catalogues, and of their parameters."""
 
 from __future__ import annotations
-
-import binascii
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from icdgen_runtime.wire.crc import Crc, crc8, crc16
+from icdgen_runtime.wire.link import CrcForm
 
-from icdgen.protocol import crc
-from icdgen.protocol.sections import Crc
-from tests.protocol import quick
+from tests import links
+from tests.protocol import cut
 
 CATALOGUE = [
-    (Crc(8, 0x07, 0, False, False, 0), 0xF4),  # CRC-8/SMBUS
-    (Crc(16, 0x1021, 0xFFFF, False, False, 0), 0x29B1),  # CRC-16/IBM-3740
-    (Crc(16, 0x8005, 0, True, True, 0), 0xBB3D),  # CRC-16/ARC
+    (CrcForm(8, 0x07, 0, False, False, 0), 0xF4),  # CRC-8/SMBUS
+    (CrcForm(16, 0x1021, 0xFFFF, False, False, 0), 0x29B1),  # CRC-16/IBM-3740
+    (CrcForm(16, 0x8005, 0, True, True, 0), 0xBB3D),  # CRC-16/ARC
     (
-        Crc(32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF),
+        CrcForm(32, 0x04C11DB7, 0xFFFFFFFF, True, True, 0xFFFFFFFF),
         0xCBF43926,
     ),  # CRC-32/ISO-HDLC
 ]
 
 
-@pytest.mark.parametrize("parameters, check", CATALOGUE)
-def test_the_check_values_of_the_catalogues(parameters, check):
-    assert crc.compute(parameters, b"123456789") == check
+def forms_of(width: int) -> st.SearchStrategy[CrcForm]:
+    numbers, flags = st.integers(0, (1 << width) - 1), st.booleans()
+    return st.builds(
+        CrcForm, st.just(width), numbers, numbers, flags, flags, numbers, st.none() | numbers
+    )  # fmt: skip
 
 
-def test_no_bytes_at_all_have_the_value_that_the_icd_gives(known):
-    assert crc.compute(known.checksum.crc, b"") == 0xFF
-    assert crc.compute(known.crc16, b"") == 0
+FORMS = st.integers(1, 32).flatmap(forms_of) | st.sampled_from(
+    [form for form, _ in CATALOGUE]
+)
 
 
-@quick
+@pytest.mark.parametrize("form, check", CATALOGUE)
+def test_the_check_values_of_the_catalogues(form, check):
+    assert Crc(form).feed(b"123456789").result() == check
+
+
+def test_the_check_values_of_the_node(link):
+    assert (crc8(link, b"123456789"), crc16(link, b"123456789")) == (0x25, 0x31C3)
+
+
+def test_no_bytes_at_all_have_the_value_that_the_icd_gives(link):
+    assert (crc8(link, b""), crc16(link, b"")) == (0xFF, 0)
+
+
+@given(
+    form=FORMS,
+    data=st.binary(max_size=40),
+    places=st.lists(st.integers(0, 40), max_size=4),
+    table=st.booleans(),
+)
+def test_crcs_of_all_parameters_with_and_without_a_table_in_pieces(
+    form, data, places, table
+):
+    register = Crc(form, table)
+    for piece in cut(data, places):
+        register.feed(piece)
+    assert register.result() == links.crc(form, data)
+
+
 @given(data=st.binary(max_size=300))
-def test_the_wide_one_is_that_of_the_standard_library(known, data):
-    assert crc.compute(known.crc16, data) == binascii.crc_hqx(data, 0)
+def test_the_crcs_of_the_node_are_those_of_its_parameters(link, data):
+    assert crc8(link, data) == links.crc(link.checksum.crc, data)
+    assert crc16(link, data) == links.crc(link.crc16, data)
 
 
-@quick
 @given(data=st.binary(min_size=1, max_size=300))
-def test_the_narrow_one_shifts_after_the_constant_is_applied(known, data):
+def test_the_narrow_one_shifts_after_the_constant_is_applied(link, data):
     register = 0
     for byte in data:
         register ^= byte
         for _ in range(8):
             register = (register ^ 0x91 if register & 1 else register) >> 1
-    assert crc.compute(known.checksum.crc, data) == register
+    assert crc8(link, data) == register

@@ -7,9 +7,11 @@ from __future__ import annotations
 from dataclasses import asdict
 
 import pytest
+from icdgen_runtime.wire.uart import uart_kind
 
 from icdgen.loading import load
-from icdgen.protocol import facts, uart
+from icdgen.protocol import facts
+from tests import links
 
 
 def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
@@ -48,10 +50,8 @@ def test_without_telemetry_an_acknowledge_is_no_reply(tmp_path):
     (tmp_path / "demo.yaml").write_text(WITHOUT_TELEMETRY)
     loaded = load([tmp_path])
     assert loaded.findings == []
-    assert (
-        uart.kind(facts.of(loaded.icd, loaded.icd.node("demo")), bytes([7, 0]))
-        == uart.ACKNOWLEDGE
-    )
+    link = links.link(loaded.icd, "demo")
+    assert uart_kind(link, bytes([7, 0])) == "acknowledge"
 
 
 def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):

@@ -1,117 +1,147 @@
-"""Logs, packed times, hole maps and the index file."""
+"""Logs, packed times, hole maps, the index file, and checksums on I2C."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from datetime import datetime
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from icdgen_runtime._errors import LengthError, RangeError, UnknownIdError
+from icdgen_runtime.wire.errors import ChecksumError
+from icdgen_runtime.wire.files import HoleMap, IndexEntry, read_index, write_index
+from icdgen_runtime.wire.i2c import i2c_read_length, i2c_reply, i2c_write
+from icdgen_runtime.wire.logs import LogFrame, LogMessage, LogReader
+from icdgen_runtime.wire.times import DosTime, dos_time_pack, dos_time_unpack
 
-from icdgen.protocol import errors, files, i2c, logs, times
-from tests.protocol import quick
+from tests import links
+from tests.protocol import cut, quick
 
 
 def mask(*bits: int) -> bytes:
     return sum(1 << bit for bit in bits).to_bytes(10, "little")
 
 
-def test_frames_follow_the_bits_of_the_mask(known):
-    file = logs.encode(known, mask(28, 0), [(5, 7, [b"status", b"angles"])])
+def test_frames_follow_the_bits_of_the_mask(link):
+    file = links.log_file(link, mask(28, 0), [(5, 7, [b"status", b"angles"])])
     assert file.hex() == "01000010000000000000" + "050000000700" + b"statusangles".hex()
-    log = logs.decode(known, file)
-    assert log.entries == [
-        logs.Entry(
-            5, 7, (logs.Frame(0, 144, b"status"), logs.Frame(28, 146, b"angles"))
-        )
+    assert LogReader(link).feed(file) == [
+        (5, 7, (LogFrame(0, 144, b"status"), LogFrame(28, 146, b"angles")))
     ]
 
 
-def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(known):
-    file = logs.encode(known, mask(2, 21), [(0, 0, [b"free!!", b"four"])])
+def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(link):
+    file = links.log_file(link, mask(2, 21), [(0, 0, [b"free!!", b"four"])])
     assert len(file) == 10 + 6 * 3
-    assert logs.decode(known, file).entries[0].frames == (
-        logs.Frame(2, None, b"free!!"),
-        logs.Frame(21, 171, b"four"),
-    )
+    (entry,) = LogReader(link).feed(file)
+    assert entry.frames == (LogFrame(2, None, b"free!!"), LogFrame(21, 171, b"four"))
 
 
 @quick
 @given(
     bits=st.sets(st.integers(0, 79), max_size=20),
     count=st.integers(0, 3),
-    cut=st.integers(0, 100),
-    piece=st.integers(1, 50),
+    lost=st.integers(0, 100),
+    places=st.lists(st.integers(0, 400), max_size=10),
 )
-def test_a_truncated_log_gives_its_whole_entries_and_says_what_is_left(
-    known, bits, count, cut, piece
+def test_a_log_is_read_in_pieces_of_any_size_and_what_is_cut_off_is_counted(
+    link, bits, count, lost, places
 ):
     chosen = mask(*bits)
-    data = [bytes(slot.length) for slot in known.mask.selected(chosen)]
-    file = logs.encode(known, chosen, [(n, n, data) for n in range(count)])
+    lengths = [slot.length for slot in link.mask.selected(chosen)]
+    rows = [(n, 7 * n, [bytes([n]) * size for size in lengths]) for n in range(count)]
+    file = links.log_file(link, chosen, rows)
     size = 6 + 6 * len(bits)
     assert len(file) == 10 + size * count
-    part = file[: max(0, len(file) - cut)]
-    log = logs.decode(known, part)
+    part, reader = file[: max(0, len(file) - lost)], LogReader(link)
+    entries = [entry for piece in cut(part, places) for entry in reader.feed(piece)]
     if len(part) < 10:
-        assert (log.mask, log.entries, log.truncated) == (None, [], len(part))
+        assert (reader.mask, entries, reader.truncated) == (None, [], len(part))
     else:
-        assert log.mask == chosen
-        assert (len(log.entries), log.truncated) == divmod(len(part) - 10, size)
+        assert reader.mask == chosen
+        whole, left = divmod(len(part) - 10, size)
+        assert reader.truncated == left
+        found = [(e.seconds, e.milliseconds, [f.data for f in e.frames]) for e in entries]  # fmt: skip
+        assert found == rows[:whole]
 
 
-def test_an_unsolicited_log_has_id_mask_and_frames(known):
-    message = logs.encode_message(known, mask(0), [b"status"])
+def test_an_unsolicited_log_has_id_mask_and_frames(link):
+    message = LogMessage.encode(link, mask(0), [b"status"])
     assert message.hex() == "ff" + mask(0).hex() + b"status".hex()
-    assert logs.decode_message(known, message) == (
-        mask(0),
-        (logs.Frame(0, 144, b"status"),),
-    )
-    with pytest.raises(errors.LengthError):
-        logs.decode_message(known, message + b"\0")
+    frames = (LogFrame(0, 144, b"status"),)
+    assert LogMessage.decode(link, message) == (mask(0), frames)
+    with pytest.raises(LengthError):
+        LogMessage.decode(link, message + b"\0")
 
 
 @quick
 @given(st.datetimes(datetime(1980, 1, 1), datetime(2107, 12, 31, 23, 59, 59)))
-def test_packed_times_come_back_to_two_seconds(known, moment):
-    parts = {name: getattr(moment, name) for name in times.PARTS}
-    value = times.pack(known, parts)
+def test_packed_times_come_back_to_two_seconds(link, moment):
+    value = dos_time_pack(link, moment)
     assert value == (
         moment.year - 1980
     ) << 25 | moment.month << 21 | moment.day << 16 | moment.hour << 11 | (
         moment.minute << 5 | moment.second >> 1
     )
-    assert times.unpack(known, value) == {**parts, "second": moment.second // 2 * 2}
+    even = moment.replace(second=moment.second // 2 * 2, microsecond=0)
+    assert dos_time_unpack(link, value).datetime() == even
 
 
 @quick
 @given(st.integers(0, (1 << 32) - 1))
-def test_a_time_is_valid_if_the_calendar_has_it(known, value):
-    parts = times.unpack(known, value)
+def test_a_time_is_valid_if_the_calendar_has_it(link, value):
+    time = dos_time_unpack(link, value)
     try:
-        datetime(**parts)
+        datetime(*time)
         there = True
     except ValueError:
         there = False
-    assert (times.invalid_part(parts) is None) == there
+    assert time.is_valid == there
+
+
+@pytest.mark.parametrize(
+    ("date", "named"),
+    [
+        ((1979, 1, 1, 0, 0, 0), "year"),
+        ((2108, 1, 1, 16, 0, 0), "year"),
+        ((2108, 13, 1, 16, 0, 0), "month"),
+        ((2001, 2, 29, 0, 0, 0), "day"),
+        ((2108, 1, 32, 16, 60, 0), "day"),
+        ((2021, 1, 1, 16, 0, 0), "hour"),
+        ((2000, 2, 29, 24, 0, 0), "hour"),
+        ((2000, 1, 1, 0, 60, 99), "minute"),
+        ((2000, 1, 1, 0, 0, 60), "second"),
+    ],
+)
+def test_the_first_bad_part_of_a_time_is_named_from_the_year_on(link, date, named):
+    narrow = link.time | {"hour": link.time["hour"]._replace(bits=4)}
+    with pytest.raises(RangeError) as caught:
+        dos_time_pack(link._replace(time=narrow), DosTime(*date))
+    assert caught.value.field == named
 
 
 @quick
 @given(count=st.integers(0, 1024), seed=st.randoms(use_true_random=False))
-def test_a_hole_map_names_what_is_missing(known, count, seed):
+def test_a_hole_map_names_what_is_missing(link, count, seed):
     received = {number for number in range(count) if seed.random() < 0.9}
-    map_ = files.hole_map(known, count, received)
-    lost = [i for i in range(1024) if (map_[i >> 3] & (1 << (i & 7))) == 0]
-    assert (
-        lost
-        == sorted(set(range(count)) - received)
-        == files.missing(known, count, map_)
-    )
-    assert (
-        b"".join(files.in_messages(known, map_)) == map_
-        and len(files.in_messages(known, map_)) == 8
-    )
+    made = HoleMap(link, count, received)
+    data = made.to_bytes()
+    lost = [i for i in range(1024) if (data[i >> 3] & (1 << (i & 7))) == 0]
+    assert lost == sorted(set(range(count)) - received) == made.missing()
+    assert made.count() == len(received)
+    assert HoleMap.from_bytes(link, count, data).missing() == lost
+    assert b"".join(made.messages()) == data and len(made.messages()) == 8
+
+
+def test_hole_maps_refuse_packets_that_the_block_does_not_have(link):
+    made = HoleMap(link, 3)
+    for number in (-1, 3):
+        with pytest.raises(RangeError):
+            made.set(number)
+    with pytest.raises(RangeError):
+        HoleMap(link, 1025)
+    with pytest.raises(LengthError):
+        HoleMap.from_bytes(link, 3, b"")
 
 
 @quick
@@ -123,44 +153,47 @@ def test_a_hole_map_names_what_is_missing(known, count, seed):
         )
     )
 )
-def test_the_index_file_comes_back(known, rows):
-    entries = [files.IndexEntry(*row) for row in rows]
-    data = files.write_index(known, entries)
+def test_the_index_file_comes_back(link, rows):
+    entries = [IndexEntry(*row) for row in rows]
+    data = write_index(link, entries)
     assert len(data) == 37 * len(rows)
-    assert files.read_index(known, data) == (entries, 0)
-    assert files.read_index(known, data + bytes(36)) == (entries, 36)
+    assert read_index(link, data) == (entries, 0)
+    assert read_index(link, data + bytes(36)) == (entries, 36)
 
 
-def test_a_telecommand_without_parameters_has_a_checksum_too(known):
-    assert i2c.telecommand(known, 63, b"", True).hex() == "3fff"
-    assert i2c.telecommand(known, 63, b"", False).hex() == "3f"
+def test_a_number_that_does_not_fit_the_index_file_is_refused(link):
+    with pytest.raises(RangeError, match="type"):
+        write_index(link, [IndexEntry(256, 0, 0, 0, 0, bytes(25))])
+
+
+def test_a_telecommand_without_parameters_has_a_checksum_too(link):
+    assert i2c_write(link, 63, b"", True).hex() == "3fff"
+    assert i2c_write(link, 63, b"", False).hex() == "3f"
+
+
+def test_the_checksum_covers_the_id_where_the_icd_says_so(link):
+    for covers_id, data in ((False, b"\x01"), (True, b"\x1f\x01")):
+        form = link.checksum._replace(covers_id=covers_id)
+        written = i2c_write(link._replace(checksum=form), 31, b"\x01", crc=True)
+        assert written == bytes([31, 1, links.crc(form.crc, data)])
 
 
 @quick
 @given(frame=st.binary(min_size=6, max_size=6), bit=st.integers(0, 47))
-def test_a_reply_with_a_wrong_bit_is_refused(known, frame, bit):
-    read = i2c.telecommand(known, 146, frame, True)[1:]
-    assert i2c.reply(known, 146, read, True) == frame
+def test_a_reply_with_a_wrong_bit_is_refused(link, frame, bit):
+    read = i2c_write(link, 146, frame, True)[1:]
+    assert len(read) == i2c_read_length(link, 146, crc=True)
+    assert i2c_reply(link, 146, read, True) == i2c_reply(link, 146, frame) == frame
     wrong = bytes(
         b ^ (1 << bit % 8 if n == bit // 8 else 0) for n, b in enumerate(read)
     )
-    with pytest.raises(errors.ChecksumError):
-        i2c.reply(known, 146, wrong, True)
+    with pytest.raises(ChecksumError) as caught:
+        i2c_reply(link, 146, wrong, True)
+    assert (caught.value.expected, caught.value.actual) == (links.crc(link.checksum.crc, wrong[:6]), read[6])  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("date", "named"),
-    [
-        ((2108, 13, 1, 16, 0, 0), "month"),
-        ((2108, 1, 1, 16, 0, 0), "year"),
-        ((2021, 1, 1, 16, 0, 0), "hour"),
-        ((2108, 1, 32, 16, 60, 0), "day"),
-    ],
-)
-def test_the_first_bad_part_of_a_time_is_named_from_the_year_on(known, date, named):
-    narrow = replace(
-        known, time=known.time | {"hour": replace(known.time["hour"], bits=4)}
-    )
-    with pytest.raises(errors.RangeError) as caught:
-        times.pack(narrow, dict(zip(times.PARTS, date, strict=True)))
-    assert caught.value.field == named
+def test_a_reply_of_another_length_or_id_is_refused(link):
+    with pytest.raises(LengthError):
+        i2c_reply(link, 146, bytes(6), crc=True)
+    with pytest.raises(UnknownIdError):
+        i2c_reply(link, 31, bytes(6))

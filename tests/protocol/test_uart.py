@@ -4,141 +4,146 @@ them.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from itertools import pairwise
-
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
+from icdgen_runtime.wire.uart import UartDecoder, uart_encode, uart_kind
 
-from icdgen.protocol import uart
-from tests.protocol import quick
+from tests.protocol import MARKERS, NOISE, cut, quick
 
 ESCAPE, START, END = 0x1F, 0x7F, 0xFF
-markers = st.sampled_from([ESCAPE, START, END, 0x00, 0x90])
-streams = st.one_of(st.binary(max_size=200), st.lists(markers, max_size=200).map(bytes))
 messages = st.one_of(
     st.binary(min_size=1, max_size=100),
-    st.lists(markers, min_size=1, max_size=100).map(bytes),
+    st.lists(MARKERS, min_size=1, max_size=100).map(bytes),
+)
+forms = st.fixed_dictionaries(
+    {"escapes_id": st.booleans(), "ignores_other": st.booleans()}
 )
 
 
-def decode(known, *chunks, limit=None):
-    decoder = uart.Decoder(known.framing, limit or known.longest)
+def line(data):
+    return b"\x1f\x7f" + data + b"\x1f\xff"
+
+
+lines = messages.map(line) | messages.map(
+    lambda message: line(message.replace(b"\x1f", b"\x1f\x1f"))
+)
+noises = st.lists(NOISE, max_size=8).map(b"".join)
+streams = st.lists(lines | NOISE, max_size=8).map(b"".join)
+
+
+def of_form(link, form):
+    return link._replace(framing=link.framing._replace(**form))
+
+
+def decode(link, *chunks, limit=None):
+    decoder = UartDecoder(link, limit)
     return [event for chunk in chunks for event in decoder.feed(chunk)], decoder
 
 
-def found(known, stream):
-    return [e.message for e in decode(known, stream)[0] if e.event == uart.MESSAGE]
+def found(link, stream):
+    return [e.message for e in decode(link, stream)[0] if e.event == "message"]
 
 
-def test_the_id_that_is_the_escape_byte_is_escaped(known):
-    assert uart.encode(known.framing, bytes([31, 0])).hex() == "1f7f1f1f001fff"
-    assert found(known, bytes.fromhex("1f7f1f1f001fff")) == [bytes([31, 0])]
+def test_the_id_that_is_the_escape_byte_is_escaped(link):
+    assert uart_encode(link, bytes([31, 0])).hex() == "1f7f1f1f001fff"
+    assert found(link, bytes.fromhex("1f7f1f1f001fff")) == [bytes([31, 0])]
 
 
-def test_an_end_within_the_data_is_data(known):
+def test_an_end_within_the_data_is_data(link):
     message = bytes.fromhex("901f1fff")
-    assert uart.encode(known.framing, message).hex() == "1f7f901f1f1f1fff1fff"
-    assert found(known, uart.encode(known.framing, message)) == [message]
+    assert uart_encode(link, message).hex() == "1f7f901f1f1f1fff1fff"
+    assert found(link, uart_encode(link, message)) == [message]
 
 
-@quick
-@given(all=st.lists(messages, max_size=5))
-def test_what_is_encoded_is_decoded(known, all):
-    stream = b"".join(uart.encode(known.framing, one) for one in all)
-    events, decoder = decode(known, stream)
+@given(all=st.lists(messages, max_size=5), form=forms)
+def test_what_is_encoded_is_decoded(link, all, form):
+    link = of_form(link, form)
+    stream = b"".join(uart_encode(link, one) for one in all)
+    events, decoder = decode(link, stream)
     assert [e.message for e in events] == all
     assert decoder.discarded == decoder.pending == 0
 
 
-@quick
-@given(stream=streams, cuts=st.lists(st.integers(0, 200), max_size=6))
-def test_events_do_not_depend_on_how_a_stream_is_cut(known, stream, cuts):
-    places = sorted({0, len(stream), *(cut for cut in cuts if cut < len(stream))})
-    pieces = [stream[a:b] for a, b in pairwise(places)]
-    whole, first = decode(known, stream, limit=20)
-    cut, second = decode(known, *pieces, limit=20)
-    assert whole == cut
-    assert (first.discarded, first.pending) == (second.discarded, second.pending)
+@given(
+    stream=streams,
+    places=st.lists(st.integers(0, 300), max_size=12),
+    limit=st.integers(1, 40),
+    form=forms,
+)
+@example(stream=b"\x1f\x7f\x1f\x1f\x1f\xff", places=[1, 3], limit=1, form={})
+def test_events_do_not_depend_on_how_a_stream_is_cut(link, stream, places, limit, form):
+    link = of_form(link, form)
+    whole, first = decode(link, stream, limit=limit)
+    for pieces in (cut(stream, places), cut(stream, list(range(len(stream))))):
+        events, decoder = decode(link, *pieces, limit=limit)
+        assert events == whole
+        assert (decoder.discarded, decoder.pending) == (first.discarded, first.pending)
 
 
 @quick
 @given(
-    noise=streams.filter(lambda noise: bytes([ESCAPE, START]) not in noise),
+    noise=noises.filter(lambda noise: bytes([ESCAPE, START]) not in noise),
     message=messages,
 )
-def test_noise_costs_nothing_but_the_noise(known, noise, message):
-    events, decoder = decode(known, noise + uart.encode(known.framing, message))
+def test_noise_costs_nothing_but_the_noise(link, noise, message):
+    events, decoder = decode(link, noise + uart_encode(link, message))
     assert [e.message for e in events] == [message]
     assert decoder.discarded == len(noise)
 
 
 @quick
 @given(stream=streams, message=messages)
-def test_a_message_after_an_end_is_found_whatever_was_before_it(known, stream, message):
-    line = uart.encode(known.framing, message)
-    assert found(known, stream + bytes([0, ESCAPE, END]) + line)[-1] == message
+def test_a_message_after_an_end_is_found_whatever_was_before_it(link, stream, message):
+    line = uart_encode(link, message)
+    assert found(link, stream + bytes([0, ESCAPE, END]) + line)[-1] == message
 
 
 @quick
 @given(stream=streams, limit=st.integers(1, 30))
-def test_no_more_is_kept_than_the_longest_message(known, stream, limit):
-    decoder = uart.Decoder(known.framing, limit)
+def test_no_more_is_kept_than_the_longest_message(link, stream, limit):
+    decoder = UartDecoder(link, limit)
     delivered = 0
     for number, byte in enumerate(stream, 1):
         for event in decoder.feed(bytes([byte])):
             assert len(event.message) <= limit
-            delivered += (
-                len(uart.encode(known.framing, event.message))
-                if event.event == uart.MESSAGE
-                else 0
-            )
-        assert len(decoder.buffer) <= limit
+            if event.event == "message":
+                delivered += len(uart_encode(link, event.message))
+        assert len(decoder._buffer) <= limit
         assert decoder.discarded + decoder.pending + delivered == number
 
 
-def test_what_goes_wrong_is_told(known):
+def test_what_goes_wrong_is_told(link):
     start, end = bytes([ESCAPE, START]), bytes([ESCAPE, END])
 
     def kinds(stream, limit=None):
-        return [e.event for e in decode(known, stream, limit=limit)[0]]
+        return [e.event for e in decode(link, stream, limit=limit)[0]]
 
     assert kinds(start + b"\x90" + start + b"\x91" + end) == [
-        uart.UNEXPECTED_START,
-        uart.MESSAGE,
+        "unexpected_start",
+        "message",
     ]
-    assert kinds(start + b"\x90\x1f\x00" + end) == [uart.PROTOCOL_ERROR]
-    assert kinds(start + end) == [uart.EMPTY]
-    assert kinds(start + b"\x90\x01\x02" + end, limit=2) == [uart.OVERRUN]
-    assert kinds(start + b"\x90\x01" + end, limit=2) == [uart.MESSAGE]
+    assert kinds(start + b"\x90\x1f\x00" + end) == ["protocol_error"]
+    assert kinds(start + end) == ["empty"]
+    assert kinds(start + b"\x90\x01\x02" + end, limit=2) == ["overrun"]
+    assert kinds(start + b"\x90\x01" + end, limit=2) == ["message"]
     assert kinds(start + b"\x90\x1f") == []
 
 
-def test_messages_are_told_apart(known):
-    assert uart.kind(known, bytes([31, 0])) == uart.ACKNOWLEDGE
-    assert uart.kind(known, bytes([119, 0])) == uart.ACKNOWLEDGE
-    assert uart.kind(known, bytes([119]) + bytes(22)) == uart.PACKET
-    assert uart.kind(known, bytes([119]) + bytes(21)) == uart.OTHER
-    assert uart.kind(known, bytes([241]) + bytes(22)) == uart.REPLY
-    assert uart.kind(known, bytes([255, 1, *bytes(9), *bytes(6)])) == uart.LOG
-    assert uart.kind(known, bytes([255, 1, *bytes(9), *bytes(5)])) == uart.OTHER
-    assert uart.kind(known, bytes([255])) == uart.OTHER
+def test_messages_are_told_apart(link):
+    assert uart_kind(link, bytes([31, 0])) == "acknowledge"
+    assert uart_kind(link, bytes([119, 0])) == "acknowledge"
+    assert uart_kind(link, bytes([119]) + bytes(22)) == "packet"
+    assert uart_kind(link, bytes([119]) + bytes(21)) == "other"
+    assert uart_kind(link, bytes([241]) + bytes(22)) == "reply"
+    assert uart_kind(link, bytes([255, 1, *bytes(9), *bytes(6)])) == "log"
+    assert uart_kind(link, bytes([255, 1, *bytes(9), *bytes(5)])) == "other"
+    assert uart_kind(link, bytes([255])) == "other"
 
 
-def test_other_devices_escape_otherwise(known):
-    framing = replace(
-        known.framing,
-        escape=0xDB,
-        start=0xC0,
-        end=0xC1,
-        escaped=0xDD,
-        escapes_id=False,
-        ignores_other=True,
-    )
-    line = uart.encode(framing, bytes([0xDB, 0xDB, 1]))
+def test_other_devices_escape_otherwise(link):
+    form = {"escape": 0xDB, "start": 0xC0, "end": 0xC1, "escaped": 0xDD}
+    other = of_form(link, {**form, "escapes_id": False, "ignores_other": True})
+    line = uart_encode(other, bytes([0xDB, 0xDB, 1]))
     assert line.hex() == "dbc0dbdbdd01dbc1"
-    decoder = uart.Decoder(framing, 10)
-    assert [e.message for e in decoder.feed(line)] == [bytes([0xDB, 0xDB, 1])]
-    assert [e.message for e in decoder.feed(bytes.fromhex("dbc090db0001dbc1"))] == [
-        bytes([0x90, 1])
-    ]
+    assert found(other, line) == [bytes([0xDB, 0xDB, 1])]
+    assert found(other, bytes.fromhex("dbc090db0001dbc1")) == [bytes([0x90, 1])]

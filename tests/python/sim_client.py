@@ -21,37 +21,24 @@ from icdgen_messages.wire import (
     RefusedError,
     ReplyTimeoutError,
     Session,
-    Settings,
     Upload,
     crc16,
     identify,
 )
 
 from icdgen.protocol import facts
-from tests.sim.client import log_message
-from tests.sim.device import ICD
+from tests.sim.device import FAST, ICD, hasty
 
 if TYPE_CHECKING:
     from icdgen_messages import Message
 
 
-def hasty(link):
-    """The link with short waits, for a device that is never slow."""
-    procedures = {
-        name: getattr(link.files, name)
-        for name in ("list", "download", "upload", "erase", "format")
-    }
-    short = {
-        name: one._replace(poll_interval=5) for name, one in procedures.items() if one
-    }
-    short["download"] = short["download"]._replace(silence=60)
-    return link._replace(files=link.files._replace(**short))
-
-
 LINK, BOOT = hasty(cubeacp.LINK), hasty(bootloader.LINK)
 DESTINATION, RUNNING = 3, bootloader.ProgramsList.INTERNAL_FLASH_PROGRAM
-LOGS = next(m for _, m in LINK.TELECOMMANDS.items() if log_message() == m.NAME)
-FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
+LOG_MESSAGE = ICD.protocol_of(ICD.node("cubeacp"))["unsolicited_log"]["configured_by"][
+    "message"
+]
+LOGS = next(m for _, m in LINK.TELECOMMANDS.items() if m.NAME == LOG_MESSAGE)
 TRIES = 20
 
 

@@ -30,7 +30,7 @@ def path(monkeypatch):
     )
 
 
-@pytest.mark.parametrize("loss", ["0", "10"])
+@pytest.mark.parametrize("loss", ["0", "10", "30"])
 def test_every_message_and_files_in_both_directions(loss):
     assert harness.run(CLIENT, SIZE, loss, [], limit=60) is None
 
@@ -47,4 +47,20 @@ def test_another_node_is_noticed():
     assert (
         harness.run(CLIENT, 100, "0", [], node="bootloader", limit=60)
         == "ended with 3: "
+    )
+
+
+def test_a_client_that_leaves_out_telecommands_is_found():
+    forgetful = """
+import sys
+from tests.python import sim_client
+sim_client.every_telecommand = lambda device: device.send(sim_client.cubeacp.Reset())
+sys.exit(sim_client.main(*sys.argv[1:]))
+"""
+    found = harness.run([sys.executable, "-c", forgetful], 10, "0", [])
+    assert (
+        found.startswith("never sent: ")
+        and "Reset," not in found
+        and "Save Image" in found
+        and "Hole Map" not in found
     )

@@ -1,135 +1,15 @@
-"""The client: whatever happens on the bus, it does what the reference does, and a
-program can rely on the outcome.
-"""
+"""The client with generated messages: a program can rely on the outcome."""
 
 from __future__ import annotations
 
-import json
-
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
-from icdgen.protocol import can, crc, uart
-from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
-from icdgen.runtime_objects import reference
-from tests.python import packages
-from tests.python.wire import NOISE, known, link
-
-OURS = 0x42
-TELECOMMANDS, TELEMETRY = [1, 2, 7, 31, 37], [128, 144, 146, 240]
-QUICK = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
+from tests.python.wire import link
 
 
 @pytest.fixture(scope="module")
 def wire(shipped):
     return shipped.module("wire")
-
-
-@st.composite
-def asked(draw) -> dict:
-    """A request that a script begins."""
-    if draw(st.booleans()):
-        return {"telemetry": draw(st.sampled_from([*TELEMETRY, 5]))}
-    id = draw(st.sampled_from([*TELECOMMANDS, 200]))
-    length = (
-        known().telecommands[id].length
-        if id in TELECOMMANDS and draw(st.integers(0, 9))
-        else 3
-    )
-    return {
-        "telecommand": id,
-        "bytes": draw(st.binary(min_size=length, max_size=length)).hex(),
-        "repeat": draw(st.booleans()),
-    }
-
-
-def frame_of(draw) -> tuple[int, bytes]:
-    id = draw(st.sampled_from(TELEMETRY))
-    length = known().telemetry[id].length + (1 if not draw(st.integers(0, 7)) else 0)
-    if id == 240:  # tells what became of a telecommand
-        return id, bytes(
-            (
-                draw(st.sampled_from(TELECOMMANDS)),
-                draw(st.integers(0, 1)),
-                draw(st.integers(0, 5)),
-                9,
-            )
-        )
-    return id, draw(st.binary(min_size=length, max_size=length))
-
-
-@st.composite
-def from_uart(draw) -> dict:
-    if draw(st.booleans()):
-        message = bytes(
-            (
-                draw(st.sampled_from(TELECOMMANDS)),
-                draw(st.sampled_from([0, 0, 1, 4, 77])),
-            )
-        )
-    else:
-        id, frame = frame_of(draw)
-        message = bytes((id,)) + frame
-    line = uart.encode(known().framing, message)
-    place = draw(st.integers(0, len(line)))
-    pieces = [
-        draw(NOISE) + line,
-        line,
-        line,
-        line[:place],
-        line[place:],
-        draw(NOISE),
-        bytes((119,)) + bytes(22),
-    ]
-    return {"receive": draw(st.sampled_from(pieces)).hex()}
-
-
-@st.composite
-def from_i2c(draw) -> dict:
-    _, frame = frame_of(draw)
-    sum_ = crc.compute(known().checksum.crc, frame)
-    checked = frame + bytes((sum_ if draw(st.integers(0, 5)) else sum_ ^ 1,))
-    given = draw(st.sampled_from([None, b"", b"", frame, checked]))
-    return {"receive": None if given is None else given.hex()}
-
-
-@st.composite
-def from_can(draw) -> dict:
-    kind = draw(st.sampled_from(CAN_KINDS))
-    if kind in CAN_WITH_DATA:
-        id, data = frame_of(draw)
-    else:
-        id, data = draw(st.sampled_from(TELECOMMANDS + TELEMETRY)), b""
-    packets = can.split(
-        known(), can.Message(kind, id, draw(st.sampled_from([1, 1, 1, 9])), OURS, data)
-    )
-    packet = draw(st.sampled_from(packets))
-    return {"receive": {"id": packet.id, "bytes": packet.data.hex()}}
-
-
-@st.composite
-def scripts(draw) -> dict:
-    bus = draw(st.sampled_from(["uart", "i2c", "can"]))
-    heard = {"uart": from_uart(), "i2c": from_i2c(), "can": from_can()}[bus]
-    rows, now = [], 0
-    for row in draw(
-        st.lists(
-            asked() | heard | heard | st.just({}) | st.just({"cancel": True}),
-            max_size=25,
-        )
-    ):
-        now += draw(st.sampled_from([0, 1, 5, 10, 49, 60, 100, 150]))
-        rows.append({"at": now, **row})
-    return {"op": "client", "node": "cubeacp", "bus": bus, "crc": draw(st.booleans()), "address": OURS, "settings": QUICK,
-            "script": rows}  # fmt: skip
-
-
-@given(request=scripts())
-@settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
-def test_whatever_happens_it_does_what_the_reference_does(shipped, request):
-    made = shipped.answer(json.dumps(request).encode())
-    assert made == reference.answer(packages.shipped(), request)
 
 
 def acknowledge(like, wire, id: int, code: int = 0) -> bytes:

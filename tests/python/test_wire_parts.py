@@ -1,39 +1,15 @@
-"""Checksums, I2C, logs, files and times, held against the reference and against what
-users rely on.
-"""
+"""Logs, times, identification, assumptions and errors of the generated package."""
 
 from __future__ import annotations
 
 import io
 import pickle
 import tokenize
-from dataclasses import replace
-from datetime import datetime
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from icdgen.protocol import crc
-from icdgen.protocol.sections import Crc
-from tests.python.wire import cut, known, link
-
-
-def crcs_of(width: int) -> st.SearchStrategy[Crc]:
-    numbers = st.integers(0, (1 << width) - 1)
-    return st.builds(
-        Crc,
-        width=st.just(width),
-        polynomial=numbers,
-        init=numbers,
-        reflect_in=st.booleans(),
-        reflect_out=st.booleans(),
-        xor_out=numbers,
-        empty=st.none() | numbers,
-    )
-
-
-CRCS = st.integers(1, 32).flatmap(crcs_of)
+from icdgen.protocol import facts
+from tests.python.wire import link
 
 
 @pytest.fixture(scope="module")
@@ -43,112 +19,6 @@ def wire(shipped):
 
 def test_a_link_is_shown_in_a_line(shipped):
     assert repr(link(shipped)) == "Link(node='cubeacp', ...)"
-
-
-@given(
-    form=CRCS,
-    data=st.binary(max_size=40),
-    places=st.lists(st.integers(0, 40), max_size=4),
-    table=st.booleans(),
-)
-def test_crcs_of_all_kinds_with_and_without_a_table_in_pieces(
-    shipped, wire, form, data, places, table
-):
-    made = shipped.module("wire.link").CrcForm(
-        *(getattr(form, name) for name in form.__dataclass_fields__)
-    )
-    register = wire.Crc(made, table=table)
-    for piece in cut(data, places):
-        register.feed(piece)
-    assert register.result() == crc.compute(form, data)
-
-
-@given(data=st.binary(max_size=60))
-def test_the_crcs_of_the_node_are_those_of_the_reference(shipped, wire, data):
-    assert wire.crc8(link(shipped), data) == crc.compute(known().checksum.crc, data)
-    assert wire.crc16(link(shipped), data) == crc.compute(known().crc16, data)
-    assert wire.Crc(link(shipped).crc16, table=False).feed(
-        data
-    ).result() == crc.compute(known().crc16, data)
-
-
-def test_check_values(shipped, wire):
-    assert wire.crc8(link(shipped), b"123456789") == 0x25
-    assert wire.crc16(link(shipped), b"123456789") == 0x31C3
-    assert wire.crc8(link(shipped), b"") == 0xFF
-
-
-def test_i2c_buffers_with_and_without_checksum(shipped, wire):
-    like, errors = link(shipped), shipped.module()
-    assert wire.i2c_write(like, 31, b"\x01") == b"\x1f\x01"
-    sum_ = wire.crc8(like, b"\x01")
-    assert wire.i2c_write(like, 31, b"\x01", crc=True) == bytes((31, 1, sum_))
-    assert (
-        wire.i2c_read_length(like, 146),
-        wire.i2c_read_length(like, 146, crc=True),
-    ) == (6, 7)
-    frame = bytes(range(6))
-    assert wire.i2c_reply(like, 146, frame) == frame
-    assert (
-        wire.i2c_reply(like, 146, frame + bytes((wire.crc8(like, frame),)), crc=True)
-        == frame
-    )
-    with pytest.raises(wire.ChecksumError) as error:
-        wire.i2c_reply(
-            like, 146, frame + bytes((wire.crc8(like, frame) ^ 1,)), crc=True
-        )
-    assert error.value.expected ^ error.value.actual == 1
-    with pytest.raises(errors.LengthError):
-        wire.i2c_reply(like, 146, frame, crc=True)
-    with pytest.raises(errors.UnknownIdError):
-        wire.i2c_reply(like, 31, frame)
-
-
-def test_the_checksum_covers_the_id_where_the_icd_says_so(shipped, wire):
-    like = link(shipped)
-    covering = like._replace(checksum=like.checksum._replace(covers_id=True))
-    reference = replace(known(), checksum=replace(known().checksum, covers_id=True))
-    expected = crc.compute(reference.checksum.crc, b"\x1f\x01")
-    assert wire.i2c_write(covering, 31, b"\x01", crc=True) == bytes((31, 1, expected))
-
-
-MASK = bytes([0x21, 0x80, 0, 0, 0, 0, 0, 0, 0, 0x80])
-
-
-def entries(wire, like, count: int) -> tuple[bytes, list]:
-    """A log file, and its entries as (seconds, milliseconds, frames)."""
-    writer = wire.LogWriter(like, MASK)
-    lengths = [bit.length for bit in like.mask.selected(MASK)]
-    rows = [
-        (1_700_000_000 + n, n % 1000, [bytes((n % 256,)) * size for size in lengths])
-        for n in range(count)
-    ]
-    return writer.header() + b"".join(writer.entry(*row) for row in rows), rows
-
-
-@given(
-    places=st.lists(st.integers(0, 400), max_size=10),
-    count=st.integers(0, 12),
-    lost=st.integers(0, 30),
-)
-def test_a_log_is_read_in_pieces_of_any_size_and_what_is_cut_off_is_counted(
-    shipped, wire, places, count, lost
-):
-    like = link(shipped)
-    file, rows = entries(wire, like, count)
-    size = (len(file) - 10) // count if count else 0
-    given = file[: len(file) - min(lost, len(file))]
-    reader = wire.LogReader(like)
-    found = [entry for piece in cut(given, places) for entry in reader.feed(piece)]
-    if len(given) < 10:
-        assert (found, reader.mask, reader.truncated) == ([], None, len(given))
-        return
-    whole = (len(given) - 10) // size if size else 0
-    assert reader.mask == MASK
-    assert [
-        (e.seconds, e.milliseconds, [f.data for f in e.frames]) for e in found
-    ] == rows[:whole]
-    assert reader.truncated == len(given) - 10 - whole * size
 
 
 def test_frames_of_logs_become_messages_and_unassigned_bits_do_not(shipped, wire):
@@ -188,79 +58,9 @@ def test_logs_refuse_what_does_not_fit(shipped, wire):
         wire.LogReader(bootloader)
 
 
-@given(
-    st.datetimes(
-        min_value=datetime(1980, 1, 1), max_value=datetime(2107, 12, 31, 23, 59, 59)
-    )
-)
-def test_times_come_back_to_two_seconds(shipped, wire, moment):
-    like = link(shipped)
-    time = wire.dos_time_unpack(like, wire.dos_time_pack(like, moment))
-    assert time.is_valid
-    assert time.datetime() == moment.replace(
-        second=moment.second // 2 * 2, microsecond=0
-    )
-
-
-@pytest.mark.parametrize(
-    ("time", "part"),
-    [
-        ((1979, 1, 1, 0, 0, 0), "year"),
-        ((2108, 1, 1, 0, 0, 0), "year"),
-        ((2000, 13, 40, 0, 0, 0), "month"),
-        ((2001, 2, 29, 0, 0, 0), "day"),
-        ((2000, 2, 29, 24, 0, 0), "hour"),
-        ((2000, 1, 1, 0, 60, 99), "minute"),
-        ((2000, 1, 1, 0, 0, 60), "second"),
-    ],
-)
-def test_times_that_do_not_exist_are_refused_by_their_first_part(
-    shipped, wire, time, part
-):
-    with pytest.raises(shipped.module().RangeError) as error:
-        wire.dos_time_pack(link(shipped), wire.DosTime(*time))
-    assert error.value.field == part
-
-
 def test_a_packed_time_that_no_calendar_has_is_unpacked_all_the_same(shipped, wire):
     time = wire.dos_time_unpack(link(shipped), 0)
     assert time == (1980, 0, 0, 0, 0, 0) and not time.is_valid
-
-
-@given(packets=st.integers(0, 1024), data=st.data())
-def test_hole_maps_come_back(shipped, wire, packets, data):
-    like = link(shipped)
-    received = data.draw(st.sets(st.integers(0, packets - 1))) if packets else set()
-    made = wire.HoleMap(like, packets, received)
-    assert (made.count(), made.missing()) == (
-        len(received),
-        sorted(set(range(packets)) - received),
-    )
-    again = wire.HoleMap.from_bytes(like, packets, made.to_bytes())
-    assert again.missing() == made.missing()
-    assert b"".join(made.messages()) == made.to_bytes()
-
-
-def test_hole_maps_refuse_packets_that_the_block_does_not_have(shipped, wire):
-    like, errors = link(shipped), shipped.module()
-    made = wire.HoleMap(like, 3)
-    for number in (-1, 3):
-        with pytest.raises(errors.RangeError):
-            made.set(number)
-    with pytest.raises(errors.RangeError):
-        wire.HoleMap(like, 1025)
-    with pytest.raises(errors.LengthError):
-        wire.HoleMap.from_bytes(like, 3, b"")
-
-
-def test_index_files_come_back_and_what_is_cut_off_is_counted(shipped, wire):
-    like = link(shipped)
-    rows = [wire.IndexEntry(2, n, 65535 - n, 1 << n, n, bytes(25)) for n in range(5)]
-    file = wire.write_index(like, rows)
-    assert wire.read_index(like, file) == (rows, 0)
-    assert wire.read_index(like, file[:-1]) == (rows[:-1], 36)
-    with pytest.raises(shipped.module().RangeError, match="type"):
-        wire.write_index(like, [rows[0]._replace(type=256)])
 
 
 def test_a_node_is_identified(shipped, wire):
@@ -281,7 +81,8 @@ def test_assumptions_are_data(shipped):
     found = {(one.section, one.key): one for one in link(shipped).assumptions}
     assert found["crc8", "covers_id"].value is False
     assert all(one.why for one in found.values())
-    assert {(one.section, one.key) for one in known().assumptions} == set(found)
+    known = facts.of(shipped.icd, shipped.icd.node("cubeacp"))
+    assert {(one.section, one.key) for one in known.assumptions} == set(found)
 
 
 def test_errors_survive_being_pickled(wire, shipped):

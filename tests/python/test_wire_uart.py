@@ -1,84 +1,17 @@
-"""Streams: what is found in them depends neither on how they are cut nor on the noise
-around it.
-"""
+"""Streams: noise and messages of any length cost neither memory nor time."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
 
-from icdgen.protocol import uart
-from tests.python.wire import MARKERS, NOISE, cut, known, link
-
-MESSAGES = st.lists(MARKERS, min_size=1, max_size=30).map(bytes)
-LINES = MESSAGES.map(lambda message: uart.encode(known().framing, message))
-STREAMS = st.lists(LINES | NOISE, max_size=8).map(b"".join)
-CUTS = st.lists(st.integers(0, 300), max_size=12)
-FORMS = st.builds(
-    lambda id, other: {"escapes_id": id, "ignores_other": other}, st.booleans(), st.booleans()
-)  # fmt: skip
+from tests.python.wire import link
 
 
 @pytest.fixture(scope="module")
 def wire(shipped):
     return shipped.module("wire")
-
-
-def events(decoder, chunks) -> list[tuple[str, bytes]]:
-    return [
-        (event.event, event.message)
-        for chunk in chunks
-        for event in decoder.feed(chunk)
-    ]
-
-
-@given(stream=STREAMS, places=CUTS, limit=st.integers(1, 40), form=FORMS)
-@example(stream=b"\x1f\x7f\x1f\x1f\x1f\xff", places=[1, 2, 3, 4, 5], limit=1, form={})
-def test_every_split_of_a_stream_gives_what_the_reference_finds(
-    shipped, wire, stream, places, limit, form
-):
-    framing = replace(known().framing, **form)
-    like = link(shipped)
-    decoder = wire.UartDecoder(
-        like._replace(framing=like.framing._replace(**form)), limit
-    )
-    reference = uart.Decoder(framing, limit)
-    expected = [(event.event, event.message) for event in reference.feed(stream)]
-    assert events(decoder, cut(stream, places)) == expected
-    assert (decoder.discarded, decoder.pending) == (
-        reference.discarded,
-        reference.pending,
-    )
-
-
-@given(message=st.binary(min_size=1, max_size=200) | MESSAGES, escapes_id=st.booleans())
-def test_what_is_encoded_is_decoded_and_no_markers_are_left_in_the_data(
-    shipped, wire, message, escapes_id
-):
-    like = link(shipped)
-    like = like._replace(framing=like.framing._replace(escapes_id=escapes_id))
-    line = wire.uart_encode(like, message)
-    assert line == uart.encode(replace(known().framing, escapes_id=escapes_id), message)
-    assert events(wire.UartDecoder(like), [line]) == [("message", message)]
-
-
-@pytest.mark.parametrize(
-    "data",
-    [b"\x01", b"\x1f\x1f\xff", b"\x1f\x7f", b"\x1f\xff", b"\x1f" * 7, b"\x7f\xff\x1f"],
-)
-def test_telecommand_31_and_markers_in_data_survive_in_both_directions(
-    shipped, wire, data
-):
-    message = b"\x1f" + data
-    line = wire.uart_encode(link(shipped), message)
-    assert line.startswith(b"\x1f\x7f\x1f\x1f") and line.endswith(b"\x1f\xff")
-    for size in (1, 2, 3, len(line)):
-        chunks = [line[at : at + size] for at in range(0, len(line), size)]
-        assert events(wire.UartDecoder(link(shipped)), chunks) == [("message", message)]
 
 
 @pytest.mark.parametrize(
@@ -130,26 +63,6 @@ def test_a_message_as_long_as_the_longest_fits_and_a_longer_one_is_an_overrun(
             assert [event.event for event in wire.UartDecoder(like).feed(line)] == [
                 expected
             ]
-
-
-@given(message=st.binary(min_size=1, max_size=140))
-def test_messages_are_told_apart_like_the_reference_does(shipped, wire, message):
-    assert wire.uart_kind(link(shipped), message) == uart.kind(known(), message)
-
-
-def test_kinds_of_messages(shipped, wire):
-    like = link(shipped)
-    packet = bytes((like.files.packet_ids["uart"],)) + bytes(22)
-    samples = {
-        "reply": b"\x92" + bytes(6),
-        "acknowledge": b"\x1f\x00",
-        "packet": packet,
-        "log": b"\xff" + bytes(10),
-    }
-    for kind, message in samples.items():
-        assert wire.uart_kind(like, message) == kind
-    assert wire.uart_kind(like, b"\x01\x02\x03") == "other"
-    assert wire.uart_kind(like, b"\xff" + bytes(11)) == "other"
 
 
 def test_a_message_without_an_id_is_refused(shipped, wire):

@@ -9,11 +9,12 @@ import sys
 
 import pytest
 from icdgen_runtime.wire.stream import stream_encode
+from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd
 from icdgen.loading import load
-from icdgen.protocol import facts, uart
+from icdgen.protocol import facts
 from icdgen.recognize import recognize
 from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
@@ -87,6 +88,7 @@ def packets(icd: Icd) -> list[tuple[str, bytes]]:
     found = []
     for node in icd.nodes:
         known = facts.of(icd, node)
+        link = link_of(icd, known)
         for message in golden(icd, node).messages:
             for row in message.rows[:: max(1, len(message.rows) // MOST_ROWS)][
                 :MOST_ROWS
@@ -99,16 +101,12 @@ def packets(icd: Icd) -> list[tuple[str, bytes]]:
                         found.append(
                             (
                                 message.message.name,
-                                stream_encode(
-                                    link_of(icd, known), id, row.frame, direction
-                                ),
+                                stream_encode(link, id, row.frame, direction),
                             )
                         )
                     elif known.framing:
                         body = bytes([id]) + row.frame
-                        found.append(
-                            (message.message.name, uart.encode(known.framing, body))
-                        )
+                        found.append((message.message.name, uart_encode(link, body)))
     return found
 
 

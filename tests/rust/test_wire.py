@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import random
 
-from icdgen.protocol import facts, uart
+from icdgen_runtime.wire.uart import uart_encode
+
 from icdgen.vectors import protocol
+from tests import links
 from tests.conformance import wire, wire_changed, wire_random
 from tests.rust import harness
 
@@ -62,12 +64,12 @@ def test_changed_requests_are_answered_like_the_reference(shipped):
 
 
 def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
-    known = facts.of(shipped.icd, shipped.icd.node("cubeacp"))
+    link = links.link(shipped.icd, "cubeacp")
     noise = random.Random(1).randbytes(1 << 20)
-    if noise.endswith(bytes([known.framing.escape])):
+    if noise.endswith(bytes([link.framing.escape])):
         noise = noise[:-1] + b"\0"
     message = bytes.fromhex("1f1f1fff00")
-    stream = noise + uart.encode(known.framing, message)
+    stream = noise + uart_encode(link, message)
     request = {"op": "uart_events", "node": "cubeacp", "chunks": [stream.hex()]}
     [answer] = harness.ask(
         harness.build_testee(shipped.icd), [json.dumps(request).encode()]
@@ -78,9 +80,7 @@ def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
         "bytes": message.hex(),
     }
     found = [event for event in answer["events"] if event["event"] == "message"]
-    lengths = sum(
-        len(uart.encode(known.framing, bytes.fromhex(one["bytes"]))) for one in found
-    )
+    lengths = sum(len(uart_encode(link, bytes.fromhex(one["bytes"]))) for one in found)
     assert answer["discarded"] + answer["pending"] + lengths == len(stream)
 
 
@@ -90,8 +90,8 @@ def test_a_node_of_which_the_icd_says_little(tmp_path):
     """
     (tmp_path / "small.yaml").write_text(SMALL)
     icd = harness.read(tmp_path / "small.yaml")
-    known, source = facts.of(icd, icd.nodes[0]), random.Random(3)
-    asked = [wire_random.stream(known, source) for _ in range(500)]
+    link, source = links.link(icd, "small"), random.Random(3)
+    asked = [wire_random.stream(link, source) for _ in range(500)]
     asked += [
         {"op": "uart_encode", "bytes": "10" + source.randbytes(9).hex()}
         for _ in range(50)

@@ -7,13 +7,19 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from typing import Any
 
-from icdgen.link.ports import open_port
-from icdgen.protocol import transfer
-from icdgen.protocol.sections import Settings
+from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.events import Done, Outcome
+from icdgen_runtime.wire.identity import Identity, identify
+from icdgen_runtime.wire.link import Settings
+from icdgen_runtime.wire.session import Session
+
+from icdgen.icd.model import Message
+from icdgen.link.ports import Port, open_port
+from icdgen.protocol import facts
+from icdgen.runtime_objects.links import link_of
 from tests.conformance.icds import icd_of
-from tests.sim.reference import Session
 
 FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
 ICD = icd_of()
@@ -47,44 +53,63 @@ def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
         process.communicate(timeout=10)
 
 
+class Talking(Session):
+    """A session with a node, for messages of the model and bytes of any content."""
+
+    def __init__(self, node: str, port: Port, **options: Any) -> None:
+        self.node, self.port = ICD.node(node), port
+        self.known = facts.of(ICD, self.node)
+        self.link = hasty(link_of(ICD, self.known))
+        super().__init__(self.link, port.write, port.read, **options)
+
+    def telemetry(self, message: Message) -> bytes | None:
+        """The frame; None if there was no answer."""
+        outcome = self.start(Request("telemetry", message.telemetry_id))
+        return outcome.data if isinstance(outcome, Done) else None
+
+    def telecommand(
+        self, message: Message, data: bytes, repeat: bool = False
+    ) -> Outcome:
+        return self.start(Request("telecommand", message.telecommand_id, data, repeat))
+
+    def identify(self) -> Identity | None:
+        """What the node says it is; None without an answer."""
+        frame = self.telemetry(self.known.identification.message)
+        return None if frame is None else identify(self.link, frame)
+
+
 @contextmanager
-def session(
-    *options: str, node: str = "cubeacp", settings: Settings = FAST, **more
-) -> Iterator[Session]:
+def connected(
+    node: str, place: str, settings: Settings = FAST, **more: Any
+) -> Iterator[Talking]:
+    """A client that is connected to a simulator."""
+    port = open_port(place, {})
+    try:
+        yield Talking(node, port, settings=settings, **more)
+    finally:
+        port.close()
+
+
+@contextmanager
+def session(*options: str, node: str = "cubeacp", **more: Any) -> Iterator[Talking]:
     """A client that is connected to a simulator of its own."""
     ways = () if {"--tcp", "--udp", "--pty"} & set(options) else ("--tcp", "0")
     with (
         simulator("--node", node, *ways, *options) as (place, _),
-        Session(
-            ICD, ICD.node(node), open_port(place, {}), settings=settings, **more
-        ) as connected,
+        connected(node, place, **more) as client,
     ):
-        connected.known = hasty(connected.known)
-        yield connected
+        yield client
 
 
-def hasty(known):
-    """The facts with short waits, for a device that is never slow."""
-    procedures = {
-        name: replace(one, poll_interval=5)
-        for name, one in known.files.procedures.items()
-    }
-    if "download" in procedures:
-        procedures["download"] = replace(procedures["download"], silence=60)
+def hasty(link: Any) -> Any:
+    """The link with short waits, for a device that is never slow."""
+    names = ("list", "download", "upload", "erase", "format")
+    procedures = {name: getattr(link.files, name) for name in names}
     operations = {
-        name: form and replace(form, poll_interval=5)
-        for name, form in (
-            ("program_copy", known.program_copy),
-            ("program_information", known.program_information),
-        )
+        name: getattr(link, name) for name in ("program_copy", "program_information")
     }
-    return replace(known, files=replace(known.files, **procedures), **operations)
-
-
-def download(
-    client: Session, type_: int, counter: int, size: int | None
-) -> tuple[str, bytes]:
-    """The result, and what came."""
-    procedure = transfer.Download(client.known, "uart", type_, counter, size)
-    result = client.run(procedure)
-    return result, b"".join(data for _, data in procedure.blocks)
+    for forms in (procedures, operations):
+        for name, form in forms.items():
+            forms[name] = form and form._replace(poll_interval=5)
+    procedures["download"] = procedures["download"]._replace(silence=60)
+    return link._replace(files=link.files._replace(**procedures), **operations)

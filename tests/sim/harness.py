@@ -23,7 +23,8 @@ answered (such as one of the file transfer for which nothing is prepared), one w
 an answer is a failure; after one that restarts the node another program answers.
 Acknowledges carry no checksum: a refusal with a code that the ICD does not have is a
 damaged one, and worth asking again. A client that takes longer than ``--limit`` seconds
-hangs, which is a failure. The reference is ``python -m tests.sim.client``.
+hangs, which is a failure. A client in Python is ``PYTHONPATH=generated/python python -m
+tests.python.sim_client``.
 """
 
 from __future__ import annotations
@@ -100,6 +101,8 @@ def run(
             f"{loss}%",
             "--late",
             "400",
+            "--boot",
+            "100000",  # a client that starts slowly still meets the boot program
             *spoil,
         )
         with simulator("--node", node, "--tcp", "0", *options) as (place, _):

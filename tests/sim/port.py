@@ -4,8 +4,9 @@ can.
 
 from __future__ import annotations
 
+from icdgen_runtime.wire.uart import uart_encode
+
 from icdgen.icd.model import Icd
-from icdgen.protocol import uart
 from icdgen.sim import run
 
 
@@ -46,10 +47,8 @@ class Refusing(Port):
         self, icd: Icd, node: str, id: int, code: int, times: int, **options
     ) -> None:
         super().__init__(icd, node, **options)
-        framing = self.line.computer.program.facts.framing
-        self.good, self.bad = (
-            uart.encode(framing, bytes((id, one))) for one in (0, code)
-        )
+        link = self.line.computer.program.link
+        self.good, self.bad = (uart_encode(link, bytes((id, one))) for one in (0, code))
         self.times, self.acknowledged = times, 0
 
     def read(self, seconds: float) -> bytes:

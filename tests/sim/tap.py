@@ -6,8 +6,11 @@ import socket
 import threading
 from types import TracebackType
 
+from icdgen_runtime.wire.uart import UartDecoder
+
 from icdgen.icd.model import Icd
-from icdgen.protocol import facts, uart
+from icdgen.protocol import facts
+from tests import links
 
 
 class Tap:
@@ -33,12 +36,9 @@ class Tap:
     def messages(self, icd: Icd, node: str) -> list[bytes]:
         """What the client sent, id first."""
         known = facts.of(icd, icd.node(node))
-        decoder = uart.Decoder(known.framing, known.longest_telecommand)
-        return [
-            event.message
-            for event in decoder.feed(bytes(self.sent))
-            if event.event == uart.MESSAGE
-        ]
+        decoder = UartDecoder(links.link(icd, node), known.longest_telecommand)
+        events = decoder.feed(bytes(self.sent))
+        return [event.message for event in events if event.event == "message"]
 
     def _serve(self) -> None:
         try:

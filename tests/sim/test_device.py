@@ -1,5 +1,5 @@
-"""The simulated device is what the ICD says: over a real port, with the reference
-client.
+"""The simulated device is what the ICD says: over a real port, with the client of the
+runtime.
 """
 
 from __future__ import annotations
@@ -11,15 +11,17 @@ import socket
 import time
 
 import pytest
+from icdgen_runtime.wire.client import Client, Request
+from icdgen_runtime.wire.events import OUTCOMES, Done, Log, Refused
+from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION
-from icdgen.protocol.client import Request
 from icdgen.sim.run import Options, build
 from icdgen.sim.serve import Server
 from icdgen.sim.values import allowed_values
 from tests.conftest import DEMO
-from tests.sim.device import FAST, ICD, session, simulator
+from tests.sim.device import ICD, connected, session, simulator
 
 WAYS = [("--tcp", "0"), ("--udp", "0"), ("--pty",)]
 
@@ -33,8 +35,8 @@ def value_of(client, name: str, field: str) -> int:
 @pytest.mark.parametrize("node", ["cubeacp", "bootloader"])
 def test_it_identifies_itself_and_answers_every_request(node, way):
     with session(*way, node=node) as client:
-        values, same = client.identify()
-        assert same and values["node_type"] == ICD.node(node).node_type
+        identity = client.identify()
+        assert identity.matches and identity.node_type == ICD.node(node).node_type
         for message in client.known.telemetry.values():
             frame = client.telemetry(message)
             assert frame is not None and len(frame) == message.length, message.name
@@ -56,12 +58,9 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
                 raw |= {f.name: f.const for f in message.fields if f.const is not None}
             data = codec.encode(ICD.node(message.node), message, raw)
             outcome = client.telecommand(message, data)
-            allowed = (
-                ("done",)
-                if message.name not in refusable(client)
-                else ("done", "refused")
-            )
-            assert outcome["event"] in allowed, (message.name, outcome)
+            is_refusable = message.name in refusable(client)
+            allowed = (Done, Refused) if is_refusable else Done
+            assert isinstance(outcome, allowed), (message.name, outcome)
             if message.kind == CONFIGURATION:
                 assert client.telemetry(message) == data, message.name
 
@@ -81,12 +80,10 @@ def refusable(client) -> set[str]:
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
     with session(crc=True) as client:
-        assert (
-            client.telecommand(client.known.telecommands[17], bytes(6))["event"]
-            == "done"
-        )
+        done = client.telecommand(client.known.telecommands[17], bytes(6))
+        assert isinstance(done, Done)
         wrong = bytes([17]) + bytes(6) + b"\x01"
-        assert raw_exchange(client, wrong)["code"] == client.known.errors["checksum"]
+        assert raw_exchange(client, wrong) == client.link.errors["checksum"]
 
 
 @pytest.mark.parametrize(
@@ -99,7 +96,7 @@ def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
 )
 def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
     with session() as client:
-        assert raw_exchange(client, message)["code"] == client.known.errors[reason]
+        assert raw_exchange(client, message) == client.link.errors[reason]
         frame = codec.decode(
             client.node,
             client.known.polled.message,
@@ -110,17 +107,14 @@ def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, re
         assert frame[client.known.polled.processed] == 1
 
 
-def raw_exchange(client, message: bytes) -> dict:
-    """Sends bytes that the client would not send; the acknowledge."""
-    from icdgen.protocol import uart
-
-    client.port.write(uart.encode(client.known.framing, message))
-    decoder = uart.Decoder(client.known.framing, client.known.longest)
+def raw_exchange(client, message: bytes) -> int:
+    """Sends bytes that the client would not send; the code of the acknowledge."""
+    client.port.write(uart_encode(client.link, message))
+    decoder = UartDecoder(client.link)
     end = time.monotonic() + 5
     while time.monotonic() < end:
         for event in decoder.feed(client.port.read(0.5)):
-            id, code = uart.acknowledged(client.known, event.message)
-            return {"id": id, "code": code}
+            return event.message[client.link.acknowledge.error_at]
     raise AssertionError("no acknowledge")
 
 
@@ -143,10 +137,8 @@ def test_counters_and_flags_of_the_communication_status():
 
 
 def test_a_telecommand_before_the_one_before_is_processed_overruns_the_buffer():
-    from icdgen.protocol import uart
-
     with session("--processing", "100") as client:
-        one = uart.encode(client.known.framing, bytes([17]) + bytes(6))
+        one = uart_encode(client.link, bytes([17]) + bytes(6))
         client.port.write(one * 3)
         time.sleep(0.3)
         step = client.known.statistics
@@ -156,12 +148,12 @@ def test_a_telecommand_before_the_one_before_is_processed_overruns_the_buffer():
 
 def test_the_boot_program_starts_the_application_unless_it_is_asked_who_it_is():
     with session("--boot", "2000", node="bootloader") as client:
-        assert client.identify()[1]
+        assert client.identify().matches
         time.sleep(2.3)
-        assert client.identify()[1]
+        assert client.identify().matches
     with session("--boot", "300", node="bootloader") as client:
         time.sleep(1.0)
-        assert client.identify()[0]["node_type"] == ICD.node("cubeacp").node_type
+        assert client.identify().node_type == ICD.node("cubeacp").node_type
 
 
 def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
@@ -169,16 +161,14 @@ def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
         reset = next(m for m in client.known.telecommands.values() if m.expects_reset)
         client.telecommand(client.known.telecommands[17], bytes(6))
         data = codec.encode(ICD.node(reset.node), reset, allowed_values(ICD, reset))
-        assert client.telecommand(reset, data)["event"] == "done"
-        assert client.identify()[0]["node_type"] == ICD.node("bootloader").node_type
+        assert isinstance(client.telecommand(reset, data), Done)
+        assert client.identify().node_type == ICD.node("bootloader").node_type
         start = ICD.protocol_of(ICD.node("bootloader"))["program_start"]["message"]
         id = next(
             m.id for m in ICD.messages_of(ICD.node("bootloader")) if m.name == start
         )
-        from icdgen.protocol import uart
-
-        client.port.write(uart.encode(client.known.framing, bytes([id])))
-        assert client.identify()[0]["node_type"] == ICD.node("cubeacp").node_type
+        client.port.write(uart_encode(client.link, bytes([id])))
+        assert client.identify().node_type == ICD.node("cubeacp").node_type
 
 
 def test_values_are_set_by_options_orders_and_scripts(tmp_path):
@@ -195,27 +185,24 @@ def test_values_are_set_by_options_orders_and_scripts(tmp_path):
         str(script),
         "--orders",
     )
-    with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, process):
-        from icdgen.link.ports import open_port
-        from tests.sim.reference import Session
-
-        with Session(
-            ICD, ICD.node("cubeacp"), open_port(place, {}), settings=FAST
-        ) as client:
-            name = "Estimated Attitude Angles"
-            assert value_of(client, name, "Estimated Roll Angle") == 1234
-            assert value_of(client, name, "Estimated Yaw Angle") == -100
-            time.sleep(0.3)
-            assert value_of(client, name, "Estimated Pitch Angle") == 350
-            process.stdin.write(
-                "set 'Estimated Attitude Angles' roll=-1.5\nset nonsense x=1\n"
-            )
-            process.stdin.flush()
-            assert process.stdout.readline() == "ok\n"
-            assert process.stdout.readline().startswith(
-                "error: cubeacp has no telemetry `nonsense`"
-            )
-            assert value_of(client, name, "Estimated Roll Angle") == -150
+    with (
+        simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, process),
+        connected("cubeacp", place) as client,
+    ):
+        name = "Estimated Attitude Angles"
+        assert value_of(client, name, "Estimated Roll Angle") == 1234
+        assert value_of(client, name, "Estimated Yaw Angle") == -100
+        time.sleep(0.3)
+        assert value_of(client, name, "Estimated Pitch Angle") == 350
+        process.stdin.write(
+            "set 'Estimated Attitude Angles' roll=-1.5\nset nonsense x=1\n"
+        )
+        process.stdin.flush()
+        assert process.stdout.readline() == "ok\n"
+        assert process.stdout.readline().startswith(
+            "error: cubeacp has no telemetry `nonsense`"
+        )
+        assert value_of(client, name, "Estimated Roll Angle") == -150
 
 
 def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
@@ -259,9 +246,10 @@ def test_unsolicited_logs_come_as_they_are_configured():
             role["fields"]["period"]: 1,
         }
         client.telecommand(message, codec.encode(client.node, message, raw))
-        events += client.listen(client.now + 3500)
-        assert {e["event"] for e in events} == {"log"} and len(events) >= 2
-        assert bytes.fromhex(events[0]["bytes"])[0] == client.known.log_message.id
+        for _ in client.messages(seconds=3.5):
+            raise AssertionError("there is no other message")
+        assert {type(event) for event in events} == {Log} and len(events) >= 2
+        assert events[0].data[0] == client.link.log_message.id
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -309,7 +297,7 @@ def test_whatever_happens_on_the_line_every_request_ends(fault):
             outcome = client.telecommand(
                 client.known.telecommands[17], bytes([number] * 6), repeat=True
             )
-            assert outcome["event"] in ("done", "refused", "timeout")
+            assert isinstance(outcome, OUTCOMES)
             client.identify()
         assert time.monotonic() - begin < 24 * 5 * 0.3 + 5
 
@@ -321,7 +309,7 @@ def test_a_refused_telecommand_is_not_executed():
         )
         before = client.telemetry(message)
         outcome = client.telecommand(message, bytes([1] * message.length))
-        assert (outcome["event"], outcome["reason"]) == ("refused", "parameter")
+        assert isinstance(outcome, Refused) and outcome.reason == "parameter"
         assert client.telemetry(message) == before
 
 
@@ -329,9 +317,9 @@ def test_strict_refuses_what_no_enumeration_has():
     def outcome(*options):
         with session(*options) as client:
             message = client.known.telecommands[10]
-            return client.ask(Request("telecommand", message.id, b"\xee"))["event"]
+            return type(client.start(Request("telecommand", message.id, b"\xee")))
 
-    assert (outcome(), outcome("--strict")) == ("done", "refused")
+    assert (outcome(), outcome("--strict")) == (Done, Refused)
 
 
 @pytest.mark.parametrize(
@@ -495,8 +483,6 @@ def test_monitor_and_send_from_the_outside():
     ],
 )
 def test_the_response_to_a_telecommand_can_be_made_wrong(fault, event, code):
-    from icdgen_runtime.wire.client import Client, Request
-
     from icdgen.sim import run
 
     line, _ = run.build(ICD, "cubeacp", run.Options(faults=[fault]))

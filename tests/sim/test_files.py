@@ -1,7 +1,8 @@
 """Files arrive byte for byte over a real port, whatever is lost.
 
 Small files here; a megabyte each way is a command of its own, `tests.sim.harness`:
-``python -m tests.sim.harness -- python -m tests.sim.client``.
+``PYTHONPATH=generated/python python -m tests.sim.harness -- python -m
+tests.python.sim_client``.
 """
 
 from __future__ import annotations
@@ -9,11 +10,17 @@ from __future__ import annotations
 from random import Random
 
 import pytest
+from icdgen_runtime.wire.failures import FailedError
+from icdgen_runtime.wire.files import read_index
+from icdgen_runtime.wire.transfer import Download, Erase, FileList, Format, Upload
 
-from icdgen.protocol import files, transfer
-from tests.sim.device import download, session
+from tests.sim.device import session
 
 LOSSES = ["0", "1%", "10%", "30%"]
+
+
+def downloaded(client, type, counter, size) -> bytes:
+    return client.run(Download(client.link, "uart", type, counter, size)).data
 
 
 @pytest.mark.parametrize("way", [("--tcp", "0"), ("--pty",)], ids=lambda way: way[0])
@@ -33,9 +40,8 @@ def test_a_file_is_downloaded_and_a_program_uploaded(tmp_path, loss, way):
         "100000",
     )
     with session(*way, *options, "--seed", "5", node="bootloader") as client:
-        assert download(client, 2, 7, len(stored)) == ("done", stored)
-        upload = transfer.Upload(client.known, 3, image)
-        assert (client.run(upload), upload.sent) == ("done", len(image))
+        assert downloaded(client, 2, 7, len(stored)) == stored
+        assert client.run(Upload(client.link, 3, image)).sent == len(image)
     assert (tmp_path / "up" / "3.bin").read_bytes() == image
 
 
@@ -61,8 +67,8 @@ def test_files_survive_what_happens_to_acknowledges_and_packets(tmp_path, faults
         *options,
         node="bootloader",
     ) as client:
-        assert download(client, 2, 7, len(stored)) == ("done", stored)
-        assert client.run(transfer.Upload(client.known, 4, stored)) == "done"
+        assert downloaded(client, 2, 7, len(stored)) == stored
+        client.run(Upload(client.link, 4, stored))
     assert (tmp_path / "4.bin").read_bytes() == stored
 
 
@@ -72,26 +78,22 @@ def test_the_list_and_the_index_hold_every_file_until_they_are_erased(tmp_path):
         (tmp_path / str(number)).write_bytes(bytes([number]) * (100 + number))
         options += ["--file", f"2:{number}={tmp_path / str(number)}"]
     with session(*options, "--fault", "drop=10%@acknowledge") as client:
-        listed = transfer.FileList(client.known)
-        assert client.run(listed) == "done"
-        assert [(e["counter"], e["size"]) for e in listed.entries] == [
-            (n, 100 + n) for n in range(5)
-        ]
-        result, data = download(client, client.known.index.file_type, 0, None)
-        entries, truncated = files.read_index(client.known, data)
-        assert (result, truncated) == ("done", 0)
+        listed = client.run(FileList(client.link)).entries
+        assert [(e.counter, e.size) for e in listed] == [(n, 100 + n) for n in range(5)]
+        data = downloaded(client, client.link.index_file.file_type, 0, None)
+        entries, truncated = read_index(client.link, data)
+        assert truncated == 0
         assert [(e.counter, e.size, e.checksum) for e in entries] == [
-            (e["counter"], e["size"], e["checksum"]) for e in listed.entries
+            (e.counter, e.size, e.checksum) for e in listed
         ]
-        assert client.run(transfer.Erase(client.known, 2, 3, False)) == "done"
-        left = transfer.FileList(client.known)
-        client.run(left)
-        assert [e["counter"] for e in left.entries] == [0, 1, 2, 4]
-        assert client.run(transfer.Format(client.known)) == "done"
-        left = transfer.FileList(client.known)
-        assert (client.run(left), left.entries) == ("done", [])
+        client.run(Erase(client.link, 2, 3))
+        left = client.run(FileList(client.link)).entries
+        assert [e.counter for e in left] == [0, 1, 2, 4]
+        client.run(Format(client.link))
+        assert client.run(FileList(client.link)).entries == []
 
 
 def test_a_file_that_is_not_there_cannot_be_loaded():
-    with session() as client:
-        assert download(client, 2, 99, 100) == ("parameter", b"")
+    with session() as client, pytest.raises(FailedError) as caught:
+        downloaded(client, 2, 99, 100)
+    assert caught.value.result == "parameter"

@@ -8,13 +8,17 @@ import subprocess
 from dataclasses import replace
 
 import pytest
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html.wire import crc_facts
-from icdgen.protocol import crc, declared, i2c, uart
+from icdgen.protocol import declared
 from icdgen.protocol.facts import of as facts_of
 from icdgen.protocol.sections import Crc
+from icdgen.runtime_objects.links import link_of
 from icdgen.values.errors import BadHex
 from icdgen.values.hexadecimal import parse_hex
+from tests import links
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
@@ -88,7 +92,7 @@ def test_checksums_are_those_of_the_generator():
         "(cases) => cases.map(([facts, data]) => frames.crc(facts, data))", cases
     )
     assert found == [
-        crc.compute(declared.read(Crc, one), bytes(data)) for one, data in cases
+        links.crc(declared.read(Crc, one), bytes(data)) for one, data in cases
     ]
 
 
@@ -97,7 +101,7 @@ def test_checksums_are_those_of_the_generator():
 )
 def test_checksums_give_the_check_value_of_the_icd(shipped, node_name, key):
     protocol = shipped.node(node_name).protocol[key]
-    assert crc.compute(declared.read(Crc, protocol), b"123456789") == protocol["check"]
+    assert links.crc(declared.read(Crc, protocol), b"123456789") == protocol["check"]
 
 
 CRC8 = {
@@ -159,13 +163,10 @@ def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id, little, 
         "([wire, cases]) => cases.map((data) => [false, true].map((check) => [...frames.framed(wire, data, check)]))",
         [wire, cases],
     )
+    link = link_of(shipped, known)
     assert found == [
         [
-            list(
-                uart.encode(
-                    known.framing, i2c.telecommand(known, 0x1F, bytes(data), check)
-                )
-            )
+            list(uart_encode(link, i2c_write(link, 0x1F, bytes(data), check)))
             for check in (False, True)
         ]
         for data in cases

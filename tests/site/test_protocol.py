@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 
 import pytest
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.loading import load
-from icdgen.protocol import i2c, uart
 from icdgen.protocol.facts import of as facts_of
+from icdgen.runtime_objects.links import link_of
 from tests.cli.conftest import icdgen  # noqa: F401
 from tests.site.test_browser import opened
 
@@ -116,8 +118,9 @@ def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(
     id = next(
         id for id, message in known.telecommands.items() if message.name == "Reset"
     )
-    body = i2c.telecommand(known, id, b"\x5a", True)
-    line = uart.encode(known.framing, body).hex(" ").upper()
+    link = link_of(loaded, known)
+    body = i2c_write(link, id, b"\x5a", True)
+    line = uart_encode(link, body).hex(" ").upper()
     assert len(body) == 2 + width // 8
     with opened(browser, top, "battery/reset.html") as page:
         page.fill("#frame", line)

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
-from icdgen.protocol import i2c
 from icdgen.runtime_objects.links import link_of
+from tests import links
 
 
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
@@ -51,9 +51,10 @@ def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
     other = wire.Wire(plain, section, link_of(shipped, plain), speakers)
     uart = wire.buses(message, other, b"\x1f")[0]
     texts = [" ".join(chunk.text for chunk in line.chunks) for line in uart.lines]
-    check = i2c.checksum(covering[0], 0x1F, b"\x1f")
+    form = covering[0].checksum.crc
+    check, of_data = links.crc(form, b"\x1f\x1f"), links.crc(form, b"\x1f")
     assert texts == ["1F 7F 1F 1F 1F 1F FF", f"1F 7F 1F 1F 1F {check:02X} 1F FF"]
-    assert check != i2c.checksum(checked[0].facts, 0x1F, b"\x1f")
+    assert check != of_data
 
 
 def test_a_telemetry_frame_on_each_bus(shipped):

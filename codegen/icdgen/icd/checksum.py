@@ -1,6 +1,4 @@
-"""Checksum algorithms, bit by bit, for the rules and for the reference implementation
-of links.
-"""
+"""Checksum algorithms, bit by bit, for the rules and for tests of the runtimes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
-"""Reference implementation of the protocol: framing, checksums, CAN packets, logs and
-file transfer.
+"""Protocol section of an ICD: keys and parts, and the facts of the links of a node.
 
-The code is written for clarity, not for speed, performs no I/O and depends only on the
-protocol facts of the ICD. Tests compare generated protocol layers with it.
-`icdgen.protocol.facts.of` returns the facts of a node.
+`icdgen.protocol.facts.of` returns the facts. The state machines of links are in the
+runtimes; the runtime of Python is the reference.
 """

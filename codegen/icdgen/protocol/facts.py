@@ -14,7 +14,6 @@ from icdgen.frozen import dataclass
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.envelope import Stream
-from icdgen.protocol.errors import Refused
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
     Acknowledge,
@@ -39,10 +38,8 @@ from icdgen.protocol.sections import (
 T = TypeVar("T")
 
 
-class Unsupported(Refused, LookupError):
+class Unsupported(LookupError):
     """ICD does not describe this part of the protocol."""
-
-    error = "unsupported"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -146,12 +143,8 @@ class Facts:
             return self.stream.longest
         return max(self.longest_telecommand, self.longest_reply)
 
-    def number(self, data: bytes) -> int:
-        """Return the number that the bytes represent in the byte order of the node."""
-        return int.from_bytes(data, "little" if self.little else "big")
-
     def bytes_of(self, number: int, size: int) -> bytes:
-        """Return a number as bytes, the inverse of `number`.
+        """Return a number as bytes in the byte order of the node.
 
         Raises `OverflowError` if it does not fit.
         """

@@ -83,21 +83,21 @@ def text(icd: Icd) -> str | None:
 def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     source = random.Random(node_facts.node.name)
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
+    link = link_of(icd, node_facts)
     if node_facts.stream:
-        link = link_of(icd, node_facts)
         yield from envelopes.requests(link, node_facts.stream, source)
         yield from asking.scripts(link, node_facts)
         return
     yield from streams.checksums(node_facts, source)
     if node_facts.framing:
-        yield from streams.encoded(node_facts, source)
-        yield from streams.streams(node_facts, source)
+        yield from streams.encoded(link, node_facts, source)
+        yield from streams.streams(link, node_facts, source)
     if node_facts.can:
-        yield from packets.requests(node_facts, source)
-    yield from i2c.requests(node_facts, source)
-    yield from logs.requests(node_facts, source)
-    yield from files.requests(node_facts, source)
-    yield from clients.scripts(node_facts)
-    yield from procedures.scripts(node_facts)
+        yield from packets.requests(link, node_facts, source)
+    yield from i2c.requests(link, node_facts, source)
+    yield from logs.requests(link, node_facts, source)
+    yield from files.requests(link, node_facts, source)
+    yield from clients.scripts(link, node_facts)
+    yield from procedures.scripts(link, node_facts)
     yield from operations.scripts(node_facts)
-    yield from waits.scripts(node_facts)
+    yield from waits.scripts(link, node_facts)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from icdgen.protocol.request_keys import Refusal, text
+from icdgen.runtime_objects.refusals import Refusal
+from icdgen.runtime_objects.request_keys import text
 from tests.conformance.front import messages, scripts, wire
 from tests.conformance.front.program import Ask, Reply, asked
 
@@ -38,7 +39,7 @@ class Front:
                 return {"ok": True, **self._wire(op, request)}
             raise Refusal("request", detail="there is no such op")
         except Refusal as refusal:
-            return refusal.answer
+            return {"ok": False, **refusal.details}
         except (ValueError, RecursionError) as error:
             return {"ok": False, "error": "request", "detail": str(error)}
 
@@ -128,7 +129,7 @@ class Front:
                 )
             return {**wire.OPS, **scripts.OPS}[op](checked, request)
         except Refusal as refusal:
-            if refusal.answer["error"] == "range" and op not in (
+            if refusal.details["error"] == "range" and op not in (
                 "dos_time",
                 "stream_encode",
             ):

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from icdgen.protocol.request_keys import Refusal, hex_bytes, octets, text
+from icdgen.runtime_objects.refusals import Refusal
+from icdgen.runtime_objects.request_keys import hex_bytes, octets, text
 from tests.conformance.front.program import Facts, Reply, items, text_of
 
 if TYPE_CHECKING:
@@ -243,9 +244,9 @@ def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
     try:
         return front.ask(*words)
     except Refusal as refusal:
-        place = refusal.answer.pop("at", None)
+        place = refusal.details.pop("at", None)
         if place is not None:
-            refusal.answer["field"] = fields[place]["name"]
+            refusal.details["field"] = fields[place]["name"]
         raise
 
 

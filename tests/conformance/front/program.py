@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
-from icdgen.protocol.request_keys import Refusal
+from icdgen.runtime_objects.refusals import Refusal
 
 Facts = dict[str, str]
 Ask = Callable[[str], str]

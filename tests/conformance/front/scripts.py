@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from icdgen.protocol.request_keys import (
-    Refusal,
+from icdgen.runtime_objects.refusals import Refusal
+from icdgen.runtime_objects.request_keys import (
     flag,
     hex_bytes,
     mappings,

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN
-from icdgen.protocol.request_keys import (
-    Refusal,
+from icdgen.protocol.sections import CAN_KINDS
+from icdgen.runtime_objects.refusals import Refusal
+from icdgen.runtime_objects.request_keys import (
     flag,
     hex_bytes,
     mappings,
@@ -16,7 +17,6 @@ from icdgen.protocol.request_keys import (
     rows,
     text,
 )
-from icdgen.protocol.sections import CAN_KINDS
 from tests.conformance.front.program import Facts, Reply, items
 
 Request = dict[str, Any]

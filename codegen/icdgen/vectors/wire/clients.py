@@ -8,13 +8,18 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
+from icdgen_runtime.wire.can import CanMessage, can_split
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.link import CanKind
+from icdgen_runtime.wire.logs import LogMessage
+from icdgen_runtime.wire.uart import uart_encode
+
 from icdgen import codec
 from icdgen.icd.frames import frame_fields
 from icdgen.icd.model import CONFIGURATION, Message
-from icdgen.protocol import can, i2c, uart
-from icdgen.protocol import logs as log_files
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import CAN, I2C, UART
+from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 
 SETTINGS = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
@@ -27,8 +32,8 @@ class Sample:
     If the node has no message of a kind, another one replaces it.
     """
 
-    def __init__(self, facts: Facts, source: Random) -> None:
-        self.facts = facts
+    def __init__(self, link: AnyLink, facts: Facts, source: Random) -> None:
+        self.link, self.facts = link, facts
         sent, frames = facts.telecommands.values(), facts.telemetry.values()
         acknowledged = [m for m in sent if m.acknowledge and m.kind != CONFIGURATION]
         # Prefer a telecommand that fits into one CAN packet.
@@ -56,12 +61,24 @@ class Sample:
     def request(self, at: int, message: Message) -> dict[str, Any]:
         return {"at": at, "telemetry": message.telemetry_id}
 
+    def line(self, message: bytes) -> str:
+        """Return the bytes of a message on the UART, in hexadecimal."""
+        return uart_encode(self.link, message).hex()
 
-def scripts(facts: Facts) -> Requests:
+    def acknowledge(self, message: Message, code: int = 0) -> str:
+        """Return the bytes of an acknowledge on the UART, in hexadecimal."""
+        form = self.facts.acknowledge
+        assert form and message.telecommand_id is not None
+        data = bytearray(form.length)
+        data[form.id_at], data[form.error_at] = message.telecommand_id, code
+        return self.line(bytes(data))
+
+
+def scripts(link: AnyLink, facts: Facts) -> Requests:
     """Yield the scripts of the client on all buses."""
     if not facts.telecommands or not facts.telemetry:
         return
-    sample = Sample(facts, Random(f"{facts.node.name} client"))
+    sample = Sample(link, facts, Random(f"{facts.node.name} client"))
     if facts.framing and facts.acknowledge:
         for why, rows in _uart(facts, sample):
             yield f"UART: {why}", _op(UART, rows)
@@ -87,29 +104,15 @@ def _op(bus: str, script: list[dict[str, Any]], **more: object) -> dict[str, Any
     return {"op": "client", "bus": bus, **more, "settings": SETTINGS, "script": script}
 
 
-def _line(facts: Facts, message: bytes) -> str:
-    """Return the bytes of a message on the UART, in hexadecimal."""
-    assert facts.framing
-    return uart.encode(facts.framing, message).hex()
-
-
-def _acknowledge(facts: Facts, message: Message, code: int = 0) -> str:
-    form = facts.acknowledge
-    assert form and message.telecommand_id is not None
-    data = bytearray(form.length)
-    data[form.id_at], data[form.error_at] = message.telecommand_id, code
-    return _line(facts, bytes(data))
-
-
 def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     def ack(at: int, message: Message, code: int = 0) -> dict[str, Any]:
-        return {"at": at, "receive": _acknowledge(facts, message, code)}
+        return {"at": at, "receive": s.acknowledge(message, code)}
 
     def reply(at: int, message: Message, more: int = 0) -> dict[str, Any]:
         data = s.source.randbytes(message.length + more)
         return {
             "at": at,
-            "receive": _line(facts, bytes([message.telemetry_id or 0]) + data),
+            "receive": s.line(bytes([message.telemetry_id or 0]) + data),
         }
 
     plain, frame, framing = s.plain, s.frame, need(facts.framing, "uart")
@@ -250,11 +253,11 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         data = bytes([facts.files.packet_ids[UART]]) + s.source.randbytes(
             facts.files.counter_bytes + facts.files.packet_bytes
         )
-        yield "download packets", [{"at": 0, "receive": _line(facts, data) * 2}]
+        yield "download packets", [{"at": 0, "receive": s.line(data) * 2}]
     if facts.mask and facts.log_message:
-        log = log_files.encode_message(facts, bytes(facts.mask.size), [])
+        log = LogMessage.encode(s.link, bytes(facts.mask.size), [])
         yield "an unsolicited log while a reply is awaited", [
-            s.request(0, frame), {"at": 1, "receive": _line(facts, log)}, reply(2, frame),
+            s.request(0, frame), {"at": 1, "receive": s.line(log)}, reply(2, frame),
         ]  # fmt: skip
 
 
@@ -262,8 +265,8 @@ def _checked(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]
     code = facts.errors.get("checksum")
     if code is None:
         return
-    bad = {"receive": _acknowledge(facts, s.plain, code)}
-    good = {"receive": _acknowledge(facts, s.plain)}
+    bad = {"receive": s.acknowledge(s.plain, code)}
+    good = {"receive": s.acknowledge(s.plain)}
     yield "sent again after a wrong checksum", [
         s.ask(0, s.plain),
         {"at": 1, **bad},
@@ -279,12 +282,10 @@ def _checked_frames(
     facts: Facts, s: Sample
 ) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     id, data = s.frame.telemetry_id or 0, s.source.randbytes(s.frame.length)
-    right, bare = i2c.telecommand(facts, id, data, True), i2c.telecommand(
-        facts, id, data, False
-    )
+    right, bare = i2c_write(s.link, id, data, True), i2c_write(s.link, id, data, False)
     wrong = right[:-1] + bytes([right[-1] ^ 1])
     good, bad, missing = (
-        {"receive": _line(facts, checked)} for checked in (right, wrong, bare)
+        {"receive": s.line(checked)} for checked in (right, wrong, bare)
     )
     yield "a frame with its checksum", [s.request(0, s.frame), {"at": 1, **good}]
     yield "a wrong checksum, then the right one", [
@@ -303,8 +304,8 @@ def _checked_frames(
         {"at": 301},
     ]
     longer = {
-        "receive": _line(
-            facts, bare + bytes(facts.checksum.bytes + 1 if facts.checksum else 1)
+        "receive": s.line(
+            bare + bytes(facts.checksum.bytes + 1 if facts.checksum else 1)
         )
     }
     yield "more than a checksum behind a frame", [
@@ -324,7 +325,7 @@ def _i2c(
     )
 
     def frame(message: Message, data: bytes) -> str:
-        return i2c.telecommand(facts, message.telemetry_id or 0, data, checked_frames)[
+        return i2c_write(s.link, message.telemetry_id or 0, data, checked_frames)[
             1:
         ].hex()
 
@@ -462,9 +463,9 @@ def _can(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     node = facts.can.node_address
 
     def come(
-        at: int, kind: str, id: int | None, data: bytes = b"", source: int = node
+        at: int, kind: CanKind, id: int | None, data: bytes = b"", source: int = node
     ) -> list[dict[str, Any]]:
-        packets = can.split(facts, can.Message(kind, id or 0, source, OURS, data))
+        packets = can_split(s.link, CanMessage(kind, id or 0, source, OURS, data))
         return [
             {"at": at, "receive": {"id": p.id, "bytes": p.data.hex()}} for p in packets
         ]

@@ -5,13 +5,15 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from icdgen.protocol import files as reference
-from icdgen.protocol import times
+from icdgen_runtime.wire.files import IndexEntry, write_index
+from icdgen_runtime.wire.times import DosTime
+
 from icdgen.protocol.facts import Facts
+from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 
 
-def requests(facts: Facts, source: Random) -> Requests:
+def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield requests on packed times, hole maps and the index file."""
     if facts.time:
         bits, some = (1 << bit for bit in range(32)), (
@@ -32,7 +34,7 @@ def requests(facts: Facts, source: Random) -> Requests:
         for date in dates:
             yield "a date", {
                 "op": "dos_time",
-                **dict(zip(times.PARTS, date, strict=True)),
+                **dict(zip(DosTime._fields, date, strict=True)),
             }
     if facts.hole_map and facts.files:
         most, first = facts.hole_map.bytes * 8, facts.files.first_packet
@@ -71,10 +73,9 @@ def requests(facts: Facts, source: Random) -> Requests:
         sizes = {role: place.bytes for role, place in index.fields.items()}
         entries = [_random_entry(sizes, source) for _ in range(3)]
         index_entries = [
-            reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])})
-            for e in entries
+            IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])}) for e in entries
         ]
-        data = reference.write_index(facts, index_entries)
+        data = write_index(link, index_entries)
         yield "three entries", {"op": "index_encode", "entries": entries}
         for size in (0, 1, index.entry_bytes, len(data) - 1, len(data)):
             yield f"{size} of {len(data)} bytes", {

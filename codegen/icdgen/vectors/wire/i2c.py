@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from random import Random
 
+from icdgen_runtime.wire.i2c import i2c_write
+
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.i2c import telecommand
+from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 
 
-def requests(facts: Facts, source: Random) -> Requests:
+def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield requests on writes and reads, with and without a checksum."""
     for id, message in list(facts.telecommands.items())[:5]:
         for checked in (False, True) if facts.checksum else (False,):
@@ -31,7 +33,7 @@ def requests(facts: Facts, source: Random) -> Requests:
                 "id": id,
                 "crc": checked,
             }
-            data = telecommand(facts, id, frame, checked)[1:]
+            data = i2c_write(link, id, frame, checked)[1:]
             about = {"op": "i2c_reply", "id": id, "crc": checked}
             yield f"telemetry {id}", {**about, "bytes": data.hex()}
             yield f"telemetry {id}, too short", {**about, "bytes": data[:-1].hex()}

@@ -5,8 +5,10 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from icdgen.protocol import logs as log_files
+from icdgen_runtime.wire.logs import LogMessage, LogWriter
+
 from icdgen.protocol.facts import Facts, need
+from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests
 
 
@@ -26,7 +28,7 @@ def masks(facts: Facts) -> list[bytes]:
     ]
 
 
-def requests(facts: Facts, source: Random) -> Requests:
+def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield requests on log files and unsolicited logs, complete and truncated."""
     layout = facts.mask
     if not layout:
@@ -41,7 +43,8 @@ def requests(facts: Facts, source: Random) -> Requests:
             ]
             times = [(0, 0), (min(0xFFFFFFFF, most[0]), min(999, most[1]))]
             rows = [(s, ms, row) for (s, ms), row in zip(times, data, strict=True)]
-            file = log_files.encode(facts, mask, rows)
+            writer = LogWriter(link, mask)
+            file = writer.header() + b"".join(writer.entry(*row) for row in rows)
             yield "two entries", {
                 "op": "log_encode",
                 "mask": mask.hex(),
@@ -55,7 +58,7 @@ def requests(facts: Facts, source: Random) -> Requests:
                     "bytes": file[:size].hex(),
                 }
         if facts.log_message:
-            message = log_files.encode_message(facts, mask, data[0])
+            message = LogMessage.encode(link, mask, data[0])
             frames = [frame.hex() for frame in data[0]]
             yield "an unsolicited log", {
                 "op": "log_message_encode",

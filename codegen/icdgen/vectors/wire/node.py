@@ -8,12 +8,14 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
+from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.crc import crc16
+from icdgen_runtime.wire.files import HoleMap
+
 from icdgen import codec
-from icdgen.icd.model import TELECOMMAND
-from icdgen.protocol import crc, files
-from icdgen.protocol.client import Request
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import UART, Step
+from icdgen.runtime_objects.operations import AnyLink
 
 
 class FileNode:
@@ -24,16 +26,16 @@ class FileNode:
     """
 
     def __init__(
-        self, facts: Facts, bus: str, source: Random, loss: float = 0.0
+        self,
+        link: AnyLink,
+        facts: Facts,
+        bus: str,
+        source: Random,
+        loss: float = 0.0,
     ) -> None:
         assert facts.files and facts.hole_map and facts.crc16
-        self.facts, self.form, self.bus, self.source, self.loss = (
-            facts,
-            facts.files,
-            bus,
-            source,
-            loss,
-        )
+        self.link, self.facts, self.form = link, facts, facts.files
+        self.bus, self.source, self.loss = bus, source, loss
         self.files: dict[tuple[int, int], bytes] = {}
         self.pointer = 0
         self.block = b""  # loaded for download
@@ -58,7 +60,7 @@ class FileNode:
 
     def answer(self, request: Request) -> list[dict[str, Any]]:
         """Return the events that a client would report: packets, then the outcome."""
-        if request.kind == TELECOMMAND:
+        if request.kind == "telecommand":
             acknowledged = self.facts.telecommands[request.id].acknowledge
             if acknowledged and self.lost():  # either the request or its acknowledge
                 return [
@@ -125,7 +127,10 @@ class FileNode:
         lost = (
             range(count)
             if everything
-            else [n - first for n in files.missing(self.facts, count, self.map)]
+            else [
+                number - first
+                for number in HoleMap.from_bytes(self.link, count, self.map).missing()
+            ]
         )
         if self.bus != UART:
             self.queue = list(lost)
@@ -144,7 +149,7 @@ class FileNode:
         if id in self.holes:
             size = self.facts.telemetry[id].length
             received = [self.form.first_packet + n for n in self.uploaded]
-            map_ = files.hole_map(self.facts, self.form.block_packets, received)
+            map_ = HoleMap(self.link, self.form.block_packets, received).to_bytes()
             return map_[self.holes[id] * size : (self.holes[id] + 1) * size]
         if id == self.form.packet_ids.get(self.bus):
             while self.queue and self.lost():
@@ -157,8 +162,7 @@ class FileNode:
         return step.frame(self.facts.node, self._values_of(name, busy))
 
     def _sum(self, data: bytes) -> int:
-        assert self.facts.crc16
-        return crc.compute(self.facts.crc16, data)
+        return crc16(self.link, data)
 
     def _values_of(self, step: str, busy: int) -> dict[str, Any]:
         """Return the values of the frame of a step, by role."""

@@ -5,18 +5,20 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from icdgen.protocol import can
+from icdgen_runtime.wire.can import CanMessage, CanPacket, can_split
+
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
+from icdgen.protocol.sections import CAN_WITH_DATA
+from icdgen.runtime_objects.operations import CAN_KINDS, AnyLink
 from icdgen.vectors.wire import Requests
 
 
-def requests(facts: Facts, source: Random) -> Requests:
+def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield requests that split messages into packets and join received packets."""
     form = facts.can
     assert form
     node, other, third = form.node_address, 0x42, 0xFE
-    samples: list[can.Message] = []
+    samples: list[CanMessage] = []
     for kind in CAN_KINDS:
         ids = (
             facts.telecommands
@@ -26,12 +28,12 @@ def requests(facts: Facts, source: Random) -> Requests:
         if kind not in form.types:
             continue
         if kind not in CAN_WITH_DATA:
-            samples += [can.Message(kind, id, node, other) for id in list(ids)[:2]]
+            samples += [CanMessage(kind, id, node, other) for id in list(ids)[:2]]
             continue
         by_length = {m.length: id for id, m in reversed(ids.items())}
         for length, id in sorted(by_length.items()):
             ends = (other, node) if kind == "telecommand" else (node, other)
-            samples.append(can.Message(kind, id, *ends, source.randbytes(length)))
+            samples.append(CanMessage(kind, id, *ends, source.randbytes(length)))
     for message in samples:
         why = f"{message.kind} {message.id}, {len(message.data)} bytes"
         about = {
@@ -43,7 +45,7 @@ def requests(facts: Facts, source: Random) -> Requests:
         yield why, {"op": "can_split", **about, "bytes": message.data.hex()}
         yield why, {
             "op": "can_join",
-            "packets": [_row(packet) for packet in can.split(facts, message)],
+            "packets": [_row(packet) for packet in can_split(link, message)],
         }
     if form.extended:
         most = form.extended.bytes
@@ -65,14 +67,16 @@ def requests(facts: Facts, source: Random) -> Requests:
             "kind": "request",
             "bytes": "00",
         }
-        yield from _joins(facts, source, other, third)
+        yield from _joins(link, facts, source, other, third)
 
 
-def _row(packet: can.Packet, at: int = 0) -> dict[str, Any]:
+def _row(packet: CanPacket, at: int = 0) -> dict[str, Any]:
     return {**({"at": at} if at else {}), "id": packet.id, "bytes": packet.data.hex()}
 
 
-def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
+def _joins(
+    link: AnyLink, facts: Facts, source: Random, other: int, third: int
+) -> Requests:
     """Yield received packets: out of order, repeated, lost, late and from several
     senders.
     """
@@ -90,9 +94,9 @@ def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
 
     def sent(
         sender: int, seed: str, length: int = length, id: int = id
-    ) -> list[can.Packet]:
+    ) -> list[CanPacket]:
         data = Random(f"{facts.node.name} {seed}").randbytes(length)
-        return can.split(facts, can.Message("telecommand", id, sender, node, data))
+        return can_split(link, CanMessage("telecommand", id, sender, node, data))
 
     first, second = sent(other, "one"), sent(other, "two")
     # A second message that starts with the packets of the first one.
@@ -120,15 +124,15 @@ def _joins(facts: Facts, source: Random, other: int, third: int) -> Requests:
         ("an unknown id, the first packet lost", unknown[1:]),
         (
             "a count that is too high",
-            [can.Packet(first[0].id, first[0].data[:-1] + b"\xff"), *first],
+            [CanPacket(first[0].id, first[0].data[:-1] + b"\xff"), *first],
         ),
         (
             "a packet that is too short",
-            [*first[:2], can.Packet(first[2].id, first[2].data[:-1]), *first],
+            [*first[:2], CanPacket(first[2].id, first[2].data[:-1]), *first],
         ),
         (
             "a message type that does not exist",
-            [can.Packet((1 << 29) - 1, b"\x01"), *first],
+            [CanPacket((1 << 29) - 1, b"\x01"), *first],
         ),
     ]
     for why, row in rows:

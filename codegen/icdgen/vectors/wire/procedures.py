@@ -7,10 +7,12 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from icdgen.protocol import transfer
+from icdgen_runtime.wire.procedures import Procedure
+
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.scripts import LONGEST, procedure_of
 from icdgen.protocol.sections import UART, Upload
+from icdgen.runtime_objects.operations import AnyLink
+from icdgen.runtime_objects.procedures import LONGEST, event_of, procedure_of
 from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
@@ -20,18 +22,18 @@ ATTEMPTS = 8  # attempts of a client
 
 
 def record(
-    facts: Facts, request: dict[str, Any], node: FileNode
-) -> tuple[Script, transfer.Procedure]:
+    link: AnyLink, request: dict[str, Any], node: FileNode
+) -> tuple[Script, Procedure]:
     """Return the script of a procedure with the simulated node.
 
     Repeatable requests are repeated as by a client.
     """
-    procedure, now = procedure_of(facts, request), 0
+    procedure, now = procedure_of(link, request), 0
     script: Script = [{"at": 0}]
     pending = procedure.next(now)
     while procedure.result is None and len(script) < STEPS:
         if pending is None:
-            now = procedure.deadline if procedure.deadline is not None else now + 1
+            now = now + 1 if procedure.deadline is None else int(procedure.deadline)
             script.append({"at": now})
             pending = procedure.next(now)
             continue
@@ -42,23 +44,23 @@ def record(
         for event in events:
             now += 1
             script.append({"at": now, "event": event})
-            procedure.event(now, event)
+            procedure.event(now, event_of(event))
             pending = procedure.next(now)
     return script, procedure
 
 
-def scripts(facts: Facts) -> Requests:
+def scripts(link: AnyLink, facts: Facts) -> Requests:
     """Yield the scripts of all procedures."""
     form = facts.files
     if not form or not facts.hole_map or not facts.crc16:
         return
     if form.list:
         for loss in (0.0, 0.3):
-            yield from _recorded(facts, "the list of files", {"do": "list"}, loss)
+            yield from _recorded(link, facts, "the list of files", {"do": "list"}, loss)
     if form.download:
-        yield from _downloads(facts)
+        yield from _downloads(link, facts)
     if form.upload:
-        yield from _uploads(facts, form.upload)
+        yield from _uploads(link, facts, form.upload)
     else:
         request = {
             "op": "file",
@@ -71,13 +73,14 @@ def scripts(facts: Facts) -> Requests:
     if form.erase:
         for all_ in (False, True):
             yield from _recorded(
+                link,
                 facts,
                 "erased",
                 {"do": "erase", "type": 2, "counter": 3, "all": all_},
                 0.0,
             )
     if form.format:
-        yield from _recorded(facts, "formatted", {"do": "format"}, 0.0)
+        yield from _recorded(link, facts, "formatted", {"do": "format"}, 0.0)
         refusal = {"event": "refused", "code": 3}
         yield "refused", {
             "op": "file",
@@ -91,8 +94,9 @@ def scripts(facts: Facts) -> Requests:
         yield "busy for ever", {"op": "file", "do": "format", "script": busy}
 
 
-def _node(facts: Facts, bus: str, loss: float, why: str) -> FileNode:
-    node = FileNode(facts, bus, Random(f"{facts.node.name} {why} {bus} {loss}"), loss)
+def _node(link: AnyLink, facts: Facts, bus: str, loss: float, why: str) -> FileNode:
+    source = Random(f"{facts.node.name} {why} {bus} {loss}")
+    node = FileNode(link, facts, bus, source, loss)
     assert node.form
     for counter, size in enumerate((1, node.form.packet_bytes * 3, 130)):
         node.files[2, counter] = node.source.randbytes(size)
@@ -100,13 +104,18 @@ def _node(facts: Facts, bus: str, loss: float, why: str) -> FileNode:
 
 
 def _recorded(
-    facts: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART
+    link: AnyLink,
+    facts: Facts,
+    why: str,
+    request: dict[str, Any],
+    loss: float,
+    bus: str = UART,
 ) -> Requests:
-    script, _ = record(facts, request, _node(facts, bus, loss, why))
+    script, _ = record(link, request, _node(link, facts, bus, loss, why))
     yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
 
 
-def _downloads(facts: Facts) -> Requests:
+def _downloads(link: AnyLink, facts: Facts) -> Requests:
     assert facts.files
     size = facts.files.packet_bytes
     for bus in facts.files.packet_ids:
@@ -120,7 +129,7 @@ def _downloads(facts: Facts) -> Requests:
                 "block": 4 * size,
             }
             yield from _recorded(
-                facts, f"a file in two blocks over {bus}", request, loss, bus
+                link, facts, f"a file in two blocks over {bus}", request, loss, bus
             )
     request = {
         "do": "download",
@@ -129,28 +138,30 @@ def _downloads(facts: Facts) -> Requests:
         "counter": 1,
         "block": 2 * size,
     }
-    yield from _recorded(facts, "a file of unknown size", request, 0.1)
+    yield from _recorded(link, facts, "a file of unknown size", request, 0.1)
     request = {"do": "download", "bus": UART, "type": 2, "counter": 2, "size": 131}
-    yield from _recorded(facts, "a file shorter than announced", request, 0.0)
+    yield from _recorded(link, facts, "a file shorter than announced", request, 0.0)
     yield "an empty file", {"op": "file", **request, "size": 0, "script": [{"at": 0}]}
     request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "size": 3 * size}
-    yield from _recorded(facts, "nothing arrives", request, 1.0)
-    script, _ = record(facts, request, _NodeWithWrongChecksums(facts, UART, Random(1)))
+    yield from _recorded(link, facts, "nothing arrives", request, 1.0)
+    script, _ = record(
+        link, request, _NodeWithWrongChecksums(link, facts, UART, Random(1))
+    )
     yield "a checksum that is never right", {"op": "file", **request, "script": script}
 
 
 class _NodeWithWrongChecksums(FileNode):
     """Simulated node whose checksums are wrong."""
 
-    def __init__(self, facts: Facts, bus: str, source: Random) -> None:
-        super().__init__(facts, bus, source)
+    def __init__(self, link: AnyLink, facts: Facts, bus: str, source: Random) -> None:
+        super().__init__(link, facts, bus, source)
         self.files[2, 1] = bytes(facts.files.packet_bytes * 3 if facts.files else 0)
 
     def _sum(self, data: bytes) -> int:
         return super()._sum(data) ^ 1
 
 
-def _uploads(facts: Facts, form: Upload) -> Requests:
+def _uploads(link: AnyLink, facts: Facts, form: Upload) -> Requests:
     assert facts.files
     size, most, allowed = (
         facts.files.packet_bytes,
@@ -182,11 +193,13 @@ def _uploads(facts: Facts, form: Upload) -> Requests:
             "bytes": data.hex(),
             "block": 4 * size,
         }
-        yield from _recorded(facts, "a program in two blocks", request, loss)
+        yield from _recorded(link, facts, "a program in two blocks", request, loss)
     request = {
         "do": "upload",
         "destination": destination,
         "bytes": data[: 2 * size].hex(),
     }
-    script, _ = record(facts, request, _NodeWithWrongChecksums(facts, UART, Random(1)))
+    script, _ = record(
+        link, request, _NodeWithWrongChecksums(link, facts, UART, Random(1))
+    )
     yield "a checksum that is never right", {"op": "file", **request, "script": script}

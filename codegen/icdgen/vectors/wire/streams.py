@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from random import Random
 
-from icdgen.protocol import logs as log_files
-from icdgen.protocol import uart
+from icdgen_runtime.wire.logs import LogMessage
+from icdgen_runtime.wire.uart import uart_encode
+
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import UART
+from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests, pieces
 from icdgen.vectors.wire.logs import masks
 
@@ -59,25 +61,25 @@ def _messages(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     yield "the longest message, all escaped", bytes([escape] * facts.longest)
 
 
-def encoded(facts: Facts, source: Random) -> Requests:
+def encoded(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield requests that encode messages and decode them again."""
     yield "no id", {"op": "uart_encode", "bytes": ""}
     for why, message in _messages(facts, source):
         yield why, {"op": "uart_encode", "bytes": message.hex()}
         yield why, {
             "op": "uart_decode",
-            "bytes": uart.encode(need(facts.framing, "uart"), message).hex(),
+            "bytes": uart_encode(link, message).hex(),
         }
 
 
-def streams(facts: Facts, source: Random) -> Requests:
+def streams(link: AnyLink, facts: Facts, source: Random) -> Requests:
     """Yield streams that are cut, noisy or truncated."""
     framing = need(facts.framing, "uart")
     escape, start, end = framing.escape, framing.start, framing.end
     begin, finish = bytes([escape, start]), bytes([escape, end])
 
     def line(*data: int) -> bytes:
-        return uart.encode(framing, bytes(data))
+        return uart_encode(link, bytes(data))
 
     good = line(0x90, 1, escape, end, 2)
     streams_to_decode = [
@@ -126,19 +128,19 @@ def streams(facts: Facts, source: Random) -> Requests:
             "limit": limit,
             "chunks": cut,
         }
-    too_long = uart.encode(framing, bytes([0x90]) * (facts.longest + 1))
+    too_long = uart_encode(link, bytes([0x90]) * (facts.longest + 1))
     yield "a message that is too long by one", {
         "op": "uart_events",
         "chunks": [(too_long + good).hex()],
     }
-    for why, message in _kinds(facts, source):
+    for why, message in _kinds(link, facts, source):
         yield why, {
             "op": "uart_events",
-            "chunks": [uart.encode(framing, message).hex()],
+            "chunks": [uart_encode(link, message).hex()],
         }
 
 
-def _kinds(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
+def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     """Yield messages of each kind, and messages of no kind."""
     if facts.acknowledge:
         ids = sorted(
@@ -168,6 +170,6 @@ def _kinds(facts: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
     if facts.log_message and facts.mask:
         for mask in masks(facts)[:4]:
             data = [source.randbytes(slot.length) for slot in facts.mask.selected(mask)]
-            log = log_files.encode_message(facts, mask, data)
+            log = LogMessage.encode(link, mask, data)
             yield "an unsolicited log", log
             yield "an unsolicited log that is too short", log[:-1]

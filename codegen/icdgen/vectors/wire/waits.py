@@ -8,11 +8,13 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from icdgen.icd.model import TELEMETRY, Message
-from icdgen.protocol import i2c
+from icdgen_runtime.wire.i2c import i2c_write
+
+from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.scripts import procedure_of
 from icdgen.protocol.sections import CAN, I2C, UART, Step
+from icdgen.runtime_objects.operations import AnyLink
+from icdgen.runtime_objects.procedures import event_of, procedure_of
 from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 
@@ -45,9 +47,9 @@ PROCEDURES_THAT_WAIT: tuple[tuple[str, dict[str, Any], Values, str], ...] = (
 )
 
 
-def scripts(facts: Facts) -> Requests:
+def scripts(link: AnyLink, facts: Facts) -> Requests:
     """Yield scripts of a client and of procedures without settings."""
-    yield from _clients_without_settings(facts)
+    yield from _clients_without_settings(link, facts)
     if not facts.files or not facts.hole_map or not facts.crc16:
         return
     for name, request, values, time in PROCEDURES_THAT_WAIT:
@@ -64,51 +66,61 @@ def scripts(facts: Facts) -> Requests:
             )
             file_request = {"op": "file", **request}
             script = _never_done(
-                facts, file_request, name, values, getattr(procedure, time) - early
+                link,
+                facts,
+                file_request,
+                name,
+                values,
+                getattr(procedure, time) - early,
             )
             yield f"{name}: nothing new {why}", {**file_request, "script": script}
 
 
 def _never_done(
-    facts: Facts, request: dict[str, Any], name: str, values: Values, last: int
+    link: AnyLink,
+    facts: Facts,
+    request: dict[str, Any],
+    name: str,
+    values: Values,
+    last: int,
 ) -> Script:
     """Return the script of a procedure whose frame has ``values`` until ``last`` ms
     have passed.
     """
     assert facts.files
     step = facts.files.steps[name]
-    node = FileNode(facts, UART, Random(f"{facts.node.name} {name}"))
+    node = FileNode(link, facts, UART, Random(f"{facts.node.name} {name}"))
     node.files[2, 0] = bytes(1)
     waiting = {"event": "done", "bytes": step.frame(facts.node, values).hex()}
-    procedure, now, first_frame_at = procedure_of(facts, request), 0, -1
+    procedure, now, first_frame_at = procedure_of(link, request), 0, -1
     script: Script = [{"at": 0}]
     pending = procedure.next(0)
     while pending or procedure.deadline is not None:
         if pending is None:
             assert procedure.deadline is not None
-            script += [{"at": procedure.deadline - 1}, {"at": procedure.deadline}]
-            now = procedure.deadline
+            now = int(procedure.deadline)
+            script += [{"at": now - 1}, {"at": now}]
             # The procedure must have given up by now.
             if first_frame_at >= 0 and now > first_frame_at + last:
                 break
-        elif pending.kind == TELEMETRY and pending.id == step.message.telemetry_id:
+        elif pending.kind == "telemetry" and pending.id == step.message.telemetry_id:
             first_frame_at, now = (
                 (now, now + 1)
                 if first_frame_at < 0
                 else (first_frame_at, first_frame_at + last)
             )
             script.append({"at": now, "event": waiting})
-            procedure.event(now, waiting)
+            procedure.event(now, event_of(waiting))
         else:
             for event in node.answer(pending):
                 now += 1
                 script.append({"at": now, "event": event})
-                procedure.event(now, event)
+                procedure.event(now, event_of(event))
         pending = procedure.next(now)
     return script
 
 
-def _clients_without_settings(facts: Facts) -> Requests:
+def _clients_without_settings(link: AnyLink, facts: Facts) -> Requests:
     frame = next(iter(facts.telemetry.values()), None)
     if frame is None:
         return
@@ -135,17 +147,19 @@ def _clients_without_settings(facts: Facts) -> Requests:
             yield f"{I2C}: not processed {why}", {
                 "op": "client",
                 "bus": I2C,
-                "script": list(_polls(facts, sent, early)),
+                "script": list(_polls(link, facts, sent, early)),
             }
 
 
-def _polls(facts: Facts, sent: Message, early: int) -> Iterator[dict[str, Any]]:
+def _polls(
+    link: AnyLink, facts: Facts, sent: Message, early: int
+) -> Iterator[dict[str, Any]]:
     """Yield a telecommand that is not processed within its time limit."""
     assert facts.polled
     data = Step(facts.polled.message, {"id": facts.polled.id}).frame(
         facts.node, {"id": sent.telecommand_id or 0}
     )
-    state = i2c.telecommand(facts, facts.polled.message.telemetry_id or 0, data, False)[
+    state = i2c_write(link, facts.polled.message.telemetry_id or 0, data, False)[
         1:
     ].hex()
     yield {

@@ -34,8 +34,8 @@ def i2c_read_length(link: Link, id: int, crc: bool = False) -> int:
 
     Raise `UnknownIdError` and `UnsupportedError`.
     """
-    extra = need(link.checksum, "crc8").bytes if crc else 0
-    return _length(link, id) + extra
+    length = _length(link, id)
+    return length + (need(link.checksum, "crc8").bytes if crc else 0)
 
 
 def i2c_reply(link: Link, id: int, data: bytes, crc: bool = False) -> bytes:

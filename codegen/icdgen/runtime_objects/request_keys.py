@@ -5,17 +5,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from icdgen.protocol.errors import Refused
+from icdgen.runtime_objects.refusals import Refusal
 
 Request = dict[str, Any]
-
-
-class Refusal(Refused):
-    """Refusal of a request with an error code."""
-
-    def __init__(self, error: str, **more: object) -> None:
-        self.error = error
-        super().__init__(**more)
 
 
 def number(
