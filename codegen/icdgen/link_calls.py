@@ -335,7 +335,6 @@ def _packet(packet: PacketFormat) -> Call:
     parts: dict[str, object] = {
         "header_bytes": packet.header_bytes,
         "trailer_bytes": packet.trailer_bytes,
-        "length_plus": packet.length_plus,
         "fields": tuple(map(_envelope_field, packet.fields)),
     }
     if packet.check:
@@ -358,9 +357,10 @@ def _packet(packet: PacketFormat) -> Call:
 
 def _envelope_field(field: EnvelopeField) -> Call:
     parts = _members(field)
-    if not field.id_shift:
-        del parts["id_shift"]
-    return _row("EnvelopeField", *parts.values())
+    defaults = {"id_shift": 0, "unit": 1, "plus": 0}
+    own = {name: parts.pop(name) for name in defaults}
+    more = {name: value for name, value in own.items() if value != defaults[name]}
+    return _row("EnvelopeField", *parts.values(), **more)
 
 
 def _stream_rows(

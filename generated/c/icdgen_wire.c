@@ -519,6 +519,18 @@ static inline uint32_t icdgen_envelope_id(
     return id;
 }
 
+/* Return the number of data bytes that a length field says. */
+static inline int64_t icdgen_envelope_bytes(const icd_envelope_field_t *field, uint32_t value)
+{
+    return (ICDGEN_I64(value) * ICDGEN_I64(field->values[1])) - ICDGEN_I64(ICDGEN_I32(field->values[0]));
+}
+
+/* Return the value of a length field for a number of data bytes. */
+static inline uint32_t icdgen_envelope_counted(const icd_envelope_field_t *field, size_t length)
+{
+    return (ICDGEN_U32(length) + field->values[0]) / field->values[1];
+}
+
 static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
 {
     uint32_t rest = value << field->shift;
@@ -758,7 +770,7 @@ static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, 
 static inline bool icdgen_envelope_fill(
     const icd_packet_form_t *packet,
     icd_direction_t direction,
-    uint32_t id,
+    const icd_stream_row_t *row,
     size_t length,
     const icd_envelope_values_t *values,
     uint8_t *header,
@@ -771,9 +783,11 @@ static inline bool icdgen_envelope_fill(
             continue;
         }
         if (field->role == ICD_ENVELOPE_ID) {
-            value = (id >> value) & icdgen_envelope_mask(field);
+            value = (row->id >> value) & icdgen_envelope_mask(field);
         } else if (field->role == ICD_ENVELOPE_LENGTH) {
-            value = ICDGEN_U32(ICDGEN_I64(length) + packet->length_plus);
+            value = icdgen_envelope_counted(field, length);
+        } else if (field->role == ICD_ENVELOPE_RESPONSE_LENGTH) {
+            value = icdgen_envelope_counted(field, row->most);
         } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
@@ -860,7 +874,7 @@ static inline icd_status_t icdgen_outgoing_encode(
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
     uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (!icdgen_envelope_fill(packet, outgoing->direction, row->id, length, values, header, trailer)) {
+    if (!icdgen_envelope_fill(packet, outgoing->direction, row, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
     const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);
@@ -1052,6 +1066,20 @@ typedef struct {
     size_t most;
 } icdgen_incoming_t;
 
+/* Set the bounds of a packet that contains telemetry without its id: those of all such telemetry. */
+static inline void icdgen_incoming_bounds(const icd_stream_form_t *form, size_t packet, icdgen_incoming_t *incoming)
+{
+    incoming->least = SIZE_MAX;
+    incoming->most = 0;
+    for (size_t i = 0; i < form->row_counts[ICD_TELEMETRY]; ++i) {
+        const icd_stream_row_t *const row = &form->rows[ICD_TELEMETRY][i];
+        if (row->packet == packet) {
+            incoming->least = row->least < incoming->least ? row->least : incoming->least;
+            incoming->most = row->most > incoming->most ? row->most : incoming->most;
+        }
+    }
+}
+
 /* Return what a packet with this id contains. */
 static inline icdgen_incoming_t icdgen_incoming(
     const icd_stream_decoder_t *decoder, const icd_packet_form_t *packet, uint32_t id)
@@ -1060,6 +1088,10 @@ static inline icdgen_incoming_t icdgen_incoming(
     const size_t index = ICDGEN_SIZE(packet - form->packets);
     icdgen_incoming_t incoming = {ICD_STREAM_PACKET, NULL, packet->reserved, packet->reserved};
     if (packet->content == ICD_PACKET_NOTHING) {
+        return incoming;
+    }
+    if (packet->content == ICD_PACKET_REQUESTED) {
+        icdgen_incoming_bounds(form, index, &incoming);
         return incoming;
     }
     const icd_stream_row_t *row = icdgen_stream_row(form, decoder->direction, id);
@@ -1185,9 +1217,10 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
     const icd_envelope_field_t *sequence = NULL;
-    int64_t stated = ICDGEN_I64(length);
+    int64_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
     uint32_t sum = 0;
     bool is_framed = true;
+    bool is_long = true; /* whether each length is right */
     icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
@@ -1201,7 +1234,10 @@ static inline icdgen_verdict_t icdgen_stream_judge(
             event.id |= value << field->values[0];
             break;
         case ICD_ENVELOPE_LENGTH:
-            stated = ICDGEN_I64(value) - packet->length_plus;
+            is_long = is_long && icdgen_envelope_bytes(field, value) == ICDGEN_I64(length);
+            break;
+        case ICD_ENVELOPE_RESPONSE_LENGTH:
+            wanted = icdgen_envelope_bytes(field, value);
             break;
         case ICD_ENVELOPE_CHECKSUM:
             sum = value;
@@ -1220,7 +1256,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
             break;
         }
     }
-    if (!is_framed || stated != ICDGEN_I64(length)) {
+    if (!is_framed || !is_long) {
         icdgen_stream_tell(listener, is_framed ? ICD_STREAM_LENGTH : ICD_STREAM_FRAMING);
         return ICDGEN_DOUBTFUL;
     }
@@ -1238,7 +1274,8 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         }
     }
     if (verdict == ICDGEN_PROVEN && event.kind != ICD_STREAM_UNKNOWN_ID &&
-        (length < incoming.least || length > incoming.most)) {
+        (length < incoming.least || length > incoming.most ||
+         (incoming.kind == ICD_STREAM_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
         event.kind = ICD_STREAM_LENGTH;
     }
     if (event.kind != incoming.kind || event.kind == ICD_STREAM_UNKNOWN_ID) {
@@ -1286,7 +1323,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     const icd_envelope_field_t *const field = icdgen_envelope_field(packet, ICD_ENVELOPE_LENGTH);
     int64_t length;
     if (field != NULL) {
-        length = ICDGEN_I64(icdgen_envelope_get(field, frame)) - packet->length_plus;
+        length = icdgen_envelope_bytes(field, icdgen_envelope_get(field, frame));
     } else {
         const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);
@@ -3069,9 +3106,19 @@ static inline bool icdgen_differs_in_echo(
     return false;
 }
 
+/* Return the expected telemetry, if it comes in a packet without its id; otherwise NULL. */
+static inline const icd_stream_row_t *icdgen_nameless(const icd_stream_awaited_t *awaited)
+{
+    const icd_stream_row_t *const row = awaited->reply;
+    return row != NULL && (row->flags & ICD_STREAM_NAMELESS) != 0u ? row : NULL;
+}
+
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_stream_awaited_t *b)
 {
+    if (icdgen_nameless(a) != NULL && icdgen_nameless(b) != NULL) {
+        return true;
+    }
     size_t position_a = 0;
     const icd_response_t *of_a = icdgen_next_response(a, &position_a);
     while (of_a != NULL) {
@@ -3562,11 +3609,60 @@ static inline bool icdgen_stream_confirms(const icd_stream_form_t *form, uint32_
     return false;
 }
 
-static inline void icdgen_stream_on_event(void *context, const icd_stream_event_t *event)
+/* Return whether data can be requested telemetry that comes without its id. Otherwise, keep it in `other`. */
+static inline bool icdgen_names(
+    const icd_stream_awaited_t *awaited, size_t length, const icd_stream_row_t **row, const icd_stream_row_t **other)
+{
+    *row = icdgen_nameless(awaited);
+    const bool fits = *row != NULL && length >= (*row)->least && length <= (*row)->most;
+    *other = *other == NULL ? *row : *other;
+    return fits;
+}
+
+/*
+ * A packet contains telemetry without its id: let the event be this telemetry, if it can be the response to a request.
+ * If it has the length of none, it is ICD_STREAM_LENGTH; if no response is awaited, it stays the packet.
+ */
+static inline void icdgen_stream_identify(const icd_stream_client_t *client, icd_stream_event_t *event)
+{
+    const icd_packet_form_t *const packet = &client->sender.link->stream->packets[event->packet];
+    const size_t length = event->length - icdgen_packet_around(packet);
+    const icd_stream_row_t *row = NULL;
+    const icd_stream_row_t *other = NULL;
+    bool fits = false;
+    for (size_t i = 0; !fits && i < client->started; ++i) {
+        const icd_stream_slot_t *const slot = &client->slots[i];
+        if (slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited)) {
+            fits = icdgen_names(&slot->awaited, length, &row, &other);
+        }
+    }
+    for (size_t i = 0; !fits && i < client->late_count; ++i) {
+        fits = icdgen_names(&client->late[i], length, &row, &other);
+    }
+    if (fits) {
+        event->kind = ICD_STREAM_MESSAGE;
+        event->is_packet = false;
+        event->id = row->id;
+        event->data += packet->header_bytes;
+        event->length = length;
+    } else if (other != NULL) {
+        *event = icdgen_stream_event(ICD_STREAM_LENGTH);
+        event->has_id = true;
+        event->id = other->id;
+    } else {
+        /* the packet itself */
+    }
+}
+
+static inline void icdgen_stream_on_event(void *context, const icd_stream_event_t *found)
 {
     const icdgen_stream_call_t *const call = ICDGEN_CAST(const icdgen_stream_call_t *, context);
     icd_stream_client_t *const client = call->client;
-    icd_stream_event_t reported = *event;
+    icd_stream_event_t reported = *found;
+    const icd_stream_event_t *const event = &reported;
+    if (found->is_packet && client->sender.link->stream->packets[found->packet].content == ICD_PACKET_REQUESTED) {
+        icdgen_stream_identify(client, &reported);
+    }
     reported.link = client->sender.link;
     reported.direction = ICD_TELEMETRY;
     if (event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_PACKET) {

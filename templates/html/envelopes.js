@@ -78,14 +78,19 @@ const icdgenEnvelopes = ((frames) => {
     return form.packets.flatMap((packet, number) => {
       if (!packet.directions.includes(direction)) return [];
       const requested = direction === "telecommand" && form.request?.packet === number ? form.request.ids : [];
-      const rows = byId(form[direction].filter((row) => row[4] === number));
+      const own = form[direction].filter((row) => row[4] === number);
+      const tellsMessage = ["message", "request"].includes(packet.content);
+      const rows = byId(tellsMessage ? own : []);
+      const sizes = packet.content === "requested" ? own.flatMap(([, least, most]) => [least, most]) : [packet.reserved];
       return {
         ...packet,
         number,
         rows,
         requested: byId(form.telemetry.filter(([id]) => requested.includes(id))),
         constants: packet.fields.filter(({ role }) => role === "constant").map((field) => ({ field, value: field.values[sideOf(direction)] })),
-        length: fieldOf(packet, "length"),
+        lengths: packet.fields.filter(({ role }) => role === "length"),
+        tellsMessage,
+        sizes: [Math.min(...sizes), Math.max(...sizes)],
         only: rows.size ? Math.min(...rows.keys()) : 0,
       };
     });
@@ -99,7 +104,16 @@ const icdgenEnvelopes = ((frames) => {
   /** The smallest and the largest number of data bytes of a packet with the message of `row`, or without a message. */
   function boundsOf(form, packet, row) {
     if (isRequested(packet, row)) return [packet.reserved, packet.reserved];
-    return row ? [row[1], row[2]] : [packet.reserved, packet.reserved];
+    return row ? [row[1], row[2]] : packet.sizes;
+  }
+
+  /** The bytes of data that a value of a length says. */
+  const bytesSaid = (field, value) => value * (field.unit ?? 1) - (field.plus ?? 0);
+
+  /** Whether the request of a message says its length, if it says one. */
+  function awaits(packet, row, read) {
+    const field = isRequested(packet, row) && fieldOf(packet, "response_length");
+    return !field || bytesSaid(field, read(field)) === row[2];
   }
 
   /** Whether a constant of the header, as far as it came, differs; `left` bytes came. */
@@ -119,9 +133,9 @@ const icdgenEnvelopes = ((frames) => {
     const read = (field) => get(packet, field, frame, frame.length);
     if (count < 0) return { event: "length", is: "doubtful" };
     if (!fits(packet, frame)) return { event: "framing", is: "doubtful" };
-    if (packet.length && read(packet.length) - packet.plus !== count) return { event: "length", is: "doubtful" };
+    if (packet.lengths.some((field) => bytesSaid(field, read(field)) !== count)) return { event: "length", is: "doubtful" };
     const given = idOf(packet, frame, frame.length);
-    const [id, row, needsRow] = [given ?? packet.only, rowOf(packet, given), packet.content !== "none"];
+    const [id, row, needsRow] = [given ?? packet.only, rowOf(packet, given), packet.tellsMessage];
     const sent = fieldOf(packet, "checksum");
     if (sent && packet.check) {
       if (packet.check.seeded && !row && needsRow) return { event: "unknown_id", id, is: "doubtful" };
@@ -129,10 +143,11 @@ const icdgenEnvelopes = ((frames) => {
     }
     if (!row && needsRow) return { event: "unknown_id", id, is: "proven" };
     const [least, most] = boundsOf(form, packet, row);
-    if (count < least || count > most) return { event: "length", id, is: "proven" };
+    if (count < least || count > most || !awaits(packet, row, read)) return { event: "length", id, is: "proven" };
     const values = Object.fromEntries(packet.fields.filter((field) => form.given.includes(field.role)).map((field) => [field.role, read(field)]));
     const event = !row ? "packet" : isRequested(packet, row) ? "request" : "message";
-    const data = frame.slice(packet.header, event === "message" ? packet.header + count : packet.header);
+    const hasData = event === "message" || packet.content === "requested";
+    const data = frame.slice(packet.header, hasData ? packet.header + count : packet.header);
     return { event, id, data, values, is: "message", packet: packet.number };
   }
 
@@ -200,8 +215,10 @@ const icdgenEnvelopes = ((frames) => {
 
   /** Bytes of the data behind a header: of its length field, else those of the message; undefined for the id of no message. */
   function dataOf(form, packet, front) {
-    if (packet.length) return get(packet, packet.length, front, 0) - packet.plus;
-    if (packet.content !== "message") return packet.reserved;
+    const [length] = packet.lengths;
+    if (length) return bytesSaid(length, get(packet, length, front, 0));
+    if (!packet.tellsMessage) return packet.sizes[1];
+    if (packet.content === "request") return packet.reserved;
     const row = rowOf(packet, idOf(packet, front, 0));
     return row && boundsOf(form, packet, row)[1];
   }
@@ -331,7 +348,7 @@ const icdgenEnvelopes = ((frames) => {
 
   /** Bytes of the packet as its header says; undefined if it does not, or has not come. */
   function sizeOf(form, packet, bytes) {
-    if (bytes.length < packet.header || (!packet.length && form.delimited_by !== "length")) return undefined;
+    if (bytes.length < packet.header || (!packet.lengths.length && form.delimited_by !== "length")) return undefined;
     const data = dataOf(form, packet, bytes);
     return data === undefined ? undefined : packet.header + data + packet.trailer;
   }
@@ -368,7 +385,7 @@ const icdgenEnvelopes = ((frames) => {
     const id = parts.length && parts.every(hasCome) ? idOf(packet, bytes, bytes.length) : undefined;
     const row = parts.length && id === undefined ? undefined : rowOf(packet, id);
     const names = row ? namesOf(isRequested(packet, row) ? "telemetry" : direction, row[0]) : [];
-    let told = packet.content === "none" ? `packet ${packet.name} of ${title}` : `packet of ${title}`;
+    let told = !packet.tellsMessage ? `packet ${packet.name} of ${title}` : `packet of ${title}`;
     if (names.length) {
       const which = `(${isRequested(packet, row) ? "telemetry" : direction} ${idText(form, row[0])})`;
       told += `, ${isRequested(packet, row) ? "request of " : ""}${names.join(" or ")} ${which}`;
@@ -378,11 +395,11 @@ const icdgenEnvelopes = ((frames) => {
     const fault = (rank, text, isCertain = false) => ({ rank: bits + (row ? 100 : 0) + rank, text: `a ${told} ${text}`, isOfMessage: Boolean(row), isCertain });
     if (data < 0 || needed > form.longest) return fault(0, `says that it has ${count(needed)}; packets have up to ${form.longest}`);
     const [least, most] = boundsOf(form, packet, row);
-    const isCertain = Boolean(row) && (packet.length && data !== undefined ? least <= data && data <= most : isDelimitedAhead(form));
-    const isNone = packet.content !== "none" && !row && (id !== undefined || !parts.length);
+    const isCertain = Boolean(row) && (packet.lengths.length && data !== undefined ? least <= data && data <= most : isDelimitedAhead(form));
+    const isNone = packet.tellsMessage && !row && (id !== undefined || !parts.length);
     const whole = { row, needed, isCertain, fault, namesOf, id, isNone };
     // Without a length field, only the message of the id says where the packet ends.
-    if (form.delimited_by === "length" && !packet.length && isNone) return noMessage(form, direction, packet, bytes, whole);
+    if (form.delimited_by === "length" && !packet.lengths.length && isNone) return noMessage(form, direction, packet, bytes, whole);
     if (!isWhole || needed > bytes.length) {
       let wanted = needed === undefined ? `its header has ${packet.header}` : `${needed} are needed`;
       if (needed === undefined && bytes.length >= packet.header && ENDS[form.delimited_by]) {
@@ -403,7 +420,7 @@ const icdgenEnvelopes = ((frames) => {
     const end = packet.constants.find(({ field, value }) => field.in_trailer && read(field) !== value);
     if (end) return fault(0, `ends with ${valueText(end.field, read(end.field))}, expected ${valueText(end.field, end.value)}`);
     const place = fieldOf(packet, "checksum");
-    if (place && packet.check && (row || !packet.check.seeded || packet.content === "none")) {
+    if (place && packet.check && (row || !packet.check.seeded || !packet.tellsMessage)) {
       const right = checksum(packet, row, bytes);
       if (read(place) !== right) return fault(200, `has a wrong checksum: it is ${valueText(place, read(place))}, expected ${valueText(place, right)}`, isCertain);
     }
@@ -413,6 +430,7 @@ const icdgenEnvelopes = ((frames) => {
     if (size < least || size > most) {
       return fault(300, `has ${count(size)} of data, the ICD says ${least === most ? least : `${least} to ${most}`}`, true);
     }
+    if (!awaits(packet, row, read)) return fault(300, `asks for another number of bytes than the ${row[2]} of the ICD`);
     return fault(300, "has data that are not those of the message, by length and constants");
   }
 
@@ -422,7 +440,7 @@ const icdgenEnvelopes = ((frames) => {
     const names = id !== undefined && form[other].some(([one]) => one === id) ? namesOf(other, id) : [];
     const none = names.length ? `no ${direction} with this id, but ${other} ${names.join(" or ")}` : "no message with this id";
     const size = bytes.length - packet.header - packet.trailer;
-    const data = size < 0 || (form.delimited_by === "length" && !packet.length) ? "" : `and ${count(size)} of data `;
+    const data = size < 0 || (form.delimited_by === "length" && !packet.lengths.length) ? "" : `and ${count(size)} of data `;
     return fault(300, `${data}is no message: it has ${none}`);
   }
 

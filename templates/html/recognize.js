@@ -76,7 +76,12 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     // Packets of the other direction at other places are no alternatives.
     const placesOf = (one) => JSON.stringify(one.read.map(({ span }) => span));
     const best = likeliest.filter((one) => one.speaker !== likeliest[0].speaker || placesOf(one) === placesOf(likeliest[0]));
-    const chosen = Array.from({ length: most }, (_, at) => [best[0].read[at].span, decided(best.map((one) => one.read[at]), "a frame in an envelope")]);
+    const requests = requestsOf(found);
+    const choose = (span, candidates) => decided(asked(requests, span, candidates), "a frame in an envelope");
+    const chosen = Array.from({ length: most }, (_, at) => {
+      const { span } = best[0].read[at];
+      return [span, choose(span, best.flatMap((one) => one.read[at].candidates))];
+    });
     let lost = least;
     const taken = new Uint8Array(data.length);
     const mark = ([at, end]) => taken.fill(1, at, end);
@@ -87,13 +92,26 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
       for (const one of other.read) {
         if (!isFree(...one.span)) continue;
         mark(one.span);
-        chosen.push([one.span, one]);
+        chosen.push([one.span, choose(one.span, one.candidates)]);
         lost -= one.span[1] - one.span[0];
       }
     }
     const left = leftOut(heard.filter(({ speaker }) => speaker === best[0].speaker), isFree);
     const [first, ...others] = chosen.sort(([a], [b]) => a[0] - b[0]).map(([, one]) => one);
     return [noted(without(first, ...left), ...envelopes.around(lost)), ...others];
+  }
+
+  /** `[at, reading]` of the requests of telemetry, in order. */
+  function requestsOf(heard) {
+    const read = heard.flatMap((one) => one.read).flatMap(({ span, candidates }) => candidates.map((one) => [span[0], one]));
+    return read.filter(([, { what }]) => what === "request").sort(([a], [b]) => a - b);
+  }
+
+  /** Of the messages that a packet can be those that the last request before it requests; all if it requests none of them. */
+  function asked(requests, [begin], candidates) {
+    const [, last] = requests.filter(([at]) => at < begin).at(-1) ?? [];
+    const fitting = candidates.filter((one) => last && one.node === last.node && one.message === last.message);
+    return fitting.length ? fitting : candidates;
   }
 
   /** Packets beside those that were read, each as the direction explains it whose header fits best. */
@@ -125,9 +143,9 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
     const [read, faults] = [[], []];
     let lost = unused;
     for (const one of events) {
-      const found = one.is === "message" ? readingOf(index, speaker, what, one) : null;
-      if (found) {
-        read.push({ ...found, span: [one.at, one.end] });
+      const candidates = one.is === "message" ? readingsOf(index, speaker, what, one) : [];
+      if (candidates.length) {
+        read.push({ candidates, span: [one.at, one.end] });
         continue;
       }
       if (one.is === "message") lost += one.end - one.at;
@@ -137,6 +155,15 @@ const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
       if (fault && (fault.isOfMessage || envelopes.hasSync(speaker.stream, what))) faults.push({ ...fault, at: one.at, end: one.end });
     }
     return { speaker, lost, read, faults };
+  }
+
+  /** The readings of a packet of a link: none, one or, if only the request tells which telemetry it carries, several. */
+  function readingsOf(index, speaker, what, event) {
+    const { content, name } = speaker.stream.packets[event.packet];
+    if (content !== "requested") return [readingOf(index, speaker, what, event)].filter(Boolean);
+    const rows = speaker.stream.telemetry.filter(([, least, most, , packet]) => packet === event.packet && least <= event.data.length && event.data.length <= most);
+    const found = rows.map(([id]) => readingOf(index, speaker, what, { ...event, event: "message", id })).filter(Boolean);
+    return found.map((one) => ({ ...one, id: null, remarks: [`packet ${name}`] }));
   }
 
   /** The reading of a packet of a link; null for a message whose data are not those of the ICD. */

@@ -200,7 +200,10 @@ class Script:
         self._echo(draft, exchange, response, started)
         if response.reason:
             place = wire_place(response.reason)
-            place.put(self.source.randrange(1, 1 << place.bits), draft)
+            number = self.source.randrange(1, 1 << place.bits)
+            if response.reasons and self.source.random() < 0.5:
+                number, _ = self.source.choice(response.reasons)
+            place.put(number, draft)
         return self.sample.packet(response.packet, bytes(draft))
 
     def _echo(

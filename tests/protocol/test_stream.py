@@ -35,8 +35,12 @@ STREAMS = sorted(
 def encoded(
     link: Link, draw: st.DrawFn, count: int = 3
 ) -> tuple[bytes, list[tuple[int, bytes]]]:
-    """Messages in a row, on the line and as they must come out."""
+    """Messages in a row, on the line and as they must come out.
+
+    A packet that does not tell its message comes out as a whole.
+    """
     line, sent = b"", []
+    plain = link._replace(stream=link.stream._replace(delimited_by="none"))
     for number in range(count):
         row = draw(st.sampled_from(link.stream.rows("telemetry")))
         data = draw(st.binary(min_size=row.most, max_size=row.most))
@@ -46,7 +50,11 @@ def encoded(
             else {}
         )
         line += stream_encode(link, row.id, data, "telemetry", **values)
-        sent.append((row.id, data))
+        if link.stream.packets[row.packet].tells_message:
+            sent.append((row.id, data))
+        else:
+            packet = stream_encode(plain, row.id, data, "telemetry", **values)
+            sent.append((0, packet))
     return line, sent
 
 

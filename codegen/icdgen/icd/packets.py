@@ -73,6 +73,8 @@ class Packets(NamedTuple):
     responding: frozenset[str]  # packets without a message, named by responses
     requesting: str | None  # packet by which telemetry is requested; None without
     requested_bytes: int = 0  # bytes of data of a request of telemetry
+    # Packet without id that carries the telemetry that was requested; None without
+    answering: str | None = None
 
     def number_of(self, name: object) -> int | None:
         """Return the number of a packet; None if there is no such packet."""
@@ -139,13 +141,18 @@ def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packe
             if isinstance(row, Mapping)
         ]
     requests = stream.get("requests")
-    requesting, requested_bytes = None, 0
+    requesting, requested_bytes, answering = None, 0, None
     if isinstance(requests, Mapping):
         requested_bytes = requests.get("reserved", 0)
         from_host = [each for each in packets if TELECOMMAND in each.directions]
         only = from_host[0].name if len(from_host) == 1 else None
         name = requests.get("packet", only)
         requesting = name if isinstance(name, str) else None
+        # Rule ICD186 reports another packet.
+        from_device = [each.name for each in packets if TELEMETRY in each.directions]
+        answering = next(
+            (each for each in from_device if each == requests.get("response")), None
+        )
     responses = _responses(stream, messages)
     named = [row.get("packet") for row in responses]  # may be no text
     # The other ones that responses name are mistakes, which rule ICD176 reports.
@@ -156,7 +163,9 @@ def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packe
         and packet.messages is None
         and TELEMETRY in packet.directions
     }
-    return Packets(tuple(packets), frozenset(responding), requesting, requested_bytes)
+    return Packets(
+        tuple(packets), frozenset(responding), requesting, requested_bytes, answering
+    )
 
 
 def _fields(rows: object) -> list[Section]:
@@ -217,7 +226,10 @@ def is_requested(
     if packet is None or id is None or not message.requested or id in unrequested:
         return False
     sent_in = packets.of(message.name, TELEMETRY)
-    has_id = any(each.of(ID_ROLE) for each in sent_in)
+    if packets.answering is None:
+        is_recognized = any(each.of(ID_ROLE) for each in sent_in)
+    else:
+        is_recognized = any(each.name == packets.answering for each in sent_in)
     # A telecommand in the same packet has the id for itself.
     is_free = packets.only_requests(packet) or id not in telecommand_ids
-    return has_id and is_free and bool(packet.of(ID_ROLE))
+    return is_recognized and is_free and bool(packet.of(ID_ROLE))

@@ -86,6 +86,18 @@ def reason_of(row: Section) -> str | None:
     return name
 
 
+def status_of(kind: str, row: Section) -> str | None:
+    """Return the field whose values distinguish the meanings of a response; None
+    without one.
+
+    That of a refusal is its reason, if some reasons mean that the device is busy.
+    """
+    if kind == NAK:
+        return reason_of(row) if BUSY in row else None
+    name: str | None = row.get("status")
+    return name
+
+
 def id_byte_of(node: Node, name: str) -> int | None:
     """Return which byte of an id ``id[0]`` is, counted from the most significant of 4
     bytes. Bytes of an id count as they are written. None if it is no such byte.

@@ -26,7 +26,7 @@ LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = (
 GIVEN = ("sequence", "source", "destination", "type", "flags", "time", "status", "reason")  # fmt: skip
 """Roles of fields whose values the sender chooses."""
 
-ROLES = ("constant", "id", "length", "checksum", *GIVEN)
+ROLES = ("constant", "id", "length", "response_length", "checksum", *GIVEN)
 """Roles as code knows them: a `sync` is a constant."""
 
 CRC, FLETCHER, FLETCHER_255, SUM, XOR = CHECKS = checksum.KINDS
@@ -54,6 +54,9 @@ class EnvelopeField:
     # Value of a constant, or default: in telecommands, in telemetry
     values: tuple[int, int]
     id_shift: int = 0  # bits of the id below those in this field
+    # Of a length: value * unit - plus are the bytes of the data
+    unit: int = 1
+    plus: int = 0
 
     @property
     def mask(self) -> int:
@@ -97,8 +100,15 @@ class StreamRow:
     is_requested: bool = False  # of telemetry: by the packet of `Stream.request`
 
 
-MESSAGE, REQUEST, NOTHING = CONTENTS = ("message", "request", "none")
-"""Content of a packet: a message, a request of telemetry, no message."""
+MESSAGE, REQUEST, REQUESTED, NOTHING = CONTENTS = (
+    "message",
+    "request",
+    "requested",
+    "none",
+)
+"""Content of a packet: a message, a request of telemetry, the telemetry that was
+requested, which no field names, no message.
+"""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
@@ -110,7 +120,6 @@ class PacketFormat:
     content: str  # one of `CONTENTS`
     header_bytes: int
     trailer_bytes: int
-    length_plus: int  # value of the length field minus bytes of data
     reserved: int  # bytes of data without meaning, in packets without a message
     fields: tuple[EnvelopeField, ...]
     check: Check | None

@@ -25,6 +25,7 @@ from icdgen.protocol.envelope import (
     MESSAGE,
     NOTHING,
     REQUEST,
+    REQUESTED,
     ROLES,
     Check,
     EnvelopeField,
@@ -49,11 +50,12 @@ def bytes_of(bits: Iterable[tuple[int, int]]) -> int:
 
 
 def field_of(
-    node: Node, row: Section, in_trailer: bool, id_shift: int = 0
+    node: Node, row: Section, in_trailer: bool, id_shift: int = 0, overhead: int = 0
 ) -> EnvelopeField:
     """Return the field of a row of the header or trailer.
 
-    ``id_shift``: bits of the id below those in this field.
+    ``id_shift``: bits of the id below those in this field. ``overhead``: bytes of
+    header and trailer.
     """
     at, bits = row["at"], row["bits"]
     first, last = at // 8, (at + bits - 1) // 8
@@ -62,7 +64,11 @@ def field_of(
     shift = at % 8 if node.bit_order != "msb0" else (last + 1) * 8 - at - bits
     little = row.get("byte_order", node.byte_order) == "little"
     role = "constant" if row["role"] == "sync" else row["role"]
-    size = last - first + 1
+    size, unit = last - first + 1, row.get("unit", 1)
+    # `plus` is the device's own offset, for example CCSDS 133.0-B: bytes minus 1.
+    # `counts: message` includes header and trailer.
+    counts_all = row.get("counts", DATA) == "message"
+    plus = row.get("plus", 0) * unit + (overhead if counts_all else 0)
     return EnvelopeField(
         role,
         in_trailer,
@@ -73,6 +79,8 @@ def field_of(
         little,
         (value_of(row, TELECOMMAND, little), value_of(row, TELEMETRY, little)),
         id_shift,
+        unit,
+        plus,
     )
 
 
@@ -174,17 +182,16 @@ def packet_of(
     ]
     shifts = {id(row): shift for row, shift in id_shifts(packet.rows)}
     fields = tuple(
-        field_of(node, row, in_trailer, shifts.get(id(row), 0))
+        field_of(node, row, in_trailer, shifts.get(id(row), 0), sum(sizes))
         for in_trailer, rows in ((False, packet.header), (True, packet.trailer))
         for row in rows
     )
     assert all(field.role in ROLES for field in fields)
-    length = place_of(packet.rows, "length") or {}
-    # `counts: message` includes header and trailer in the length field.
-    counts_all = length.get("counts", DATA) == "message"
     content = MESSAGE
     if packet.name in packets.responding:
         content = NOTHING
+    elif packets.answering is not None and packet.name == packets.answering:
+        content = REQUESTED
     elif packets.only_requests(packet):
         content = REQUEST
     return PacketFormat(
@@ -193,8 +200,6 @@ def packet_of(
         content=content,
         header_bytes=sizes[0],
         trailer_bytes=sizes[1],
-        # `plus`: the device's own offset, for example CCSDS 133.0-B: bytes minus 1.
-        length_plus=length.get("plus", 0) + (sum(sizes) if counts_all else 0),
         reserved=packets.reserved_in(packet),
         fields=fields,
         check=check_of(packet, checksums),

@@ -29,6 +29,7 @@ from icdgen.icd.responses import (
     number_run,
     reason_of,
     responses_in,
+    status_of,
 )
 from icdgen.protocol.envelope import EnvelopeField, PacketFormat
 from icdgen.protocol.exchange import Echo, Exchange, NumberPlace, Response
@@ -172,7 +173,7 @@ def _exchange(
                 if source not in places:
                     places.append(source)
                 echoes.append(Echo(place, places.index(source)))
-        status = sources.number(row, row.get("status"))
+        status = sources.number(row, status_of(kind, row))
         reason = sources.number(row, reason_of(row))
         responses.append(
             Response(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Literal, NamedTuple
 
 from icdgen_runtime.wire.envelope import Direction, Exchange, Response, Stream
@@ -82,12 +83,16 @@ class _RecordingDecoder(StreamDecoder):
 
 @dataclass(frozen=True, slots=True)
 class DirectionResult:
-    """Messages and faults of one direction. ``lost`` is the number of unused bytes."""
+    """Messages and faults of one direction. ``lost`` is the number of unused bytes.
+
+    ``readings`` has, for each packet with a message, the messages that it can be:
+    several if only the request tells which one it is.
+    """
 
     endpoint: Endpoint
     direction: Direction
     lost: int
-    readings: list[Reading] = field(default_factory=list)
+    readings: list[list[Reading]] = field(default_factory=list)
     spans: list[Span] = field(default_factory=list)  # one per reading
     faults: list[tuple[Span, Fault]] = field(default_factory=list)
 
@@ -120,7 +125,9 @@ def readings(
             raise fault.error
         return []
     usable = [
-        result for result in usable if any(map(selection.fits, result.readings))
+        result
+        for result in usable
+        if any(map(selection.fits, chain.from_iterable(result.readings)))
     ] or usable
     least, fewer = min((result.lost, -len(result.readings)) for result in usable)
     best = [
@@ -134,11 +141,19 @@ def readings(
         for result in best
         if result.spans == best[0].spans or result.endpoint is not best[0].endpoint
     ]
+    requests = _requests(usable)
+
+    def decided(span: Span, candidates: list[Reading]) -> Reading:
+        before = [request for at, request in requests if at < span.at]
+        asked = [
+            each for each in candidates if before and _answers(each, before[-1])
+        ] or candidates
+        return match.most_likely(asked, "a frame in an envelope", selection)
+
     chosen = {}
     for at in range(-fewer):
-        readings = [result.readings[at] for result in best]
-        reading = match.most_likely(readings, "a frame in an envelope", selection)
-        chosen[best[0].spans[at]] = reading
+        readings = [each for result in best for each in result.readings[at]]
+        chosen[best[0].spans[at]] = decided(best[0].spans[at], readings)
     taken = bytearray(len(data))
     for span in chosen:
         span.mark(taken)
@@ -149,9 +164,9 @@ def readings(
         and any(result.endpoint is candidate.endpoint for candidate in best)
     ]
     for candidate in opposite:
-        for span, reading in zip(candidate.spans, candidate.readings, strict=True):
+        for span, readings in zip(candidate.spans, candidate.readings, strict=True):
             if span.is_free(taken):
-                chosen[span] = reading
+                chosen[span] = decided(span, readings)
                 span.mark(taken)
                 least -= span.end - span.at
     reports = _left_out(
@@ -244,7 +259,7 @@ def _decode_direction(
     decoder = _RecordingDecoder(endpoint, direction)
     events = decoder.feed(data)
     readings = {
-        number: _reading(endpoint, direction, event)
+        number: list(_candidates(endpoint, direction, event))
         for number, event in enumerate(events)
         if event.event in ("message", "request", "packet")
     }
@@ -252,7 +267,7 @@ def _decode_direction(
     unread = sum(
         decoder.packets[number][0].size
         for number, reading in readings.items()
-        if reading is None
+        if not reading
     )
     lost = decoder.discarded + decoder.pending + unread
     result = DirectionResult(endpoint, direction, lost)
@@ -261,7 +276,7 @@ def _decode_direction(
             continue
         span, packet = decoder.packets[number]
         reading = readings.get(number)
-        if reading is not None:
+        if reading:
             result.readings.append(reading)
             result.spans.append(span)
         elif fault := _fault(endpoint, direction, packet, event.event != "framing"):
@@ -287,12 +302,61 @@ def _fault(
     )
 
 
+def _answers(reading: Reading, request: Reading) -> bool:
+    """Return whether telemetry is what a request requests."""
+    is_of_node = reading.endpoint.node is request.endpoint.node
+    return is_of_node and reading.message is request.message
+
+
+def _requests(results: Sequence[DirectionResult]) -> list[tuple[int, Reading]]:
+    """Return where requests of telemetry begin, and what they request, in order."""
+    requests = [
+        (span.at, reading)
+        for result in results
+        for span, readings in zip(result.spans, result.readings, strict=True)
+        for reading in readings
+        if reading.what == REQUEST
+    ]
+    return sorted(requests, key=lambda request: request[0])
+
+
+def _candidates(
+    endpoint: Endpoint, direction: Direction, event: StreamEvent
+) -> Iterator[Reading]:
+    """Yield the messages that a packet can be: none, one or, if only the request tells
+    which telemetry it carries, several.
+    """
+    form = endpoint.link.stream
+    if form is None or event.packet is None:
+        reading = _reading(endpoint, direction, event)
+    elif form.packets[event.packet].content == "requested":
+        yield from _nameless(endpoint, form, event.packet, event)
+        return
+    else:
+        reading = _response(endpoint, event)
+    if reading:
+        yield reading
+
+
+def _nameless(
+    endpoint: Endpoint, form: Stream, number: int, event: StreamEvent
+) -> Iterator[Reading]:
+    """Yield the telemetry that can be in a packet without its id."""
+    packet = form.packets[number]
+    data = event.data[packet.header_bytes : len(event.data) - packet.trailer_bytes]
+    for row in form.telemetry:
+        if row.packet != number or not row.least <= len(data) <= row.most:
+            continue
+        named = event._replace(event="message", id=row.id, data=data)
+        reading = _reading(endpoint, "telemetry", named)
+        if reading:
+            yield replace(reading, id=None, remarks=(f"packet `{packet.name}`",))
+
+
 def _reading(
     endpoint: Endpoint, direction: Direction, event: StreamEvent
 ) -> Reading | None:
     """Return the message of an event; None if there is none."""
-    if event.event == "packet":
-        return _response(endpoint, event)
     if event.event == "request":
         return _request(endpoint, event)
     assert event.id is not None

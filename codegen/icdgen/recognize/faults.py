@@ -200,13 +200,13 @@ def _fault_in(
             is_of_message=row is not None,
         )
     least, most = received.bounds(row)
-    if received.length and needed is not None:
+    if received.lengths and needed is not None:
         is_certain = row is not None and least <= needed - form.overhead <= most
     else:
         is_certain = row is not None and delimiter in (SLIP, HDLC)
     # Without a length field, only the message of the id says where the packet ends.
-    is_unmeasured = delimiter == LENGTH and received.length is None
-    if is_unmeasured and row is None and form.content != "none":
+    is_unmeasured = delimiter == LENGTH and not received.lengths
+    if is_unmeasured and row is None and form.tells_message:
         if id is not None or not has_id:
             return _no_message(endpoint, direction, packet, title, id, rank, None)
     if not is_whole or (needed is not None and count < needed):
@@ -243,7 +243,7 @@ def _title(
     """Return what a packet is called in a report."""
     node, declared = endpoint.node.name, endpoint.facts.stream
     title = f"packet of {node}"
-    if received.form.content == "none":
+    if not received.form.tells_message:
         title = f"packet `{received.form.name}` of {node}"
     if row is None:
         return title + (
@@ -290,7 +290,7 @@ def _fault_of_whole(
             text = f"a {title} ends with {_bytes_text(field, value)}, expected {_bytes_text(field, expected)}"
             help = "bytes are missing, or too many, or damaged"
             return Fault(rank, text, help, count, count)
-    place, has_message = received.checksum, form.content != "none"
+    place, has_message = received.checksum, form.tells_message
     if (
         place
         and form.check
@@ -317,8 +317,14 @@ def _fault_of_whole(
             size,
             is_certain=True,
         )
-    if row is None:
+    if row is None and form.content == "none":
         return _unrelated_response(endpoint, received, packet, title, rank)
+    if row and not received.awaits(row, packet):
+        text = (
+            f"a {title} asks for another number of bytes than the {row.most} of the ICD"
+        )
+        help = "the ICD describes what is requested at once"
+        return Fault(rank + 300, text, help, size, size)
     text = (
         f"a {title} has data that do not match the length and constants of the message"
     )
@@ -418,7 +424,7 @@ def packet_size(stream: Stream, received: ReceivedPacket, packet: bytes) -> int 
     form = received.form
     if len(packet) < form.header_bytes:
         return None
-    if not received.length and stream.delimited_by != LENGTH:
+    if not received.lengths and stream.delimited_by != LENGTH:
         return None
     count = received.data_bytes(packet, len(packet))
     return None if count is None else form.overhead + count

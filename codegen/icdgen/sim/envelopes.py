@@ -120,7 +120,8 @@ class EnvelopeLine(DeviceLine):
                 self.computer.program.count(event.event)
                 cause = _CAUSES.get(event.event)
                 if cause is not None and event.id is not None:
-                    self._refuse(now, event.id, b"", cause)
+                    is_request = event.is_request
+                    self._refuse(now, event.id, b"", cause, is_request=is_request)
                 continue
             for _, received_data in self.faults.apply("telecommand", event.data):
                 if received_data == event.data or not self._is_checked:

@@ -159,6 +159,7 @@ def in_style(text: str, style: Style, origin: str) -> str:
             own = [child for child in own if _name(child) != "Error"]
         else:
             _renumber(own, style)
+            _lengthen(own, style)
         parts[key].value.children = emit.branch(more).children + own  # type: ignore[union-attr]
     if style.units:
         root.children.append(Child(Text("units", "units"), emit.branch(style.units)))
@@ -221,6 +222,26 @@ def _renumber(messages: list[Child], style: Style) -> None:
                 Text(free[0], str(free[0])) if free else entries[key].value
             )
             used.add((direction, _value(entries[key])))
+
+
+def _lengthen(messages: list[Child], style: Style) -> None:
+    """Add reserved bytes to messages that are no multiple of the unit of lengths."""
+    packets = declared_packets(style.protocol.get("stream", {})).all
+    units = (row.get("unit", 1) for packet in packets for row in packet.of("length"))
+    unit = max(units, default=1)
+    for message in messages:
+        children = _children(message)
+        (at,) = (
+            index
+            for index, child in enumerate(children)
+            if scalars.name(child.key) == "length"
+        )
+        length = _value(children[at])
+        reserved = -length % unit
+        if reserved:
+            total = length + reserved
+            children[at].value = Text(total, str(total))
+            children[at + 1 : at + 1] = emit.branch({"reserved": reserved}).children
 
 
 def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:

@@ -54,6 +54,18 @@ static inline uint32_t icdgen_envelope_id(
     return id;
 }
 
+/* Return the number of data bytes that a length field says. */
+static inline int64_t icdgen_envelope_bytes(const icd_envelope_field_t *field, uint32_t value)
+{
+    return (ICDGEN_I64(value) * ICDGEN_I64(field->values[1])) - ICDGEN_I64(ICDGEN_I32(field->values[0]));
+}
+
+/* Return the value of a length field for a number of data bytes. */
+static inline uint32_t icdgen_envelope_counted(const icd_envelope_field_t *field, size_t length)
+{
+    return (ICDGEN_U32(length) + field->values[0]) / field->values[1];
+}
+
 static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
 {
     uint32_t rest = value << field->shift;

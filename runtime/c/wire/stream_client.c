@@ -195,9 +195,19 @@ static inline bool icdgen_differs_in_echo(
     return false;
 }
 
+/* Return the expected telemetry, if it comes in a packet without its id; otherwise NULL. */
+static inline const icd_stream_row_t *icdgen_nameless(const icd_stream_awaited_t *awaited)
+{
+    const icd_stream_row_t *const row = awaited->reply;
+    return row != NULL && (row->flags & ICD_STREAM_NAMELESS) != 0u ? row : NULL;
+}
+
 /* Return whether a response to one request could be taken for a response to the other. */
 static inline bool icdgen_is_like(const icd_stream_awaited_t *a, const icd_stream_awaited_t *b)
 {
+    if (icdgen_nameless(a) != NULL && icdgen_nameless(b) != NULL) {
+        return true;
+    }
     size_t position_a = 0;
     const icd_response_t *of_a = icdgen_next_response(a, &position_a);
     while (of_a != NULL) {
@@ -688,11 +698,60 @@ static inline bool icdgen_stream_confirms(const icd_stream_form_t *form, uint32_
     return false;
 }
 
-static inline void icdgen_stream_on_event(void *context, const icd_stream_event_t *event)
+/* Return whether data can be requested telemetry that comes without its id. Otherwise, keep it in `other`. */
+static inline bool icdgen_names(
+    const icd_stream_awaited_t *awaited, size_t length, const icd_stream_row_t **row, const icd_stream_row_t **other)
+{
+    *row = icdgen_nameless(awaited);
+    const bool fits = *row != NULL && length >= (*row)->least && length <= (*row)->most;
+    *other = *other == NULL ? *row : *other;
+    return fits;
+}
+
+/*
+ * A packet contains telemetry without its id: let the event be this telemetry, if it can be the response to a request.
+ * If it has the length of none, it is ICD_STREAM_LENGTH; if no response is awaited, it stays the packet.
+ */
+static inline void icdgen_stream_identify(const icd_stream_client_t *client, icd_stream_event_t *event)
+{
+    const icd_packet_form_t *const packet = &client->sender.link->stream->packets[event->packet];
+    const size_t length = event->length - icdgen_packet_around(packet);
+    const icd_stream_row_t *row = NULL;
+    const icd_stream_row_t *other = NULL;
+    bool fits = false;
+    for (size_t i = 0; !fits && i < client->started; ++i) {
+        const icd_stream_slot_t *const slot = &client->slots[i];
+        if (slot->state == ICD_STREAM_SLOT_WAIT || icdgen_is_owed(&slot->awaited)) {
+            fits = icdgen_names(&slot->awaited, length, &row, &other);
+        }
+    }
+    for (size_t i = 0; !fits && i < client->late_count; ++i) {
+        fits = icdgen_names(&client->late[i], length, &row, &other);
+    }
+    if (fits) {
+        event->kind = ICD_STREAM_MESSAGE;
+        event->is_packet = false;
+        event->id = row->id;
+        event->data += packet->header_bytes;
+        event->length = length;
+    } else if (other != NULL) {
+        *event = icdgen_stream_event(ICD_STREAM_LENGTH);
+        event->has_id = true;
+        event->id = other->id;
+    } else {
+        /* the packet itself */
+    }
+}
+
+static inline void icdgen_stream_on_event(void *context, const icd_stream_event_t *found)
 {
     const icdgen_stream_call_t *const call = ICDGEN_CAST(const icdgen_stream_call_t *, context);
     icd_stream_client_t *const client = call->client;
-    icd_stream_event_t reported = *event;
+    icd_stream_event_t reported = *found;
+    const icd_stream_event_t *const event = &reported;
+    if (found->is_packet && client->sender.link->stream->packets[found->packet].content == ICD_PACKET_REQUESTED) {
+        icdgen_stream_identify(client, &reported);
+    }
     reported.link = client->sender.link;
     reported.direction = ICD_TELEMETRY;
     if (event->kind == ICD_STREAM_MESSAGE || event->kind == ICD_STREAM_PACKET) {

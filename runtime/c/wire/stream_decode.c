@@ -82,6 +82,20 @@ typedef struct {
     size_t most;
 } icdgen_incoming_t;
 
+/* Set the bounds of a packet that contains telemetry without its id: those of all such telemetry. */
+static inline void icdgen_incoming_bounds(const icd_stream_form_t *form, size_t packet, icdgen_incoming_t *incoming)
+{
+    incoming->least = SIZE_MAX;
+    incoming->most = 0;
+    for (size_t i = 0; i < form->row_counts[ICD_TELEMETRY]; ++i) {
+        const icd_stream_row_t *const row = &form->rows[ICD_TELEMETRY][i];
+        if (row->packet == packet) {
+            incoming->least = row->least < incoming->least ? row->least : incoming->least;
+            incoming->most = row->most > incoming->most ? row->most : incoming->most;
+        }
+    }
+}
+
 /* Return what a packet with this id contains. */
 static inline icdgen_incoming_t icdgen_incoming(
     const icd_stream_decoder_t *decoder, const icd_packet_form_t *packet, uint32_t id)
@@ -90,6 +104,10 @@ static inline icdgen_incoming_t icdgen_incoming(
     const size_t index = ICDGEN_SIZE(packet - form->packets);
     icdgen_incoming_t incoming = {ICD_STREAM_PACKET, NULL, packet->reserved, packet->reserved};
     if (packet->content == ICD_PACKET_NOTHING) {
+        return incoming;
+    }
+    if (packet->content == ICD_PACKET_REQUESTED) {
+        icdgen_incoming_bounds(form, index, &incoming);
         return incoming;
     }
     const icd_stream_row_t *row = icdgen_stream_row(form, decoder->direction, id);
@@ -215,9 +233,10 @@ static inline icdgen_verdict_t icdgen_stream_judge(
     const uint8_t *const data = frame + packet->header_bytes;
     const uint8_t *const trailer = data + length;
     const icd_envelope_field_t *sequence = NULL;
-    int64_t stated = ICDGEN_I64(length);
+    int64_t wanted = -1; /* number of bytes of the requested telemetry, if the request says it */
     uint32_t sum = 0;
     bool is_framed = true;
+    bool is_long = true; /* whether each length is right */
     icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
     event.id = packet->ids[decoder->direction];
     for (size_t i = 0; i < packet->field_count; ++i) {
@@ -231,7 +250,10 @@ static inline icdgen_verdict_t icdgen_stream_judge(
             event.id |= value << field->values[0];
             break;
         case ICD_ENVELOPE_LENGTH:
-            stated = ICDGEN_I64(value) - packet->length_plus;
+            is_long = is_long && icdgen_envelope_bytes(field, value) == ICDGEN_I64(length);
+            break;
+        case ICD_ENVELOPE_RESPONSE_LENGTH:
+            wanted = icdgen_envelope_bytes(field, value);
             break;
         case ICD_ENVELOPE_CHECKSUM:
             sum = value;
@@ -250,7 +272,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
             break;
         }
     }
-    if (!is_framed || stated != ICDGEN_I64(length)) {
+    if (!is_framed || !is_long) {
         icdgen_stream_tell(listener, is_framed ? ICD_STREAM_LENGTH : ICD_STREAM_FRAMING);
         return ICDGEN_DOUBTFUL;
     }
@@ -268,7 +290,8 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         }
     }
     if (verdict == ICDGEN_PROVEN && event.kind != ICD_STREAM_UNKNOWN_ID &&
-        (length < incoming.least || length > incoming.most)) {
+        (length < incoming.least || length > incoming.most ||
+         (incoming.kind == ICD_STREAM_REQUEST && wanted >= 0 && wanted != ICDGEN_I64(incoming.row->most)))) {
         event.kind = ICD_STREAM_LENGTH;
     }
     if (event.kind != incoming.kind || event.kind == ICD_STREAM_UNKNOWN_ID) {
@@ -316,7 +339,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     const icd_envelope_field_t *const field = icdgen_envelope_field(packet, ICD_ENVELOPE_LENGTH);
     int64_t length;
     if (field != NULL) {
-        length = ICDGEN_I64(icdgen_envelope_get(field, frame)) - packet->length_plus;
+        length = icdgen_envelope_bytes(field, icdgen_envelope_get(field, frame));
     } else {
         const uint32_t id = icdgen_envelope_id(packet, decoder->direction, frame);
         const icdgen_incoming_t incoming = icdgen_incoming(decoder, packet, id);

@@ -137,7 +137,7 @@ static inline bool icdgen_envelope_is_chosen(const icd_envelope_field_t *field, 
 static inline bool icdgen_envelope_fill(
     const icd_packet_form_t *packet,
     icd_direction_t direction,
-    uint32_t id,
+    const icd_stream_row_t *row,
     size_t length,
     const icd_envelope_values_t *values,
     uint8_t *header,
@@ -150,9 +150,11 @@ static inline bool icdgen_envelope_fill(
             continue;
         }
         if (field->role == ICD_ENVELOPE_ID) {
-            value = (id >> value) & icdgen_envelope_mask(field);
+            value = (row->id >> value) & icdgen_envelope_mask(field);
         } else if (field->role == ICD_ENVELOPE_LENGTH) {
-            value = ICDGEN_U32(ICDGEN_I64(length) + packet->length_plus);
+            value = icdgen_envelope_counted(field, length);
+        } else if (field->role == ICD_ENVELOPE_RESPONSE_LENGTH) {
+            value = icdgen_envelope_counted(field, row->most);
         } else if (field->role < ICD_ENVELOPE_CONSTANT && icdgen_envelope_is_chosen(field, values)) {
             value = values->of[field->role];
         } else {
@@ -239,7 +241,7 @@ static inline icd_status_t icdgen_outgoing_encode(
     const size_t length = cuts_zeros ? icdgen_without_zeros(data, outgoing->length) : outgoing->length;
     uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
     uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
-    if (!icdgen_envelope_fill(packet, outgoing->direction, row->id, length, values, header, trailer)) {
+    if (!icdgen_envelope_fill(packet, outgoing->direction, row, length, values, header, trailer)) {
         return ICD_ERROR_RANGE;
     }
     const icd_envelope_field_t *const check = icdgen_envelope_field(packet, ICD_ENVELOPE_CHECKSUM);

@@ -28,7 +28,8 @@ typedef enum {
     ICD_ENVELOPE_CONSTANT = 8,
     ICD_ENVELOPE_ID = 9,
     ICD_ENVELOPE_LENGTH = 10,
-    ICD_ENVELOPE_CHECKSUM = 11
+    ICD_ENVELOPE_CHECKSUM = 11,
+    ICD_ENVELOPE_RESPONSE_LENGTH = 12
 } icd_envelope_role_t;
 
 #define ICD_ENVELOPE_VALUES 8 /**< Number of roles whose values the sender chooses. */
@@ -45,7 +46,10 @@ typedef struct {
     uint8_t shift;
     uint8_t bits;
     bool little;
-    /** Constant or default value in telecommands and in telemetry; of a part of the id, the number of lower bits. */
+    /**
+     * Constant or default value in telecommands and in telemetry; of a part of the id, the number of lower bits; of a
+     * length, what is added to the number of data bytes, modulo 2^32, and the number of bytes that it counts as one.
+     */
     uint32_t values[2];
 } icd_envelope_field_t;
 
@@ -69,14 +73,14 @@ typedef struct {
 /** What the packets of a format contain. */
 typedef enum {
     ICD_PACKET_MESSAGE = 0,
-    ICD_PACKET_REQUEST = 1, /**< The id of telemetry that is requested, and reserved bytes. */
-    ICD_PACKET_NOTHING = 2  /**< No message, but reserved bytes; the packet itself is a response. */
+    ICD_PACKET_REQUEST = 1,  /**< The id of telemetry that is requested, and reserved bytes. */
+    ICD_PACKET_NOTHING = 2,  /**< No message, but reserved bytes; the packet itself is a response. */
+    ICD_PACKET_REQUESTED = 3 /**< Telemetry that was requested. Only the request has its id. */
 } icd_packet_content_t;
 
 /** A packet format: header, data and trailer. */
 typedef struct {
-    uint32_t ids[2];     /**< Without an id field: id of its only telecommand and telemetry; otherwise 0. */
-    int32_t length_plus; /**< Value of the length field minus the number of data bytes. */
+    uint32_t ids[2]; /**< Without an id field: id of its only telecommand and telemetry; otherwise 0. */
     const icd_envelope_field_t *fields;
     const icd_check_form_t *check;
     uint8_t field_count;
@@ -151,6 +155,7 @@ typedef struct {
 #define ICD_STREAM_REQUESTS                                                                                            \
     4u /**< Of a telecommand: it requests telemetry `requested` if it is sent as `least` zeros. */
 #define ICD_STREAM_REQUESTED 8u /**< Of telemetry: the packet of icd_telemetry_request_t requests it. */
+#define ICD_STREAM_NAMELESS 16u /**< Of telemetry: it comes in a packet (ICD_PACKET_REQUESTED) without its id. */
 
 /** A message: id, shortest and longest data length in bytes, flags, seed, and index of the packet format. */
 typedef struct {

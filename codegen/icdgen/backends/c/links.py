@@ -32,7 +32,6 @@ from icdgen.protocol.envelope import (
     DIRECTIONS,
     NOTHING,
     PACKET,
-    REQUEST,
     Stream,
 )
 from icdgen.protocol.exchange import Exchange, Response
@@ -455,7 +454,7 @@ class _Tables:
             self.array(
                 name,
                 "icd_stream_row_t",
-                [message_row(row, exchanges.get(row.exchange)) for row in rows],
+                [message_row(form, row, exchanges.get(row.exchange)) for row in rows],
             )
             for name, rows in directions
         ]
@@ -516,9 +515,7 @@ class _Tables:
         sizes = (
             f"{len(packet.fields)}u, {packet.header_bytes}u, {packet.trailer_bytes}u"
         )
-        content = {REQUEST: "REQUEST", NOTHING: "NOTHING"}.get(
-            packet.content, "MESSAGE"
-        )
+        content = "NOTHING" if packet.content == NOTHING else packet.content.upper()
         # Without an id field, a decoder takes the id of the only message from here.
         has_id = packet.of("id") is not None
         ids = ", ".join(
@@ -527,7 +524,7 @@ class _Tables:
         )
         sent = ", ".join(boolean(each in packet.directions) for each in DIRECTIONS)
         return Row(
-            f"{{{{{ids}}}, {packet.length_plus}, {fields}, {check}, {sizes}, "
+            f"{{{{{ids}}}, {fields}, {check}, {sizes}, "
             f"ICD_PACKET_{content}, {{{sent}}}, {packet.reserved}u}}",
             plain(packet.name),
         )

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from icdgen.backends.c.facts import Row, boolean
 from icdgen.backends.c.text import plain
-from icdgen.protocol.envelope import EnvelopeField, Stream, StreamRow
+from icdgen.protocol.envelope import (
+    REQUESTED,
+    WORD,
+    EnvelopeField,
+    Stream,
+    StreamRow,
+)
 from icdgen.protocol.exchange import NumberPlace
 
 
@@ -36,9 +42,11 @@ def stream_sizes(form: Stream) -> list[tuple[str, int, str]]:
 
 def field_row(field: EnvelopeField) -> Row:
     """Return the row of a field of packets."""
-    # An id has no values. Its row has the shift of the part instead.
-    has_values = field.role != "id"
-    pair = field.values if has_values else (field.id_shift, field.id_shift)
+    pair = field.values
+    if field.role == "id":
+        pair = field.id_shift, field.id_shift
+    elif field.role in ("length", "response_length"):
+        pair = field.plus & (1 << WORD) - 1, field.unit
     values = ", ".join(f"{value:#x}u" for value in pair)
     numbers = f"{field.at}u, {field.size}u, {field.shift}u, {field.bits}u, {boolean(field.little)}, {{{values}}}"
     return Row(
@@ -65,17 +73,20 @@ def verdict_name(verdict: str) -> str:
 
 def only_id(form: Stream, packet: int, direction: str) -> int:
     """Return the id of the only message of a packet, 0 without one."""
+    if form.packets[packet].content == REQUESTED:
+        return 0
     ids = (row.id for row in form.rows(direction) if row.packet == packet)
     return min(ids, default=0)
 
 
-def message_row(row: StreamRow, exchange: str | None) -> Row:
+def message_row(form: Stream, row: StreamRow, exchange: str | None) -> Row:
     """Return the row of a message in packets."""
     flags = {
         "CUTS_ZEROS": row.cuts_zeros,
         "REPEATS": row.repeats,
         "REQUESTS": row.requests is not None,
         "REQUESTED": row.is_requested,
+        "NAMELESS": form.packets[row.packet].content == REQUESTED,
     }
     values = (
         f"{row.id:#x}u, {row.least}u, {row.most}u",

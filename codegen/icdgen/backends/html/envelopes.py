@@ -24,8 +24,9 @@ from icdgen.protocol.envelope import (
     GIVEN,
     HDLC,
     LENGTH,
-    MESSAGE,
+    NOTHING,
     PACKET,
+    REQUEST,
     SLIP,
     Check,
     EnvelopeField,
@@ -51,6 +52,7 @@ _ROLES = {
     "constant": "is always the same",
     "id": "identifies the message",
     "length": "says how long it is",
+    "response_length": "says how long the requested telemetry is",
     "sequence": "counts messages",
     "source": "says who sends",
     "destination": "says whom it is for",
@@ -144,7 +146,6 @@ def _packet(packet: PacketFormat) -> dict[str, object]:
         "reserved": packet.reserved,
         "header": packet.header_bytes,
         "trailer": packet.trailer_bytes,
-        "plus": packet.length_plus,
         "fields": [_field(field) for field in packet.fields],
     }
     if packet.check:
@@ -153,8 +154,10 @@ def _packet(packet: PacketFormat) -> dict[str, object]:
 
 
 def _field(field: EnvelopeField) -> dict[str, object]:
-    shift = {"id_shift": field.id_shift} if field.id_shift else {}
-    return {**{name: getattr(field, name) for name in _FIELD_KEYS}, **shift}
+    defaults = {"id_shift": 0, "unit": 1, "plus": 0}
+    own = {name: getattr(field, name) for name in defaults}
+    more = {name: value for name, value in own.items() if value != defaults[name]}
+    return {**{name: getattr(field, name) for name in _FIELD_KEYS}, **more}
 
 
 def _check(check: Check) -> dict[str, object]:
@@ -212,7 +215,7 @@ def boxes(packet: Packet, form: PacketFormat) -> list[tuple[str, str, float, str
     the data.
     """
     data = [("data", "", 3.0, "")]
-    if form.content != MESSAGE:
+    if form.content in (REQUEST, NOTHING):
         size = count(form.reserved, "byte")
         data = [("reserved", size, 3.0, "")] if form.reserved else []
     return [*_boxes(packet.header), *data, *_boxes(packet.trailer)]
@@ -263,14 +266,22 @@ def _about(row: Section) -> str:
             if row.get("counts") == "message"
             else ": of the data"
         )
+        about += _unit(row)
         about += (
             f", {'+' if row['plus'] > 0 else '−'} {abs(row['plus'])}"
             if row.get("plus")
             else ""
         )
+    if row["role"] == "response_length":
+        about += _unit(row)
     if row["role"] == "sequence" and row.get("per") == "id":
         about += " of each id"
     return about + (f", {row['byte_order']} endian" if "byte_order" in row else "")
+
+
+def _unit(row: Section) -> str:
+    unit = row.get("unit", 1)
+    return f", in units of {unit} bytes" if unit > 1 else ""
 
 
 def _holds(row: Section) -> str:

@@ -11,7 +11,13 @@ from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.packets import BOTH, DEVICE, HOST, Packet, Packets, declared_packets
 from icdgen.icd.responses import declared_responses, responses_in
-from icdgen.protocol.envelope import NOTHING, REQUEST, PacketFormat, Stream
+from icdgen.protocol.envelope import (
+    NOTHING,
+    REQUEST,
+    REQUESTED,
+    PacketFormat,
+    Stream,
+)
 from icdgen.wording import count
 
 _SENDERS = {HOST: "host", DEVICE: "device", BOTH: "host and device"}
@@ -119,7 +125,9 @@ def _contents(
         if form.content != REQUEST and packet in _packets_of(packets, message)
     ]
     if carried:
-        contents.append(Content("Carries", "", carried))
+        is_nameless = form.content == REQUESTED
+        text = "the requested telemetry, without its id" if is_nameless else ""
+        contents.append(Content("Carries", text, carried))
     if packet.name == packets.requesting:
         ids = {row.id for row in stream.telemetry if row.is_requested}
         requested = [

@@ -67,6 +67,7 @@ class RequestRow(NamedTuple):
     """Requests of telemetry by a packet with its id."""
 
     packet: Place  # empty text if the link has one packet format
+    response: Place | None  # packet that carries the telemetry without its id
     messages: list[Place]
     rows: list[ResponseRow]
     timeout: str
@@ -120,10 +121,14 @@ def request_row(relations: Relations, node: Node) -> RequestRow | None:
     if stream is None or stream.request is None:
         return None
     section = relations.icd.protocol_of(node)["stream"]["requests"]
-    name = stream.packets[stream.request.packet].name
+    name, urls = stream.packets[stream.request.packet].name, packet_urls(
+        relations, node
+    )
+    response: str | None = section.get("response")
     ids = {row.id for row in stream.telemetry if row.is_requested}
     return RequestRow(
-        Place(name, packet_urls(relations, node)[name]),
+        Place(name, urls[name]),
+        Place(response, urls[response]) if response else None,
         [
             relations.place(message)
             for message in relations.icd.messages_of(node)
@@ -224,6 +229,9 @@ def _rows(
             f"{field} = {repeated}" for field, repeated in echoes_of(row).items()
         )
         about = f"{_ABOUT[kind]}, or refuses" if "status" in row else _ABOUT[kind]
+        can_be_busy = kind == NAK and BUSY in row
+        if can_be_busy:
+            about = f"{about}, or {_ABOUT[BUSY]}"
         rows.append(
             ResponseRow(
                 kind,
@@ -232,7 +240,7 @@ def _rows(
                 about,
                 echo,
                 _judges(kind, row),
-                "status" in row,
+                "status" in row or can_be_busy,
             )
         )
     return rows
@@ -253,6 +261,9 @@ def _judges(kind: str, row: Mapping[str, Any]) -> str:
             if key in row
         ]
         texts.append(f"{row['status']}: {'; '.join([*meanings, 'otherwise: refuses'])}")
+    if kind == NAK and BUSY in row:
+        names = ", ".join(map(str, row[BUSY]))
+        texts.append(f"{names}: {_ABOUT[BUSY]}")
     if "reason" in row:
         texts.append(f"reason in {row['reason']}")
     return "; ".join(texts)

@@ -138,10 +138,18 @@ def _on_framed_link(
             sent = f"packet {request.packet.text}: id of the telemetry"
         arrows = [
             Arrow(True, sent, waits, request.packet.url),
-            Arrow(False, "the telemetry"),
+            _telemetry_arrow(request),
             *_responses(request.rows, notes),
         ]
         yield Sequence("Framed link, telemetry", node.title, arrows, _remarks(arrows))
+
+
+def _telemetry_arrow(request: responses.RequestRow) -> Arrow:
+    """Return the arrow of the requested telemetry."""
+    if request.response is None:
+        return Arrow(False, "the telemetry")
+    text = f"packet {request.response.text}: the telemetry"
+    return Arrow(False, text, "", request.response.url)
 
 
 def _responses(

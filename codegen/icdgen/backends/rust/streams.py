@@ -79,7 +79,6 @@ def _packet(packet: PacketFormat, tables: Mapping[Brackets, str]) -> Brackets:
         part("from_device", spelled(device in packet.directions)),
         part("header_bytes", spelled(packet.header_bytes)),
         part("trailer_bytes", spelled(packet.trailer_bytes)),
-        part("length_plus", spelled(packet.length_plus)),
         part("fields", rows(map(_field, packet.fields))),
         part("check", some(_check(packet.check, tables) if packet.check else None)),
         part("content", f"link::Content::{content}"),

@@ -21,6 +21,7 @@ from icdgen.wording import count, listing, quote
 DIRECTIONS = (TELECOMMAND, TELEMETRY)
 PARTS = ("header", "trailer")
 FIXED = ("sync", "constant")
+DERIVED = ("id", "length", "response_length", "checksum")
 WORD = 32  # largest width of a field in bits
 MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # largest number of bytes that a field can be in
@@ -29,6 +30,7 @@ DATA = "data"
 ONLY_WITH = {
     "counts": ("length",),
     "plus": ("length",),
+    "unit": ("length", "response_length"),
     "per": ("sequence",),
     "checksum": ("checksum",),
     "enum": ("status", "reason"),
@@ -116,11 +118,13 @@ def links(ctx: Context) -> Iterator[Link]:
 
 def _is_sound(row: Map) -> bool:
     """Return whether the values of a field that these rules use conform to the schema."""
-    numbers: list[Any] = [row.get("at"), row.get("bits"), row.get("plus", 0)]
+    numbers: list[Any] = [row.get("at"), row.get("bits")]
+    numbers += [row.get("unit", 1), row.get("plus", 0)]
     if (
         not all(type(number) is int for number in numbers)
         or numbers[0] < 0
         or not 0 < numbers[1] <= WORD
+        or numbers[2] < 1
     ):
         return False
     texts = [
@@ -182,7 +186,7 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
             seen: set[str] = set()
             for _, row in packet.rows:
                 role = row["role"]
-                is_twice = role in seen and role not in (*FIXED, "id")
+                is_twice = role in seen and role not in (*FIXED, "id", "length")
                 if is_twice and id(row) not in reported:
                     reported.add(id(row))
                     message = f"there are two fields of the role `{role}`{packet.title}"
@@ -198,7 +202,7 @@ def roles_are_complete(ctx: Context) -> Iterator[Fault]:
                     f"a `{role}` has no `value`",
                     "add `value:`, what it always is",
                 )
-            if role in ("id", "length", "checksum") and "value" in row:
+            if role in DERIVED and "value" in row:
                 message = f"the {role} follows from the message, so it has no `value`"
                 yield Fault.at_key(
                     row,
@@ -222,8 +226,10 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
     for packet in link.packets:
         place = link.place(packet)
         lengths = packet.of("length")
-        for part, row in packet.rows:
-            if row["role"] == "length" and part == "trailer" and not is_delimited:
+        is_answering = packet.packet.name == link.declared.answering
+        parts = {part for part, row in packet.rows if row["role"] == "length"}
+        for _, row in packet.rows:
+            if row["role"] == "length" and parts == {"trailer"} and not is_delimited:
                 message = "the length that delimits messages is after their data"
                 yield Fault.at(row, "role", message, "move it to `header`")
         carried = {
@@ -235,26 +241,33 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             for direction in packet.packet.directions
         }
         for direction, messages in carried.items():
-            if len({id for id, _ in messages}) > 1 and not packet.of("id"):
+            is_many = len({id for id, _ in messages}) > 1
+            if is_many and not packet.of("id") and not is_answering:
                 message = f"no field{packet.title} has the role `id`, and there are several messages in one direction ({direction})"
                 help = "add one: the link has no other way to distinguish them"
                 yield Fault.at(*place, message, help)
                 break
         if lengths or is_delimited:
             continue
-        varying = next(
-            (
-                message
-                for messages in carried.values()
-                for _, message in messages
-                if message.layout.shortest != message.length or message.may_end_early
-            ),
-            None,
-        )
+        everything = [each for rows in carried.values() for _, each in rows]
+        varying = next((each for each in everything if not has_one_length(each)), None)
+        if is_answering and varying is None:
+            # No id says which of them it is.
+            lengths_of = {each.length for each in everything}
+            if len(lengths_of) > 1:
+                sizes = listing(f"{size}" for size in sorted(lengths_of))
+                message = f"no field{packet.title} has the role `length`, and the telemetry in it has {sizes} bytes"
+                help = "add one, or choose another value of `delimited_by`"
+                yield Fault.at(*place, message, help)
         if varying is not None:
             message = f"no field{packet.title} has the role `length`, and {quote(varying.name)} has no fixed length"
             help = "add one, or choose another value of `delimited_by`"
             yield Fault.at(*place, message, help)
+
+
+def has_one_length(message: Message) -> bool:
+    """Return whether a message is always sent with the same number of bytes."""
+    return message.layout.shortest == message.length and not message.may_end_early
 
 
 def ids_of(ctx: Context, node: Node, direction: str) -> list[tuple[int, Message]]:
@@ -357,9 +370,13 @@ def _lengths(
     row: Map, messages: list[tuple[int, Message]], overhead: int
 ) -> Iterator[Fault]:
     """Yield the faults of a length field that cannot represent the length of a message."""
-    plus = row.get("plus", 0) + (overhead if row.get("counts") == "message" else 0)
+    around = overhead if row.get("counts") == "message" else 0
+    unit, plus = row.get("unit", 1), row.get("plus", 0)
     for _, message in messages:
-        shortest, longest = message.layout.shortest + plus, message.length + plus
+        shortest, longest = (
+            (size + around) // unit + plus
+            for size in (message.layout.shortest, message.length)
+        )
         if longest >= 1 << row["bits"]:
             text = f"a length of {count(row['bits'], 'bit')} does not hold {longest}, that of {quote(message.name)}"
             help = "make the field wider, or the message shorter"

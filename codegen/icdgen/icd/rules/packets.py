@@ -6,22 +6,25 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from icdgen.icd.fault import Fault
-from icdgen.icd.located import Map, Seq
+from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
-from icdgen.icd.packets import HOST, is_requested, value_of
+from icdgen.icd.packets import DEVICE, HOST, Packet, is_requested, value_of
 from icdgen.icd.pieces import bits_of
-from icdgen.icd.rules.context import Context
+from icdgen.icd.responses import declared_responses
+from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.envelopes import (
     DIRECTIONS,
     FIXED,
     Link,
     LinkPacket,
+    has_one_length,
     ids_of,
     links,
 )
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.suggestions import suggestion
-from icdgen.wording import quote
+from icdgen.icd.trees import mappings
+from icdgen.wording import count, quote
 
 
 @rule("ICD184")
@@ -161,7 +164,7 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
         elif not packet.of("id"):
             text = "the packet has no field with the role `id`, so a request could not say what it requests"
             yield Fault.at_key(owner, key, text, "add one, or name another packet")
-        else:
+        elif "response" not in requests:  # otherwise ICD187
             ids = [id for id, _ in ids_of(ctx, link.node, TELECOMMAND)]
             if telemetry and not any(
                 is_requested(link.declared, message, ids, ())
@@ -170,3 +173,144 @@ def telemetry_can_be_requested(ctx: Context) -> Iterator[Fault]:
                 text = "no telemetry can be requested: its packets have no id, or telecommands have the same ids"
                 help = "remove `requests`, or correct the packets"
                 yield Fault.at_key(link.section, "requests", text, help)
+
+
+@rule("ICD187")
+def requested_telemetry_is_recognized(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        requests = link.section.get("requests")
+        if not isinstance(requests, Map) or not isinstance(
+            requests.get("response"), str
+        ):
+            continue
+        name = requests["response"]
+        packet = link.declared.by_name(name)
+        if packet is None:
+            names = [each.name for each in link.declared.all if each.name]
+            text = f"there is no packet {quote(name)}"
+            remedy = suggestion(name, names, "add it to `packets`")
+            yield Fault.at(requests, "response", text, *remedy)
+        elif TELEMETRY not in packet.directions:
+            text = f"the host sends the packet {quote(name)}, and a response comes from the device"
+            yield Fault.at(
+                requests, "response", text, f"name a packet `from: {DEVICE}`"
+            )
+        elif packet.of("id"):
+            text = f"the packet {quote(name)} has an id, which says what telemetry it carries"
+            yield Fault.at(requests, "response", text, "remove `response`")
+        elif name in link.declared.responding:
+            text = f"the packet {quote(name)} is a response without a message already"
+            help = "name another packet, which carries the telemetry"
+            yield Fault.at(requests, "response", text, help)
+        elif link.declared.by_name(link.declared.requesting) is not None:
+            yield from _nameless(ctx, link, requests, packet)
+
+
+def _nameless(
+    ctx: Context, link: Link, requests: Map, packet: Packet
+) -> Iterator[Fault]:
+    """Yield the faults of the telemetry in a packet that does not say what it carries."""
+    telecommands = ids_of(ctx, link.node, TELECOMMAND)
+    ids = [id for id, _ in telecommands]
+    commands = link.section.get("commands")
+    commands = commands if isinstance(commands, Map) else {}
+    responding = {
+        row["message"]: message
+        for _, message in telecommands
+        for row in declared_responses(commands, message).values()
+        if isinstance(row.get("message"), str)
+    }
+    where = f"is sent in the packet {quote(packet.name)}, which does not say what it carries"
+    carried = [
+        message
+        for _, message in ids_of(ctx, link.node, TELEMETRY)
+        if packet in link.declared.of(message.name, TELEMETRY)
+    ]
+    for message in carried:
+        if message.name in responding:
+            telecommand = quote(responding[message.name].name)
+            text = f"{quote(message.name)} responds to {telecommand} and {where}"
+            help = "list it in another packet, or let a packet respond"
+            yield Fault.at(message.source, "name", text, help)
+        elif not is_requested(link.declared, message, ids, ()):
+            text = f"{quote(message.name)} {where}, and cannot be requested"
+            help = "let it be requested, or list it in another packet"
+            yield Fault.at(message.source, "name", text, help)
+    if not carried:
+        text = f"no telemetry is sent in the packet {quote(packet.name)}"
+        help = "remove `response`, or correct the packets"
+        yield Fault.at(requests, "response", text, help)
+    checksums = section_of(link.node, "checksums") or unread()
+    for row in mappings(packet.of("checksum")):
+        declared = checksums.get(row.get("checksum", ""))
+        if isinstance(declared, Map) and "seeds" in declared:
+            text = "the checksum has a seed for each message, and the packet does not say which message it carries"
+            yield Fault.at(row, "checksum", text, "remove `seeds`, or add an id")
+
+
+@rule("ICD188")
+def lengths_are_whole_units(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        reported: set[int] = set()
+        for packet in link.packets:
+            for row in packet.of("length", "response_length"):
+                if id(row) in reported:
+                    continue
+                for fault in _units(ctx, link, packet, row):
+                    reported.add(id(row))
+                    yield fault
+                    break
+
+
+def _units(ctx: Context, link: Link, packet: LinkPacket, row: Map) -> Iterator[Fault]:
+    """Yield the faults of a length that cannot be counted in its unit."""
+    unit, around = row.get("unit", 1), 0
+    messages = [
+        message
+        for direction in packet.packet.directions
+        for _, message in ids_of(ctx, link.node, direction)
+        if packet.packet in link.declared.of(message.name, direction)
+    ]
+    is_of_response = row["role"] == "response_length"
+    if is_of_response:
+        if packet.packet.name != link.declared.requesting or messages:
+            text = "a `response_length` is in a packet that only requests telemetry"
+            help = "name the packet in `requests: packet`, and let another one carry telecommands"
+            yield Fault.at(row, "role", text, help)
+            return
+        ids = [id for id, _ in ids_of(ctx, link.node, TELECOMMAND)]
+        messages = [
+            message
+            for _, message in ids_of(ctx, link.node, TELEMETRY)
+            if is_requested(link.declared, message, ids, ())
+        ]
+    elif unit == 1:
+        return
+    else:
+        around = packet.overhead if row.get("counts") == "message" else 0
+        reserved = link.declared.reserved_in(packet.packet)
+        if not messages and (reserved + around) % unit:
+            text = f"{count(reserved + around, 'byte')} are not a multiple of the unit {unit}"
+            yield Fault.at(row, "unit", text, "correct `unit` or `reserved`")
+    sizes: dict[tuple[str, int], int] = {}
+    for message in messages:
+        what = quote(message.name)
+        id_of = next(
+            id
+            for id in (message.telemetry_id, message.telecommand_id)
+            if id is not None
+        )
+        first = sizes.setdefault((message.kind, id_of), message.length)
+        number = (message.length + around) // unit
+        if not has_one_length(message) or first != message.length:
+            text = f"{what} has no fixed length, which the {row['role']} needs"
+            help = "let the message have a fixed length, or remove `unit`"
+        elif (message.length + around) % unit:
+            text = f"the {message.length + around} bytes of {what} are not a multiple of the unit {unit}"
+            help = "correct `unit`, or the length of the message"
+        elif is_of_response and number >> row["bits"]:
+            text = f"a length of {count(row['bits'], 'bit')} does not hold {number}, that of {what}"
+            help = "make the field wider, or the message shorter"
+        else:
+            continue
+        yield Fault.at(row, "unit" if "unit" in row else "role", text, help)

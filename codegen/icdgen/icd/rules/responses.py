@@ -15,9 +15,11 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.packets import ID_ROLE, Packet
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
+    BUSY,
     ID,
     KINDS,
     MOST_SOURCES,
+    NAK,
     NEEDED,
     NONE,
     STATUS_SETS,
@@ -405,9 +407,11 @@ def _misfit(
 def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
     """Yield the faults of the field that says whether the telecommand was executed."""
     row = declared.row
-    name = row.get("status")
     if declared.kind not in NEEDED:
-        return  # The schema check reports a status.
+        # The schema check reports a status.
+        yield from _busy_reasons(ctx, declared)
+        return
+    name = row.get("status")
     if name is None:
         for key in STATUS_SETS:
             if key in row:
@@ -421,6 +425,27 @@ def _status(ctx: Context, declared: Declared) -> Iterator[Fault]:
     if "success" not in row:
         text = "no value of the status confirms the telecommand"
         yield Fault.at(row, "status", text, "add `success:`, the values that do")
+    yield from _values(declared, field)
+
+
+def _busy_reasons(ctx: Context, declared: Declared) -> Iterator[Fault]:
+    """Yield the faults of the reasons for which a refusal is only a busy device."""
+    row = declared.row
+    if declared.kind != NAK or not isinstance(row.get(BUSY), Seq):
+        return  # The schema check reports others.
+    name = row.get("reason")
+    if name is None:
+        text = "`busy` lists reasons, and no field has the reason"
+        yield Fault.at_key(row, BUSY, text, "add `reason`, or remove `busy`")
+    else:
+        field, _, _ = _compared(ctx, declared, name, "reason")
+        if field is not None:
+            yield from _values(declared, field)
+
+
+def _values(declared: Declared, field: Compared) -> Iterator[Fault]:
+    """Yield the faults of the listed values of a field, and what each means."""
+    row, name = declared.row, field.name
     seen: dict[int, str] = {}
     members = field.enum.members if field.enum else ()
     least, most = field.range

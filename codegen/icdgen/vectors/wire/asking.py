@@ -17,7 +17,7 @@ from icdgen_runtime.wire.stream import (
 )
 
 from icdgen.icd.responses import ID_BYTES, NEEDED, PROGRESS
-from icdgen.protocol.envelope import Stream, StreamRow
+from icdgen.protocol.envelope import REQUESTED, Stream, StreamRow
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import Settings
@@ -96,7 +96,8 @@ class Sample:
         if response.status and status is not None:
             wire_place(response.status).put(status, data)
         if response.packet is not None:
-            if response.reason:
+            is_decided = response.reason == response.status and status is not None
+            if response.reason and not is_decided:
                 place = wire_place(response.reason)
                 place.put(self.source.randrange(1, 1 << place.bits), data)
             line = self.packet(response.packet, bytes(data))
@@ -151,10 +152,42 @@ def scripts(link: Link[Any], facts: Facts) -> Requests:
                 "script": rows,
             }
             yield f"client: {row.name}, {why}", request
+        if row.is_requested and form.packets[row.packet].content == REQUESTED:
+            for why, rows in _nameless_responses(form, row, sample):
+                yield f"client: {row.name}, {why}", {
+                    "op": "stream_client",
+                    "requests": 3,
+                    "settings": {**SETTINGS, "in_flight": 3},
+                    "script": rows,
+                }
         # These have the times of the ICD.
         for why, rows in _declared_times(row, exchange, sample, facts.client):
             request = {"op": "stream_client", "requests": 3, "script": rows}
             yield f"client: {row.name}, {why}", request
+
+
+def _nameless_responses(
+    form: Stream, row: StreamRow, s: Sample
+) -> Iterator[tuple[str, Script]]:
+    """Yield scripts of requests whose telemetry comes in a packet without its id."""
+    others = [each for each in form.telemetry if each.packet == row.packet]
+    asked = s.ask(0, row)
+    for other in others:
+        yield f"the data of {other.name} come", [
+            asked, s.come(30, other), s.come(31, row), s.come(32, other), {"at": 100},
+        ]  # fmt: skip
+        yield f"the data of {other.name} come late", [
+            asked, s.ask(1, other), {"at": 100}, s.come(110, other), {"at": 200}, {"at": 300}, {"at": 400},
+            s.come(401, other), {"at": 500},
+        ]  # fmt: skip
+        yield f"then {other.name} is requested", [
+            asked, s.ask(1, other), s.come(10, row), s.come(20, other), s.come(30, other),
+        ]  # fmt: skip
+        yield f"cancelled, then {other.name} is requested", [
+            asked, {"at": 5, "cancel": True}, s.ask(6, other), s.come(10, other), s.come(20, row), {"at": 200},
+            s.come(210, other),
+        ]  # fmt: skip
+    yield "without a request", [s.come(0, row)]
 
 
 def _single_requests(form: Stream, s: Sample) -> Iterator[tuple[str, Script]]:

@@ -11,7 +11,15 @@ from typing import NamedTuple, Optional, Union
 from .._base import Message
 from .._errors import RangeError
 from .._hints import Buffer
-from .envelope import Exchange, NumberPlace, Response, Stream, Verdict
+from .envelope import (
+    CHOSEN_ROLES,
+    Exchange,
+    NumberPlace,
+    PacketForm,
+    Response,
+    Stream,
+    Verdict,
+)
 from .errors import need
 from .link import Link
 from .message_ids import message_id
@@ -76,14 +84,19 @@ def response_to(
         row = next(row for row in form.telemetry if row.id == telemetry)
         filled.extend(bytes(max(0, row.least - len(filled))))
     else:
-        packet = form.packets[response.packet]
-        filled = bytearray(packet.overhead + packet.reserved)
+        filled = _defaults(form.packets[response.packet])
     sent = id.to_bytes(_ID_BYTES, "big") + bytes(data)
     for echo in response.echoes:
         echo.place.put(exchange.sources[echo.source].of(sent), filled)
     if response.status:
         response.status.put(_status(response, verdict), filled)
-    if reason is None and response.packet is not None and response.reasons:
+    is_status = response.reason == response.status
+    if (
+        reason is None
+        and response.packet is not None
+        and response.reasons
+        and not is_status
+    ):
         # The reason can distinguish the packet from others, so it is not left 0.
         reason = response.reasons[0][0]
     if reason is not None and response.reason:
@@ -95,6 +108,19 @@ def response_to(
         id_of_packet, values = values_of(form.packets[response.packet], bytes(filled))
         return PacketData(response.packet, id_of_packet, values)
     return TelemetryData(telemetry, bytes(filled))
+
+
+def _defaults(packet: PacketForm) -> bytearray:
+    """Return a packet without a message, with the defaults of the ICD."""
+    filled = bytearray(packet.overhead + packet.reserved)
+    for field in packet.fields:
+        if field.role in CHOSEN_ROLES:
+            start = packet.header_bytes + packet.reserved if field.in_trailer else 0
+            place = NumberPlace(
+                start + field.at, field.size, field.shift, field.bits, field.little
+            )
+            place.put(field.values[1], filled)
+    return filled
 
 
 def response_of(

@@ -7,8 +7,10 @@ from typing import Literal, NamedTuple, Optional
 Delimiter = Literal["length", "slip", "cobs", "hdlc", "none"]
 CheckKind = Literal["crc", "fletcher", "fletcher_255", "sum", "xor"]
 Direction = Literal["telecommand", "telemetry"]
-Content = Literal["message", "request", "none"]
-"""Content of a packet: a message, a request of telemetry, or no message."""
+Content = Literal["message", "request", "requested", "none"]
+"""Content of a packet: a message, a request of telemetry, the telemetry that was
+requested, whose id the packet does not have, or no message.
+"""
 CHOSEN_ROLES = (
     "sequence",
     "source",
@@ -61,6 +63,18 @@ class EnvelopeField(NamedTuple):
     """Constant or default value: in telecommands, in telemetry."""
     id_shift: int = 0
     """Of a part of the id: number of bits of the id in the fields after it."""
+    unit: int = 1
+    """Of a length: number of bytes that it counts as one."""
+    plus: int = 0
+    """Of a length: number that is added to the bytes of the data, before it counts."""
+
+    def counted(self, count: int) -> int:
+        """Return the value of a length for so many bytes of data."""
+        return (count + self.plus) // self.unit
+
+    def bytes_of(self, value: int) -> int:
+        """Return the bytes of data that a value of a length says."""
+        return value * self.unit - self.plus
 
 
 class CheckForm(NamedTuple):
@@ -181,8 +195,6 @@ class PacketForm(NamedTuple):
 
     header_bytes: int
     trailer_bytes: int
-    length_plus: int
-    """Number that the length field adds to the bytes of the data."""
     fields: tuple[EnvelopeField, ...]
     check: Optional[CheckForm] = None
     name: str = ""
@@ -190,6 +202,11 @@ class PacketForm(NamedTuple):
     content: Content = "message"
     reserved: int = 0
     """Bytes of data, which are zeros, if the packet has no message."""
+
+    @property
+    def tells_message(self) -> bool:
+        """Whether the packet tells of which message it is."""
+        return self.content in ("message", "request")
 
     def of(self, role: str) -> Optional[EnvelopeField]:
         """Return the first field of a role, or None."""

@@ -63,6 +63,8 @@ class _Awaited(NamedTuple):
 
     responses: tuple[Response, ...]
     sources: tuple[int, ...]
+    nameless: Optional[StreamRow] = None
+    """Expected telemetry that a packet without its id carries."""
 
     @property
     def needed(self) -> frozenset[Verdict]:
@@ -89,6 +91,8 @@ class _Awaited(NamedTuple):
         """Return whether a response to one request could be taken for a response to the
         other.
         """
+        if self.nameless and other.nameless:
+            return True
         return any(
             (mine.telemetry, mine.packet) == (theirs.telemetry, theirs.packet)
             and not any(
@@ -337,6 +341,7 @@ class EnvelopeClient(Generic[N]):
     def _event_of(self, now: float, event: StreamEvent) -> Event:
         if event.event == "gap":
             return Gap(event.id, event.missing)
+        event = self._identified(event)
         if event.event not in ("message", "packet") or event.id is None:
             return LineError(event.event, event.id)
         id, data, kind = event.id, event.data, event.kind
@@ -358,6 +363,28 @@ class EnvelopeClient(Generic[N]):
         if event.packet is not None or id in self._form.confirming:
             return Stray(data, id, kind)
         return Arrived(id, data, event.values, kind)
+
+    def _identified(self, event: StreamEvent) -> StreamEvent:
+        """Return the telemetry that a packet without its id carries: that of the request
+        whose response it can be. If it has the length of none, return this error.
+        Return any other event, and the packet if no response is awaited, unchanged.
+        """
+        if event.packet is None:
+            return event
+        packet = self._form.packets[event.packet]
+        if packet.content != "requested":
+            return event
+        data = event.data[packet.header_bytes : -packet.trailer_bytes or None]
+        awaited = [slot.awaited for slot in self._slots if slot.is_awaited]
+        awaited += [late.awaited for late in self._late]
+        rows = [each.nameless for each in awaited if each.nameless]
+        for row in rows:
+            if row.least <= len(data) <= row.most:
+                kind = self.link.TELEMETRY.which(row.id, bytes(data))
+                return StreamEvent(
+                    "message", row.id, data, event.values, event.missing, kind
+                )
+        return StreamEvent("length", rows[0].id) if rows else event
 
     def _responded(
         self, now: float, slot: _Slot, response: Response, event: StreamEvent
@@ -429,6 +456,7 @@ class EnvelopeClient(Generic[N]):
             others = (each for each in responses if each not in replies)
             responses = (*others, Response(reply, "reply"))
         sent_id = row.id if row else request.id
+        nameless = self._nameless(reply if row else request.id)
         telecommand = sent_id.to_bytes(4, "big") + request.data
         sources = tuple(place.of(telecommand) for place in exchange.sources)
         self.begun += 1
@@ -438,7 +466,7 @@ class EnvelopeClient(Generic[N]):
                 self.begun,
                 request,
                 row.id if row else None,
-                _Awaited(responses, sources),
+                _Awaited(responses, sources, nameless),
                 exchange.timeout or self.settings.reply_timeout,
                 request.repeat or (row is not None and row.repeats),
                 kind,
@@ -464,6 +492,14 @@ class EnvelopeClient(Generic[N]):
         if row is None:
             raise UnknownIdError(self.link.node, request.kind, id)
         return row
+
+    def _nameless(self, telemetry: Optional[int]) -> Optional[StreamRow]:
+        """Return telemetry that a packet without its id carries; None for any other."""
+        for row in self._form.telemetry:
+            if row.id == telemetry:
+                content = self._form.packets[row.packet].content
+                return row if content == "requested" else None
+        return None
 
     def _request_form(self) -> TelemetryRequest:
         return need(self._form.request, "requests")

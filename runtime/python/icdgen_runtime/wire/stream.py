@@ -42,7 +42,8 @@ class StreamEvent(NamedTuple):
     """A message, or the reason why bytes were dropped.
 
     ``request``: telemetry of this id is requested. ``packet``: a packet without a
-    message; ``data`` is all of it. ``gap``: ``missing`` messages were lost before this
+    message, or with requested telemetry that only the request names; ``data`` is all of
+    it. ``gap``: ``missing`` messages were lost before this
     one; 0 if a message was repeated. ``checksum``: the checksum is wrong. ``length``:
     length mismatch. ``unknown_id``: the node has no such message. ``overrun``: longer
     than the buffer. ``framing``: a constant or a delimiter is wrong.
@@ -60,6 +61,10 @@ class StreamEvent(NamedTuple):
     """For a message: its class; None if no message of its id matches."""
     packet: Optional[int] = None
     """For a packet: its index in `Stream.packets`."""
+    is_request: bool = False
+    """For ``unknown_id``, ``length`` and ``checksum``: whether the packet has the format
+    of requests of telemetry.
+    """
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
         """Return the message if it has this class, otherwise None."""
@@ -166,7 +171,9 @@ def _encoded(
             if field.id_shift + field.bits < _id_bits(packet):
                 value &= (1 << field.bits) - 1
         elif field.role == "length":
-            value = len(data) + packet.length_plus
+            value = field.counted(len(data))
+        elif field.role == "response_length" and row:
+            value = field.counted(row.most)
         elif field.role in CHOSEN_ROLES:
             value = values.get(field.role, value)
         _put(field, tail if field.in_trailer else head, value)
@@ -229,12 +236,14 @@ class ReceivedPacket(NamedTuple):
     form: PacketForm
     constants: list[tuple[EnvelopeField, int]]
     values: list[EnvelopeField]
-    length: Optional[EnvelopeField]
+    lengths: list[EnvelopeField]
     sequence: Optional[EnvelopeField]
     checksum: Optional[EnvelopeField]
     rows: dict[int, StreamRow]  # by id
     requested: dict[int, StreamRow]  # telemetry that it requests, by id
     only: int  # id of the message of a packet without id
+    # Smallest and largest number of bytes of data of a packet that tells no message
+    sizes: tuple[int, int]
 
     def differs(self, front: Buffer, left: int) -> bool:
         """Return whether a constant of the header, as far as it was received, differs.
@@ -259,25 +268,46 @@ class ReceivedPacket(NamedTuple):
         )
 
     def data_bytes(self, frame: Buffer, size: int) -> Optional[int]:
-        """Return the bytes of the data: by the length field, otherwise those of the
-        message. None for the id of no message.
+        """Return the bytes of the data: by the first length field, otherwise those of
+        the message. None for the id of no message.
 
         ``size``: bytes of the frame, to find fields of the trailer.
         """
-        if self.length:
-            return _get(self.form, self.length, frame, size) - self.form.length_plus
+        if self.lengths:
+            field = self.lengths[0]
+            return field.bytes_of(_get(self.form, field, frame, size))
         row = self.row(_id_of(self.form, frame, size))
         if row is None and self.form.content == "message":
             return None
         return self.bounds(row)[1]
 
+    def agrees(self, frame: Buffer, count: int) -> bool:
+        """Return whether all length fields of a frame say ``count`` bytes of data."""
+        return all(
+            field.bytes_of(_get(self.form, field, frame, len(frame))) == count
+            for field in self.lengths
+        )
+
     def bounds(self, row: Optional[StreamRow]) -> tuple[int, int]:
         """Return the smallest and largest number of bytes of the data: of a message, a
-        request or, without ``row``, a packet without a message.
+        request or, without ``row``, a packet that tells no message.
         """
-        if row is None or self.requested.get(row.id) is row:
+        if row is None:
+            return self.sizes
+        if self.is_request_of(row):
             return (self.form.reserved, self.form.reserved)
         return (row.least, row.most)
+
+    def is_request_of(self, row: StreamRow) -> bool:
+        """Return whether a row is of telemetry that the packet requests."""
+        return self.requested.get(row.id) is row
+
+    def awaits(self, row: StreamRow, frame: Buffer) -> bool:
+        """Return whether a request says the length of the telemetry, if it says one."""
+        field = self.form.of("response_length")
+        if field is None or not self.is_request_of(row):
+            return True
+        return field.bytes_of(_get(self.form, field, frame, len(frame))) == row.most
 
     def row(self, id: Optional[int]) -> Optional[StreamRow]:
         """Return the message, or the requested telemetry, of an id."""
@@ -291,7 +321,9 @@ def _received_packets(form: Stream, direction: Direction) -> list[ReceivedPacket
     for index, packet in enumerate(form.packets):
         if direction not in packet.directions:
             continue
-        rows = {row.id: row for row in form.rows(direction) if row.packet == index}
+        own = [row for row in form.rows(direction) if row.packet == index]
+        # Otherwise, only the request tells which of them it is.
+        rows = {row.id: row for row in own if packet.tells_message}
         is_requesting = form.request is not None and form.request.packet == index
         is_requesting = is_requesting and not is_telemetry
         requested = {
@@ -303,19 +335,24 @@ def _received_packets(form: Stream, direction: Direction) -> list[ReceivedPacket
             if field.role == "constant"
         ]
         values = [field for field in packet.fields if field.role in CHOSEN_ROLES]
-        length, sequence, checksum = map(packet.of, ("length", "sequence", "checksum"))
+        lengths = [field for field in packet.fields if field.role == "length"]
+        sequence, checksum = map(packet.of, ("sequence", "checksum"))
+        sizes = packet.reserved, packet.reserved
+        if packet.content == "requested" and own:
+            sizes = min(row.least for row in own), max(row.most for row in own)
         packets.append(
             ReceivedPacket(
                 index,
                 packet,
                 constants,
                 values,
-                length,
+                lengths,
                 sequence,
                 checksum,
                 rows,
                 requested,
                 min(rows, default=0),
+                sizes,
             )
         )
     return packets
@@ -438,33 +475,34 @@ class StreamDecoder:
         """
         form, size = packet.form, len(frame)
         count = size - form.overhead
+        is_request = form.content == "request"
         if count < 0:
             return self._doubtful("length", None, events)
         if not packet.fits(frame):
             return self._doubtful("framing", None, events)
-        if packet.length and packet.data_bytes(frame, size) != count:
+        if not packet.agrees(frame, count):
             return self._doubtful("length", None, events)
         given_id = _id_of(form, frame, size)
         row = packet.row(given_id)
         id = packet.only if given_id is None else given_id
-        has_row = form.content != "none"
+        has_row = form.tells_message
         if packet.checksum and form.check:
             if form.check.is_seeded and row is None and has_row:
-                return self._doubtful("unknown_id", id, events)
+                return self._doubtful("unknown_id", id, events, is_request)
             given = _get(form, packet.checksum, frame, size)
             if given != _checksum(form, row, frame):
-                return self._doubtful("checksum", id, events)
+                return self._doubtful("checksum", id, events, is_request)
         if row is None and has_row:
-            events.append(StreamEvent("unknown_id", id))
+            events.append(StreamEvent("unknown_id", id, is_request=is_request))
             return "proven"
         least, most = packet.bounds(row)
-        if not least <= count <= most:
-            events.append(StreamEvent("length", id))
+        if not least <= count <= most or (row and not packet.awaits(row, frame)):
+            events.append(StreamEvent("length", id, is_request=is_request))
             return "proven"
         values = {entry.role: _get(form, entry, frame, size) for entry in packet.values}
         if row is None:
             event = StreamEvent("packet", id, frame, values, packet=packet.number)
-        elif packet.requested.get(row.id) is row:
+        elif packet.is_request_of(row):
             event = StreamEvent("request", id, b"", values)
         else:
             data = frame[form.header_bytes : form.header_bytes + count]
@@ -477,9 +515,13 @@ class StreamDecoder:
         return "message"
 
     def _doubtful(
-        self, why: EventName, id: Optional[int], events: list[StreamEvent]
+        self,
+        why: EventName,
+        id: Optional[int],
+        events: list[StreamEvent],
+        is_request: bool = False,
     ) -> Literal["doubtful"]:
-        events.append(StreamEvent(why, id))
+        events.append(StreamEvent(why, id, is_request=is_request))
         return "doubtful"
 
     def _check_sequence(

@@ -2,7 +2,7 @@
 
 //! Responses to requests.
 
-use crate::wire::link::{Exchange, Response, ResponseKind, Verdict};
+use crate::wire::link::{Exchange, Response, ResponseKind, StreamRow, Verdict};
 
 /// Exchange of a telecommand to which nothing responds.
 const SILENCE: &Exchange = &Exchange {
@@ -60,6 +60,8 @@ pub(super) struct Awaited {
     exchange: &'static Exchange,
     reply: Option<u32>, // id of the telemetry that replaces the replies of the exchange
     sources: [u32; Exchange::SOURCES],
+    /// Expected telemetry that comes in a packet without its id.
+    pub(super) nameless: Option<&'static StreamRow>,
 }
 
 impl Awaited {
@@ -67,6 +69,7 @@ impl Awaited {
         exchange: SILENCE,
         reply: None,
         sources: [0; Exchange::SOURCES],
+        nameless: None,
     };
 
     /// Return the responses to a request with this id and data. `named` is the id of the telemetry
@@ -91,6 +94,7 @@ impl Awaited {
             exchange,
             reply: named.filter(|_| !is_described),
             sources,
+            nameless: None,
         }
     }
 
@@ -143,6 +147,9 @@ impl Awaited {
 
     /// Return whether a response to one request could be taken for a response to the other.
     pub(super) fn is_like(&self, other: &Self) -> bool {
+        if self.nameless.is_some() && other.nameless.is_some() {
+            return true;
+        }
         self.responses().any(|mine| {
             other
                 .responses()

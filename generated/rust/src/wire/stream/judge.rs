@@ -27,7 +27,7 @@ pub enum Event<'a> {
         /// Values of the header and trailer fields that the sender chose.
         values: &'a Values,
     },
-    /// A packet without a message.
+    /// A packet without a message, or with requested telemetry that only the request names.
     Packet {
         /// Index of its format in `Stream::packets` of the link.
         packet: usize,
@@ -281,14 +281,12 @@ impl Judge {
         frame.len() >= self.packet.around() && fields.all(|field| self.is_right(field, frame))
     }
 
-    /// Return the number of data bytes by the length field; None if it is invalid.
+    /// Return the number of data bytes that a field says; None if it is invalid.
     fn stated_length(&self, field: &EnvelopeField, frame: &[u8]) -> Option<usize> {
-        let length = i64::from(field.get(self.packet, frame));
-        let length = length.checked_sub(i64::from(self.packet.length_plus))?;
-        usize::try_from(length).ok()
+        field.bytes_of(field.get(self.packet, frame))
     }
 
-    /// Return the number of data bytes by the header; otherwise the id of the unknown message, or
+    /// Return the number of data bytes by the first length field; otherwise the id of the unknown message, or
     /// None if the length field is invalid.
     pub(super) fn length(&self, frame: &[u8]) -> Result<usize, Option<u32>> {
         if let Some(field) = self.packet.field(EnvelopeRole::Length) {
@@ -297,6 +295,7 @@ impl Judge {
         let id = self.id(frame);
         match self.packet.content {
             Content::Nothing => Ok(self.packet.reserved),
+            Content::Requested => Ok(self.sizes().1),
             Content::Request => Ok(self.reserved()),
             Content::Message => match self.message(id) {
                 Some((_, row)) => Ok(row.most),
@@ -311,18 +310,33 @@ impl Judge {
         self.form.request.map_or(0, |request| request.data.len())
     }
 
+    /// Return the least and most data bytes of telemetry in packets without its id.
+    fn sizes(&self) -> (usize, usize) {
+        let sizes = self.own_rows().map(|row| (row.least, row.most));
+        let both = sizes.reduce(|(least, most), (low, high)| (least.min(low), most.max(high)));
+        both.unwrap_or((0, 0))
+    }
+
+    /// Return whether all length fields say the number of data bytes.
     fn length_is_right(&self, frame: &[u8]) -> bool {
         let length = frame.len().checked_sub(self.packet.around());
-        let field = self.packet.field(EnvelopeRole::Length);
-        field.map_or(true, |field| self.stated_length(field, frame) == length)
+        let fields = self.packet.fields.iter();
+        let mut lengths = fields.filter(|field| field.role == EnvelopeRole::Length);
+        lengths.all(|field| self.stated_length(field, frame) == length)
+    }
+
+    /// Return the messages that are sent in this packet format.
+    fn own_rows(&self) -> impl Iterator<Item = &'static StreamRow> {
+        let (rows, index) = (self.form.rows(self.direction).iter(), self.index);
+        rows.filter(move |row| usize::from(row.packet) == index)
     }
 
     /// Return the id; of a packet without id, that of its only message.
     fn id(&self, frame: &[u8]) -> u32 {
         let only = || {
-            let mut rows = self.form.rows(self.direction).iter();
-            rows.find(|row| usize::from(row.packet) == self.index)
-                .map_or(0, |row| row.id)
+            let first = self.own_rows().next();
+            let only = first.filter(|_| self.packet.tells_message());
+            only.map_or(0, |row| row.id)
         };
         self.packet.id(frame).unwrap_or_else(only)
     }
@@ -330,7 +344,8 @@ impl Judge {
     /// Return a message of this packet format, and its place in the table.
     fn message(&self, id: u32) -> Option<(usize, &'static StreamRow)> {
         let row = self.form.row(self.direction, id);
-        row.filter(|(_, row)| usize::from(row.packet) == self.index)
+        let is_own = |row: &StreamRow| usize::from(row.packet) == self.index;
+        row.filter(|(_, row)| self.packet.tells_message() && is_own(row))
     }
 
     /// Return the telemetry that a packet of this format requests.
@@ -349,14 +364,18 @@ impl Judge {
         on_event: &mut dyn FnMut(Event<'_>),
     ) -> Verdict {
         let mut trailer = self.packet.fields.iter().filter(|field| field.in_trailer);
-        if trailer.all(|field| self.is_right(field, frame)) {
-            return self.judge_contents(frame, sequences, on_event);
+        if !trailer.all(|field| self.is_right(field, frame)) {
+            on_event(Event::Framing);
+            return Verdict::Doubtful;
         }
-        on_event(Event::Framing);
-        Verdict::Doubtful
+        if !self.length_is_right(frame) {
+            on_event(Event::Length { id: None });
+            return Verdict::Doubtful;
+        }
+        self.judge_contents(frame, sequences, on_event)
     }
 
-    /// Check a frame whose constants and length field are right, and report its events.
+    /// Check a frame whose constants and length fields are right, and report its events.
     fn judge_contents(
         &self,
         frame: &[u8],
@@ -371,7 +390,7 @@ impl Judge {
         let message = self.message(id);
         let row = message.map_or_else(|| self.requested(id), |(_, row)| Some(row));
         if let (Some(field), Some(check)) = (packet.field(EnvelopeRole::Checksum), &packet.check) {
-            if check.is_seeded && row.is_none() && packet.content != Content::Nothing {
+            if check.is_seeded && row.is_none() && packet.tells_message() {
                 on_event(Event::UnknownId { id });
                 return Verdict::Doubtful;
             }
@@ -381,11 +400,15 @@ impl Judge {
                 return Verdict::Doubtful;
             }
         }
-        let (length, is_nothing) = (data.len(), packet.content == Content::Nothing);
+        let length = data.len();
         let is_right = match (message, row) {
-            _ if is_nothing => length == packet.reserved,
+            _ if packet.content == Content::Nothing => length == packet.reserved,
+            _ if packet.content == Content::Requested => {
+                let (least, most) = self.sizes();
+                (least..=most).contains(&length)
+            }
             (Some((_, row)), _) => (row.least..=row.most).contains(&length),
-            (None, Some(_)) => length == self.reserved(),
+            (None, Some(row)) => length == self.reserved() && self.awaits(row, frame),
             (None, None) => {
                 on_event(Event::UnknownId { id });
                 return Verdict::Proven;
@@ -398,7 +421,7 @@ impl Judge {
         let values = &self.values(frame);
         let place = message.map(|(place, _)| place);
         self.check_sequence(place, id, values, sequences, on_event);
-        on_event(if is_nothing {
+        on_event(if !packet.tells_message() {
             Event::Packet {
                 packet: self.index,
                 id,
@@ -411,6 +434,14 @@ impl Judge {
             Event::Request { id, values }
         });
         Verdict::Taken
+    }
+
+    /// Return whether a request says the length of the telemetry, if it says one.
+    fn awaits(&self, row: &StreamRow, frame: &[u8]) -> bool {
+        let field = self.packet.field(EnvelopeRole::ResponseLength);
+        field.map_or(true, |field| {
+            self.stated_length(field, frame) == Some(row.most)
+        })
     }
 
     fn values(&self, frame: &[u8]) -> Values {

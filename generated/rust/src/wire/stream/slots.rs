@@ -8,7 +8,7 @@ use super::judge::Event;
 use super::sender::Sent;
 use super::Request;
 use crate::wire::bits::{head, reached};
-use crate::wire::link::{Response, ResponseKind, Settings, Stream, StreamRow, Verdict};
+use crate::wire::link::{Content, Response, ResponseKind, Settings, Stream, StreamRow, Verdict};
 use crate::wire::{Direction, Error};
 
 /// Largest number of requests whose responses are awaited or may still arrive late.
@@ -176,6 +176,12 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         };
         let exchange = exchange.and_then(|index| self.form.exchanges.get(index));
         let timeout = exchange.map_or(0, |exchange| exchange.timeout_ms);
+        let mut awaited = Awaited::new(exchange, reply, row.id, data);
+        let answer = reply.and_then(|id| self.form.row(Direction::Telemetry, id));
+        awaited.nameless = answer.map(|(_, answer)| answer).filter(|answer| {
+            let packet = self.form.packets.get(usize::from(answer.packet));
+            packet.map_or(false, |packet| packet.content == Content::Requested)
+        });
         *slot = Slot {
             state: State::Queued,
             number: self.begun,
@@ -184,7 +190,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
             sent,
             length,
             repeats: asks || request.repeat || row.repeats,
-            awaited: Awaited::new(exchange, reply, row.id, data),
+            awaited,
             timeout: match timeout {
                 0 => self.settings.reply_timeout_ms,
                 _ => timeout,
@@ -321,6 +327,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
 
     /// Return what arrived: a response to a request, late, stray or unsolicited.
     pub(super) fn found<'a>(&mut self, found: Event<'a>) -> Event<'a> {
+        let found = self.identified(found);
         let arrival = match found {
             Event::Message { id, data, values } => Arrival {
                 id,
@@ -360,6 +367,45 @@ impl<const N: usize, const R: usize> Slots<N, R> {
             return Event::Stray { id, packet, data };
         }
         found
+    }
+
+    /// Return the telemetry that a packet without its id carries: that of the request whose response
+    /// it can be. If it has the length of none, return this error. Return any other event, and the
+    /// packet if no response is awaited, unchanged.
+    fn identified<'a>(&self, found: Event<'a>) -> Event<'a> {
+        let (packet, frame, values) = match found {
+            Event::Packet {
+                packet,
+                data,
+                values,
+                ..
+            } => (packet, data, values),
+            _ => return found,
+        };
+        let packet = self.form.packets.get(packet);
+        let packet = match packet.filter(|packet| packet.content == Content::Requested) {
+            Some(packet) => packet,
+            None => return found,
+        };
+        let end = frame.len().saturating_sub(packet.trailer_bytes);
+        let data = frame.get(packet.header_bytes..end).unwrap_or(&[]);
+        let first = self.oldest(|slot| slot.is_awaited() && slot.awaited.nameless.is_some());
+        let first = first.and_then(|place| self.requests.get(place));
+        let first = first.and_then(|slot| slot.awaited.nameless);
+        let late = self.late.iter().flatten();
+        let mut rows = first
+            .into_iter()
+            .chain(late.filter_map(|late| late.awaited.nameless));
+        let fits = |row: &&StreamRow| (row.least..=row.most).contains(&data.len());
+        match (rows.clone().find(fits), rows.next()) {
+            (Some(row), _) => Event::Message {
+                id: row.id,
+                data,
+                values,
+            },
+            (None, Some(row)) => Event::Length { id: Some(row.id) },
+            (None, None) => found,
+        }
     }
 
     /// Process a response to a request.

@@ -43,6 +43,8 @@ pub enum EnvelopeRole {
     Id,
     /// How long it is.
     Length,
+    /// How long the requested telemetry is.
+    ResponseLength,
     /// The checksum.
     Checksum,
 }
@@ -69,6 +71,10 @@ pub struct EnvelopeField {
     pub values: [u32; 2],
     /// Part of an id: bits of the id below it.
     pub id_shift: u32,
+    /// Length: number of bytes that it counts as one.
+    pub unit: u32,
+    /// Length: number that is added to the bytes of the data, before it counts.
+    pub plus: i32,
 }
 
 /// How a checksum is computed.
@@ -221,6 +227,8 @@ pub enum Content {
     Message,
     /// Requests of telemetry.
     Request,
+    /// Telemetry that was requested; only the request has its id.
+    Requested,
     /// No message: the packet itself is a response.
     Nothing,
 }
@@ -238,8 +246,6 @@ pub struct PacketForm {
     pub header_bytes: usize,
     /// Size of the trailer in bytes.
     pub trailer_bytes: usize,
-    /// Value of the length field minus the number of data bytes.
-    pub length_plus: i32,
     /// The fields.
     pub fields: &'static [EnvelopeField],
     /// The checksum.

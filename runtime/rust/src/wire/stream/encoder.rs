@@ -177,11 +177,11 @@ impl Message<'_> {
         let (mut header, mut trailer) = ([0; ENVELOPE_BYTES], [0; ENVELOPE_BYTES]);
         let mut values = *values;
         for field in packet.fields {
-            let length = i64::try_from(data.len()).unwrap_or(i64::MAX);
             let value = match field.role {
                 EnvelopeRole::Checksum => continue,
                 EnvelopeRole::Id => i64::from(field.part(self.id)),
-                EnvelopeRole::Length => length.wrapping_add(i64::from(packet.length_plus)),
+                EnvelopeRole::Length => field.counted(data.len()),
+                EnvelopeRole::ResponseLength => field.counted(self.row.most),
                 role => {
                     let chosen = values.place(role).and_then(|value| *value);
                     i64::from(chosen.unwrap_or_else(|| field.value(self.direction)))
@@ -237,6 +237,7 @@ const fn name(role: EnvelopeRole) -> &'static str {
         EnvelopeRole::Constant => "constant",
         EnvelopeRole::Id => "id",
         EnvelopeRole::Length => "length",
+        EnvelopeRole::ResponseLength => "response_length",
         EnvelopeRole::Checksum => "checksum",
     }
 }

@@ -1,7 +1,9 @@
 //! Fields of the header and trailer.
 
 use crate::wire::bits::{head, number};
-use crate::wire::link::{EnvelopeField, EnvelopeRole, NumberPlace, PacketForm, Stream, StreamRow};
+use crate::wire::link::{
+    Content, EnvelopeField, EnvelopeRole, NumberPlace, PacketForm, Stream, StreamRow,
+};
 use crate::wire::Direction;
 
 impl EnvelopeField {
@@ -22,6 +24,19 @@ impl EnvelopeField {
     /// Return the part of an id that it has.
     pub(super) const fn part(&self, id: u32) -> u32 {
         id.wrapping_shr(self.id_shift) & self.mask()
+    }
+
+    /// Return the number of data bytes that a value of a length says; None if it is invalid.
+    pub(super) fn bytes_of(&self, value: u32) -> Option<usize> {
+        let bytes = i64::from(value).checked_mul(i64::from(self.unit))?;
+        usize::try_from(bytes.checked_sub(i64::from(self.plus))?).ok()
+    }
+
+    /// Return the value of a length for a number of data bytes.
+    pub(super) fn counted(&self, length: usize) -> i64 {
+        let length = i64::try_from(length).unwrap_or(i64::MAX);
+        let bytes = length.wrapping_add(i64::from(self.plus));
+        bytes.checked_div(i64::from(self.unit)).unwrap_or(bytes)
     }
 
     /// Its value in a frame; 0 if that ends before.
@@ -103,7 +118,12 @@ impl PacketForm {
         }
     }
 
-    /// Return the field of a role that there is at most once.
+    /// Return whether the packet tells of which message it is.
+    pub(super) const fn tells_message(&self) -> bool {
+        matches!(self.content, Content::Message | Content::Request)
+    }
+
+    /// Return the first field of a role.
     pub(super) fn field(&self, role: EnvelopeRole) -> Option<&'static EnvelopeField> {
         self.fields.iter().find(|field| field.role == role)
     }
