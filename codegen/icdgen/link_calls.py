@@ -402,6 +402,8 @@ def _exchange(exchange: Exchange) -> Call:
     }
     if exchange.timeout:
         parts["timeout"] = exchange.timeout
+    if exchange.in_header:
+        parts["in_header"] = exchange.in_header
     return _call("Exchange", **parts)
 
 

@@ -541,6 +541,27 @@ static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_
     }
 }
 
+/* Return a number of a message. See icd_number_place_t. */
+static inline uint32_t icdgen_stream_number(
+    const icd_number_place_t *place, uint32_t id, const uint8_t *data, size_t length)
+{
+    uint32_t number = 0;
+    for (size_t i = 0; i < place->size; ++i) {
+        const size_t at = ICDGEN_SIZE(place->at) + (place->little ? place->size - 1u - i : i);
+        uint32_t byte = 0;
+        if (at < sizeof id) {
+            const uint32_t shift = 8u * (3u - ICDGEN_U32(at));
+            byte = (id >> shift) & 0xFFu;
+        } else if (at - sizeof id < length) {
+            byte = data[at - sizeof id];
+        } else {
+            /* the message has no such byte */
+        }
+        number = (number << 8) | byte;
+    }
+    return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
+}
+
 /* State of a checksum that is computed piece by piece. */
 typedef struct {
     const icd_check_form_t *form;
@@ -818,6 +839,8 @@ typedef struct {
     const icd_stream_row_t *row; /* the message; as a telecommand also telemetry, for the packet that requests it */
     const uint8_t *data;
     size_t length;
+    const icd_exchange_t *exchange; /* its responses; NULL if they do not matter */
+    uint32_t *sources;              /* of `exchange`: the numbers in the header are written here */
 } icdgen_outgoing_t;
 
 static inline bool icdgen_outgoing_requests(const icdgen_outgoing_t *outgoing)
@@ -882,6 +905,13 @@ static inline icd_status_t icdgen_outgoing_encode(
         const uint32_t sum = icdgen_envelope_check(packet, row, header, data, length, trailer);
         icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
     }
+    if (outgoing->exchange != NULL) {
+        const icd_exchange_t *const exchange = outgoing->exchange;
+        const size_t first = ICDGEN_SIZE(exchange->source_count) - exchange->header_count;
+        for (size_t i = first; i < exchange->source_count; ++i) {
+            outgoing->sources[i] = icdgen_stream_number(&exchange->sources[i], 0, header, packet->header_bytes);
+        }
+    }
     icdgen_line_t line = {outgoing->form->delimited_by, buffer, capacity, 0, 0, false, false};
     icdgen_line_delimiter(&line, true);
     icdgen_line_write(&line, header, packet->header_bytes);
@@ -903,7 +933,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length};
+    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_message(&outgoing, link, id);
     return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
@@ -916,7 +946,7 @@ ICDGEN_API icd_status_t icd_stream_encode_request(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_request(&outgoing, link, telemetry);
     return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
@@ -975,7 +1005,7 @@ ICDGEN_API icd_status_t icd_stream_send(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length};
+    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_message(&outgoing, sender->link, id);
     return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
 }
@@ -983,7 +1013,7 @@ ICDGEN_API icd_status_t icd_stream_send(
 ICDGEN_API icd_status_t icd_stream_send_request(
     icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_request(&outgoing, sender->link, telemetry);
     return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
 }
@@ -2974,27 +3004,6 @@ static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
     return UINT32_C(1) << ICDGEN_U32(verdict);
 }
 
-/* Return a number of a message. See icd_number_place_t. */
-static inline uint32_t icdgen_stream_number(
-    const icd_number_place_t *place, uint32_t id, const uint8_t *data, size_t length)
-{
-    uint32_t number = 0;
-    for (size_t i = 0; i < place->size; ++i) {
-        const size_t at = ICDGEN_SIZE(place->at) + (place->little ? place->size - 1u - i : i);
-        uint32_t byte = 0;
-        if (at < sizeof id) {
-            const uint32_t shift = 8u * (3u - ICDGEN_U32(at));
-            byte = (id >> shift) & 0xFFu;
-        } else if (at - sizeof id < length) {
-            byte = data[at - sizeof id];
-        } else {
-            /* the message has no such byte */
-        }
-        number = (number << 8) | byte;
-    }
-    return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
-}
-
 static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_number_place_t *b)
 {
     return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
@@ -3086,6 +3095,12 @@ static inline const icd_response_t *icdgen_matching(
     return response;
 }
 
+/* Return the number of sources that are known before a packet is sent, because they are not in its header. */
+static inline size_t icdgen_known(const icd_stream_awaited_t *awaited)
+{
+    return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
+}
+
 /* Return whether the responses to two requests have different numbers at the same place. */
 static inline bool icdgen_differs_in_echo(
     const icd_stream_awaited_t *a,
@@ -3097,8 +3112,8 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < response_b->echo_count; ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (icdgen_is_same_place(&echo->place, &other->place) &&
-                a->sources[echo->source] != b->sources[other->source]) {
+            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_known(a) &&
+                other->source < icdgen_known(b) && a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
         }
@@ -3317,14 +3332,14 @@ static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
 {
     const icdgen_outgoing_t outgoing = {
-        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length};
+        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length, NULL, NULL};
     return outgoing;
 }
 
 ICDGEN_API icd_status_t
 icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request)
 {
-    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, false, 0u};
+    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u};
     const bool asks = request->direction == ICD_TELEMETRY;
     if (!client->ready) {
         return ICD_ERROR_UNSUPPORTED;
@@ -3384,7 +3399,7 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     } else {
         /* as in the ICD */
     }
-    for (size_t i = 0; i < exchange->source_count; ++i) {
+    for (size_t i = 0; i < icdgen_known(&slot->awaited); ++i) {
         slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
     }
     client->started++;
@@ -3474,7 +3489,9 @@ ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *b
     if (slot == NULL || !icdgen_stream_may_be_sent(client, slot)) {
         return false;
     }
-    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    outgoing.exchange = slot->awaited.exchange;
+    outgoing.sources = slot->awaited.sources;
     if (icdgen_outgoing_send(&outgoing, &client->sender, buffer, capacity, written) != ICD_OK) {
         return false;
     }

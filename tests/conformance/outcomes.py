@@ -17,9 +17,12 @@ import json
 import random
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from icdgen_runtime._errors import IcdError
 
 from icdgen.icd.model import Icd
 from icdgen.icd.responses import BUSY, NAK
@@ -213,8 +216,14 @@ class Script:
         text = started.get("bytes", "")
         assert isinstance(id, int) and isinstance(text, str)
         telecommand = id.to_bytes(4, "big") + bytes.fromhex(text)
+        header = b""
+        if exchange.in_header:
+            with suppress(IcdError):  # the request is one that cannot be sent
+                header = self.sample.header_of(started)
         for echo in response.echoes:
-            number = wire_place(exchange.sources[echo.source]).of(telecommand)
+            in_header = exchange.is_in_header(echo.source)
+            sent = header if in_header else telecommand
+            number = wire_place(exchange.sources[echo.source]).of(sent)
             foreign = self.source.random() < 0.05
             wire_place(echo.place).put(number ^ foreign, data)
 

@@ -129,3 +129,28 @@ def test_what_the_device_answers_to_a_request_is_taken_for_it(icd):
             encode = sender.encode_packet if is_packet else sender.encode
             (outcome,) = client.received(1, encode(*response))
             assert isinstance(outcome, kind)
+
+
+def test_verification_reports_count_for_the_sequence_number_that_they_repeat():
+    icd = load([ROOT / "tests" / "conformance" / "links" / "verification.yaml"]).icd
+    link = link_to(icd)
+    client, payload = EnvelopeClient(link), Sender(link, "telemetry")
+    decoder = StreamDecoder(link, "telecommand")
+    exposure = 0x8001
+    headers = []
+    for now in (0, 10):
+        client.start(now, Request("telecommand", exposure, b"\0\1"))
+        (sent,) = decoder.feed(client.output())
+        headers.append(sent.header)
+        if now == 0:
+            report = response_to(link, exposure, sent.data, "ack", header=sent.header)
+            (done,) = client.received(5, payload.encode(*report))
+            assert isinstance(done, Done)
+    first, second = headers
+    assert first[2:4] == bytes([0xC0, 0]) and second[2:4] == bytes([0xC0, 1])
+    again = response_to(link, exposure, b"\0\1", "ack", header=first)
+    (stray,) = client.received(20, payload.encode(*again))
+    assert isinstance(stray, Stray)
+    refusal = response_to(link, exposure, b"\0\1", "nak", 3, header=second)
+    (refused,) = client.received(30, payload.encode(*refusal))
+    assert isinstance(refused, Refused) and refused.reason == "Illegal type"

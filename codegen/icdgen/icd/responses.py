@@ -31,6 +31,7 @@ is an acknowledge or a reply, as the response itself.
 """
 
 ID = "id"  # in `echo`: the id of the telecommand
+HEADER = "header."  # in `echo`: in front of the name of a field of its header
 MOST_SOURCES = 4  # different numbers of a telecommand that responses repeat
 MOST_BYTES = 4  # of a number that a client compares
 ID_BYTES = 4  # of the id of a telecommand, in front of its data
@@ -74,7 +75,8 @@ def responses_in(keys: Section) -> dict[str, Section]:
 
 def echoes_of(row: Section) -> dict[str, str]:
     """Return the numbers that a response repeats: its field -> ``id``, a byte of the id
-    such as ``id[0]``, or a field of the telecommand.
+    such as ``id[0]``, a field of the telecommand, or one of its header such as
+    ``header.sequence``.
     """
     echo = row.get("echo", {})
     return {echo: ID} if isinstance(echo, str) else dict(echo)

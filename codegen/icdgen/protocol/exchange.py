@@ -66,12 +66,18 @@ class Exchange:
     """Telecommand and its possible responses.
 
     ``sources`` are the numbers of a telecommand that responses repeat. They are places
-    in its id, as 4 bytes with the most significant first, followed by its data.
+    in its id, as 4 bytes with the most significant first, followed by its data. The
+    last ``in_header`` of them are places in the header of its packet.
     """
 
     sources: tuple[NumberPlace, ...]
     responses: tuple[Response, ...]
     timeout: int  # time-out in milliseconds; 0: that of the client
+    in_header: int = 0
+
+    def is_in_header(self, source: int) -> bool:
+        """Return whether a source is a place in the header."""
+        return source >= len(self.sources) - self.in_header
 
     @property
     def reply(self) -> int | None:

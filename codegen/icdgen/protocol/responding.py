@@ -10,10 +10,11 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from icdgen.icd.enumeration import Enum
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import TELECOMMAND, Message, Node
 from icdgen.icd.packets import ID_ROLE, Packets
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
+    HEADER,
     ID,
     ID_BYTES,
     MOST_SOURCES,
@@ -92,6 +93,14 @@ class Sources(NamedTuple):
         enum = self.enums.get(declared.get("enum", ""))
         return Number(_place_in_packet(form, part), enum)
 
+    def in_header(self, packet: int, name: str) -> NumberPlace | None:
+        """Return the place of a field in the header of a packet; None without one."""
+        form, declared = self.formats[packet], self.packets.all[packet]
+        for field, row in zip(form.fields, declared.rows, strict=True):
+            if row is declared.named(name) and not field.in_trailer:
+                return _place_in_packet(form, field)
+        return None
+
     def id_parts(self, packet: int, name: str) -> list[tuple[NumberPlace, NumberPlace]]:
         """Return the place of each part of the id of a packet, with its place in
         `Exchange.sources`; none if ``name`` is not a field of the id.
@@ -125,9 +134,10 @@ def exchange_of(
     own: Any = message.response
     timeout = own.get("timeout_ms", 0) if isinstance(own, Mapping) else 0
     rows = declared_responses(commands, message)
-    exchange = _exchange(
-        sources, rows, partial(_source, sources.node, message), timeout
-    )
+    (packet,) = sources.packets.of(message.name, TELECOMMAND)[:1]
+    number = sources.packets.all.index(packet)
+    source_of = partial(_source, sources.node, message)
+    exchange = _exchange(sources, rows, source_of, timeout, number)
     return exchange if exchange.responses else None
 
 
@@ -140,6 +150,7 @@ def request_exchange(sources: Sources, requests: Section) -> Exchange:
         responses_in(requests),
         partial(_id_source, sources.node),
         requests.get("timeout_ms", 0),
+        sources.packets.number_of(sources.packets.requesting) or 0,
     )
     requested = Response(None, REPLY, (), None, (), None, ())
     return replace(exchange, responses=(requested, *exchange.responses))
@@ -150,13 +161,15 @@ def _exchange(
     rows: Mapping[str, Section],
     source_of: Callable[[str], NumberPlace | None],
     timeout: int,
+    sent_in: int,
 ) -> Exchange:
     """Return an exchange.
 
     ``rows``: responses by kind. ``source_of`` returns the place of what a response
-    repeats.
+    repeats. ``sent_in``: index of the packet that is sent.
     """
-    places: list[NumberPlace] = []
+    # Whether it is a place in the header, and the place.
+    every: list[tuple[bool, NumberPlace]] = []
     responses = []
     for kind, row in rows.items():
         packet = sources.packet_of(row)
@@ -164,15 +177,21 @@ def _exchange(
             continue  # a mistake that rule ICD176 reports
         echoes = []
         for name, repeated in echoes_of(row).items():
-            number, source = sources.number(row, name), source_of(repeated)
+            number = sources.number(row, name)
+            in_header = repeated.startswith(HEADER)
+            source = (
+                sources.in_header(sent_in, repeated.removeprefix(HEADER))
+                if in_header
+                else source_of(repeated)
+            )
             assert number and source, f"rule ICD177 checks {name} and {repeated}"
             pairs = [(number.place, source)]
             if packet is not None and repeated == ID:
                 pairs = sources.id_parts(packet, name) or pairs
             for place, source in pairs:
-                if source not in places:
-                    places.append(source)
-                echoes.append(Echo(place, places.index(source)))
+                if (in_header, source) not in every:
+                    every.append((in_header, source))
+                echoes.append(Echo(place, every.index((in_header, source))))
         status = sources.number(row, status_of(kind, row))
         reason = sources.number(row, reason_of(row))
         responses.append(
@@ -189,8 +208,21 @@ def _exchange(
                 reason.enum if reason else None,
             )
         )
-    assert len(places) <= MOST_SOURCES, "rule ICD177 checks the number"
-    return Exchange(tuple(places), tuple(responses), timeout)
+    assert len(every) <= MOST_SOURCES, "rule ICD177 checks the number"
+    # Those in the header are the last.
+    order = sorted(range(len(every)), key=lambda source: every[source][0])
+    renumbered = tuple(
+        replace(
+            response,
+            echoes=tuple(
+                Echo(echo.place, order.index(echo.source)) for echo in response.echoes
+            ),
+        )
+        for response in responses
+    )
+    places = tuple(every[source][1] for source in order)
+    count = sum(is_in_header for is_in_header, _ in every)
+    return Exchange(places, renumbered, timeout, count)
 
 
 def _id_source(node: Node, name: str) -> NumberPlace | None:

@@ -84,6 +84,7 @@ class EnvelopeLine(DeviceLine):
             for variant in variants
             if id not in responding and not requested.get(id)
         ]
+        self._header = b""  # of the received telecommand or request
         self._every = computer.settings.every_ms
         self._next = 0
 
@@ -113,6 +114,7 @@ class EnvelopeLine(DeviceLine):
     def received(self, now: int, data: bytes) -> None:
         self.tick(now)
         for event in self.decoder.feed(data):
+            self._header = event.header
             if event.event == "request" and event.id is not None:
                 self._request(now, event.id)
                 continue
@@ -267,7 +269,9 @@ class EnvelopeLine(DeviceLine):
             telemetry = id if response.telemetry is None else response.telemetry
             message = self.ids.telemetry[telemetry][0].message
             frames[telemetry] = program.current(now, message)
-        sent = response_to(program.link, id, data, verdict, reason, frames, is_request)
+        sent = response_to(
+            program.link, id, data, verdict, reason, frames, is_request, self._header
+        )
         on = "reply" if verdict == "reply" else "acknowledge"
         if isinstance(sent, PacketData):
             self.queue(now, on, self.sender.encode_packet(*sent))

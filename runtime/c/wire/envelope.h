@@ -76,6 +76,27 @@ static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_
     }
 }
 
+/* Return a number of a message. See icd_number_place_t. */
+static inline uint32_t icdgen_stream_number(
+    const icd_number_place_t *place, uint32_t id, const uint8_t *data, size_t length)
+{
+    uint32_t number = 0;
+    for (size_t i = 0; i < place->size; ++i) {
+        const size_t at = ICDGEN_SIZE(place->at) + (place->little ? place->size - 1u - i : i);
+        uint32_t byte = 0;
+        if (at < sizeof id) {
+            const uint32_t shift = 8u * (3u - ICDGEN_U32(at));
+            byte = (id >> shift) & 0xFFu;
+        } else if (at - sizeof id < length) {
+            byte = data[at - sizeof id];
+        } else {
+            /* the message has no such byte */
+        }
+        number = (number << 8) | byte;
+    }
+    return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
+}
+
 /* State of a checksum that is computed piece by piece. */
 typedef struct {
     const icd_check_form_t *form;

@@ -63,27 +63,6 @@ static inline uint32_t icdgen_verdict_bit(icd_verdict_t verdict)
     return UINT32_C(1) << ICDGEN_U32(verdict);
 }
 
-/* Return a number of a message. See icd_number_place_t. */
-static inline uint32_t icdgen_stream_number(
-    const icd_number_place_t *place, uint32_t id, const uint8_t *data, size_t length)
-{
-    uint32_t number = 0;
-    for (size_t i = 0; i < place->size; ++i) {
-        const size_t at = ICDGEN_SIZE(place->at) + (place->little ? place->size - 1u - i : i);
-        uint32_t byte = 0;
-        if (at < sizeof id) {
-            const uint32_t shift = 8u * (3u - ICDGEN_U32(at));
-            byte = (id >> shift) & 0xFFu;
-        } else if (at - sizeof id < length) {
-            byte = data[at - sizeof id];
-        } else {
-            /* the message has no such byte */
-        }
-        number = (number << 8) | byte;
-    }
-    return (number >> place->shift) & (UINT32_C(0xFFFFFFFF) >> (32u - place->bits));
-}
-
 static inline bool icdgen_is_same_place(const icd_number_place_t *a, const icd_number_place_t *b)
 {
     return a->at == b->at && a->size == b->size && a->shift == b->shift && a->bits == b->bits && a->little == b->little;
@@ -175,6 +154,12 @@ static inline const icd_response_t *icdgen_matching(
     return response;
 }
 
+/* Return the number of sources that are known before a packet is sent, because they are not in its header. */
+static inline size_t icdgen_known(const icd_stream_awaited_t *awaited)
+{
+    return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
+}
+
 /* Return whether the responses to two requests have different numbers at the same place. */
 static inline bool icdgen_differs_in_echo(
     const icd_stream_awaited_t *a,
@@ -186,8 +171,8 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < response_b->echo_count; ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (icdgen_is_same_place(&echo->place, &other->place) &&
-                a->sources[echo->source] != b->sources[other->source]) {
+            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_known(a) &&
+                other->source < icdgen_known(b) && a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
         }
@@ -406,14 +391,14 @@ static inline bool icdgen_has_reply(const icd_exchange_t *exchange, uint32_t id)
 static inline icdgen_outgoing_t icdgen_stream_outgoing(const icd_stream_client_t *client, const icd_stream_slot_t *slot)
 {
     const icdgen_outgoing_t outgoing = {
-        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length};
+        client->sender.link->stream, ICD_TELECOMMAND, slot->row, slot->data, slot->length, NULL, NULL};
     return outgoing;
 }
 
 ICDGEN_API icd_status_t
 icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_stream_request_t *request)
 {
-    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, false, 0u};
+    static const icd_exchange_t no_exchange = {NULL, NULL, 0u, 0u, 0u, false, 0u};
     const bool asks = request->direction == ICD_TELEMETRY;
     if (!client->ready) {
         return ICD_ERROR_UNSUPPORTED;
@@ -473,7 +458,7 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     } else {
         /* as in the ICD */
     }
-    for (size_t i = 0; i < exchange->source_count; ++i) {
+    for (size_t i = 0; i < icdgen_known(&slot->awaited); ++i) {
         slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
     }
     client->started++;
@@ -563,7 +548,9 @@ ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *b
     if (slot == NULL || !icdgen_stream_may_be_sent(client, slot)) {
         return false;
     }
-    const icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    icdgen_outgoing_t outgoing = icdgen_stream_outgoing(client, slot);
+    outgoing.exchange = slot->awaited.exchange;
+    outgoing.sources = slot->awaited.sources;
     if (icdgen_outgoing_send(&outgoing, &client->sender, buffer, capacity, written) != ICD_OK) {
         return false;
     }

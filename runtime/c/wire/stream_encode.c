@@ -185,6 +185,8 @@ typedef struct {
     const icd_stream_row_t *row; /* the message; as a telecommand also telemetry, for the packet that requests it */
     const uint8_t *data;
     size_t length;
+    const icd_exchange_t *exchange; /* its responses; NULL if they do not matter */
+    uint32_t *sources;              /* of `exchange`: the numbers in the header are written here */
 } icdgen_outgoing_t;
 
 static inline bool icdgen_outgoing_requests(const icdgen_outgoing_t *outgoing)
@@ -249,6 +251,13 @@ static inline icd_status_t icdgen_outgoing_encode(
         const uint32_t sum = icdgen_envelope_check(packet, row, header, data, length, trailer);
         icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
     }
+    if (outgoing->exchange != NULL) {
+        const icd_exchange_t *const exchange = outgoing->exchange;
+        const size_t first = ICDGEN_SIZE(exchange->source_count) - exchange->header_count;
+        for (size_t i = first; i < exchange->source_count; ++i) {
+            outgoing->sources[i] = icdgen_stream_number(&exchange->sources[i], 0, header, packet->header_bytes);
+        }
+    }
     icdgen_line_t line = {outgoing->form->delimited_by, buffer, capacity, 0, 0, false, false};
     icdgen_line_delimiter(&line, true);
     icdgen_line_write(&line, header, packet->header_bytes);
@@ -270,7 +279,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length};
+    icdgen_outgoing_t outgoing = {NULL, direction, NULL, data, length, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_message(&outgoing, link, id);
     return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
@@ -283,7 +292,7 @@ ICDGEN_API icd_status_t icd_stream_encode_request(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_request(&outgoing, link, telemetry);
     return status != ICD_OK ? status : icdgen_outgoing_encode(&outgoing, values, buffer, capacity, written);
 }
@@ -342,7 +351,7 @@ ICDGEN_API icd_status_t icd_stream_send(
     size_t capacity,
     size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length};
+    icdgen_outgoing_t outgoing = {NULL, sender->direction, NULL, data, length, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_message(&outgoing, sender->link, id);
     return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
 }
@@ -350,7 +359,7 @@ ICDGEN_API icd_status_t icd_stream_send(
 ICDGEN_API icd_status_t icd_stream_send_request(
     icd_stream_sender_t *sender, uint32_t telemetry, uint8_t *buffer, size_t capacity, size_t *written)
 {
-    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u};
+    icdgen_outgoing_t outgoing = {NULL, ICD_TELECOMMAND, NULL, NULL, 0u, NULL, NULL};
     const icd_status_t status = icdgen_outgoing_request(&outgoing, sender->link, telemetry);
     return status != ICD_OK ? status : icdgen_outgoing_send(&outgoing, sender, buffer, capacity, written);
 }

@@ -142,9 +142,14 @@ typedef struct {
 
 /** The possible responses to a telecommand or to a request of telemetry, except for the requested telemetry. */
 typedef struct {
-    const icd_number_place_t *sources; /**< Numbers of the telecommand that responses repeat. */
+    /**
+     * Numbers of the telecommand that responses repeat. The last `header_count` of them are in the header of its packet,
+     * and count as in a packet that responds.
+     */
+    const icd_number_place_t *sources;
     const icd_response_t *responses;
     uint8_t source_count;
+    uint8_t header_count;
     uint8_t response_count;
     bool is_request;  /**< Of a request of telemetry: the requested telemetry precedes `responses`. */
     uint32_t timeout; /**< In milliseconds; 0: the time-out of the client. */

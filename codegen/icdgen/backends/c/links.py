@@ -534,7 +534,12 @@ class _Tables:
         rows = []
         for exchange in form.exchanges:
             sources = self.shared(
-                "sources", "icd_number_place_t", map(number_place, exchange.sources)
+                "sources",
+                "icd_number_place_t",
+                (
+                    number_place(place, ID_BYTES * exchange.is_in_header(source))
+                    for source, place in enumerate(exchange.sources)
+                ),
             )
             # The requested telemetry, whose id is that of the request, has no row.
             declared = [
@@ -546,7 +551,7 @@ class _Tables:
                 "responses", "icd_response_t", map(self.response, declared)
             )
             is_request = boolean(len(declared) < len(exchange.responses))
-            counts = f"{len(exchange.sources)}u, {len(declared)}u, {is_request}"
+            counts = f"{len(exchange.sources)}u, {exchange.in_header}u, {len(declared)}u, {is_request}"
             rows.append(f"{{{sources}, {responses}, {counts}, {exchange.timeout}u}}")
         self.array("exchanges", "icd_exchange_t", rows)
         return {

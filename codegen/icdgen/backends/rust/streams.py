@@ -148,6 +148,7 @@ def _exchange(exchange: Exchange) -> Brackets:
     return struct(
         "Exchange",
         part("sources", flat_rows(map(_place, exchange.sources))),
+        part("in_header", spelled(exchange.in_header)),
         part("responses", rows(map(_response, exchange.responses))),
         part("timeout_ms", spelled(exchange.timeout)),
     )

@@ -16,6 +16,7 @@ from icdgen.icd.packets import ID_ROLE, Packet
 from icdgen.icd.places import NodePlace
 from icdgen.icd.responses import (
     BUSY,
+    HEADER,
     ID,
     KINDS,
     MOST_SOURCES,
@@ -275,9 +276,12 @@ def _no_echo(
     """
     node, name = declared.link.node, field.name
     width = field.id_bits if repeated == ID else field.bits
+    if repeated.startswith(HEADER):
+        return _no_header(declared, name, width, repeated.removeprefix(HEADER))
     if declared.is_of_request:
         if repeated != ID and id_byte_of(node, repeated) is None:
-            return "a request of telemetry has no part but its id", "write `id`"
+            text = "a request of telemetry has no part but its id and its header"
+            return text, "write `id`, or `header.` and the name of a field"
         ids = [id for id, _ in ids_of(ctx, node, TELEMETRY)]
         bits = max(ids, default=0).bit_length()
         if repeated == ID and bits > width:
@@ -369,6 +373,34 @@ def _echoes(ctx: Context, declared: Declared) -> Iterator[Fault]:
         text, help = _no_echo(ctx, declared, field, repeated)
         if text:
             yield Fault.at(owner, key, text, help)
+
+
+def _no_header(
+    declared: Declared, name: str, width: int, repeated: str
+) -> tuple[str, str]:
+    """Return why a field cannot repeat a field of the header of the telecommands or of
+    a request, and the remedy; two empty texts if it can.
+    """
+    packets = declared.link.declared
+    sent = [packets.by_name(packets.requesting)] if declared.is_of_request else []
+    for message in declared.telecommands:
+        sent += packets.of(message.name, TELECOMMAND)[:1]
+    for packet in sent:
+        if packet is None:
+            continue  # ICD186
+        row = packet.named(repeated)
+        title = f"the packet {quote(packet.name)}" if packet.name else "the link"
+        if row is None or not any(row is each for each in packet.header):
+            known = [each.get("name", each["role"]) for each in packet.header]
+            text = f"{title} has no field {quote(repeated)} in its header"
+            return text, suggestion(repeated, known, "name a field of the header")[0]
+        if row["role"] == "checksum":
+            return "a checksum is not repeated", "name another field of the header"
+        if row["bits"] > width:
+            bits = count(row["bits"], "bit")
+            text = f"{quote(name)} of {count(width, 'bit')} cannot repeat {bits} of {quote(repeated)} in the header"
+            return text, "correct the width of the field, or name another field"
+    return "", ""
 
 
 def _misfit(

@@ -13,6 +13,7 @@ from icdgen_runtime.wire.link import Link
 from icdgen_runtime.wire.stream import (
     stream_encode,
     stream_encode_packet,
+    stream_encode_request,
     values_of,
 )
 
@@ -90,8 +91,11 @@ class Sample:
         else:
             assert row is not None
             data = bytearray(self.source.randbytes(row.most))
+        header = self.header_of(asked) if exchange.in_header else b""
         for echo in response.echoes:
-            number = wire_place(exchange.sources[echo.source]).of(telecommand)
+            in_header = exchange.is_in_header(echo.source)
+            sent = header if in_header else telecommand
+            number = wire_place(exchange.sources[echo.source]).of(sent)
             wire_place(echo.place).put(number ^ int(foreign), data)
         if response.status and status is not None:
             wire_place(response.status).put(status, data)
@@ -104,6 +108,15 @@ class Sample:
             return {"at": at, "receive": line.hex()}
         assert row is not None
         return self.come(at, row, data=bytes(data))
+
+    def header_of(self, asked: Row) -> bytes:
+        """Return the header of what a row sends, with the first sequence number."""
+        stream = need(self.link.stream, "stream")
+        link = self.link._replace(stream=stream._replace(delimited_by="none"))
+        if "telecommand" not in asked:
+            return stream_encode_request(link, asked["telemetry"])
+        data = bytes.fromhex(asked["bytes"])
+        return stream_encode(link, asked["telecommand"], data)
 
     def packet(self, number: int, draft: bytes) -> bytes:
         """Return a packet without a message, with the id and values of a draft."""

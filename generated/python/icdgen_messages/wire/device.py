@@ -53,6 +53,7 @@ def response_to(
     reason: Optional[int] = None,
     frames: Optional[Mapping[int, Buffer]] = None,
     is_request: bool = False,
+    header: Buffer = b"",
 ) -> Union[TelemetryData, PacketData, None]:
     """Return the response of a device to a telecommand; None if the ICD has no such
     response.
@@ -65,6 +66,8 @@ def response_to(
     that the ICD describes as `echo`, and has the status for ``verdict``: of several
     values, the one that the ICD lists first. ``reason`` is the reason of a refusal; in a
     packet without a message, the first of the ICD unless given.
+    ``header`` is the header of the telecommand (`StreamEvent.header`), if responses
+    repeat numbers of it; without, these are the defaults of the ICD, or 0.
     ``frames`` has the other bits, by id of the telemetry; without, they are 0. Raise
     `RangeError` for a reason whose number is the status of another verdict.
     """
@@ -86,8 +89,12 @@ def response_to(
     else:
         filled = _defaults(form.packets[response.packet])
     sent = id.to_bytes(_ID_BYTES, "big") + bytes(data)
+    numbers = exchange.numbers(sent)
+    if header:
+        numbers += exchange.numbers_in(bytes(header))
     for echo in response.echoes:
-        echo.place.put(exchange.sources[echo.source].of(sent), filled)
+        if echo.source < len(numbers):
+            echo.place.put(numbers[echo.source], filled)
     if response.status:
         response.status.put(_status(response, verdict), filled)
     is_status = response.reason == response.status
@@ -169,8 +176,10 @@ def _refusing(form: Stream) -> Optional[Exchange]:
     """Return the exchange by whose response an unknown telecommand is refused."""
     for exchange in form.exchanges:
         response = _response(exchange, "nak")
+        end = len(exchange.sources) - exchange.in_header
         if response and all(
-            _is_in_id(exchange.sources[echo.source]) for echo in response.echoes
+            echo.source >= end or _is_in_id(exchange.sources[echo.source])
+            for echo in response.echoes
         ):
             return exchange
     return None

@@ -163,11 +163,26 @@ class Exchange(NamedTuple):
 
     sources: tuple[NumberPlace, ...]
     """Numbers of the telecommand that responses repeat: places in its id, as 4 bytes
-    with the most significant first, followed by its data.
+    with the most significant first, followed by its data. The last ``in_header`` of
+    them are places in the header of its packet.
     """
     responses: tuple[Response, ...]
     timeout: int = 0
     """The time-out in milliseconds; 0: that of the client."""
+    in_header: int = 0
+    """Number of sources in the header."""
+
+    def numbers(self, telecommand: bytes) -> tuple[int, ...]:
+        """Return the numbers of a telecommand, given as its id, as 4 bytes, and its
+        data.
+        """
+        end = len(self.sources) - self.in_header
+        return tuple(place.of(telecommand) for place in self.sources[:end])
+
+    def numbers_in(self, header: bytes) -> tuple[int, ...]:
+        """Return the numbers of the header of a telecommand."""
+        end = len(self.sources) - self.in_header
+        return tuple(place.of(header) for place in self.sources[end:])
 
 
 class StreamRow(NamedTuple):

@@ -62,9 +62,22 @@ class _Awaited(NamedTuple):
     """Responses to a request: what can arrive, and the numbers that it must repeat."""
 
     responses: tuple[Response, ...]
-    sources: tuple[int, ...]
+    sources: tuple[Optional[int], ...]
+    """Numbers of what is sent. Those in its header are known when it was sent."""
+    exchange: Exchange
     nameless: Optional[StreamRow] = None
     """Expected telemetry that a packet without its id carries."""
+
+    def sent(self, header: bytes) -> _Awaited:
+        """Return the responses to a packet that was sent with this header."""
+        if not self.exchange.in_header:
+            return self
+        plain = self.sources[: -self.exchange.in_header]
+        return self._replace(sources=(*plain, *self.exchange.numbers_in(header)))
+
+    def _is_known(self, source: int) -> bool:
+        """Return whether a number is known before it is sent."""
+        return source < len(self.sources) - self.exchange.in_header
 
     @property
     def needed(self) -> frozenset[Verdict]:
@@ -97,6 +110,8 @@ class _Awaited(NamedTuple):
             (mine.telemetry, mine.packet) == (theirs.telemetry, theirs.packet)
             and not any(
                 echo.place == repeated.place
+                and self._is_known(echo.source)
+                and other._is_known(repeated.source)
                 and self.sources[echo.source] != other.sources[repeated.source]
                 for echo in mine.echoes
                 for repeated in theirs.echoes
@@ -279,6 +294,7 @@ class EnvelopeClient(Generic[N]):
         else:
             line = self._sender.encode(slot.sent_id, slot.request.data)
         slot.attempts += 1
+        slot.awaited = slot.awaited.sent(self._sender.header)
         slot.missing = slot.awaited.needed
         slot.owed.add_transmission()
         slot.state = "wait" if slot.missing else "sent"
@@ -458,7 +474,8 @@ class EnvelopeClient(Generic[N]):
         sent_id = row.id if row else request.id
         nameless = self._nameless(reply if row else request.id)
         telecommand = sent_id.to_bytes(4, "big") + request.data
-        sources = tuple(place.of(telecommand) for place in exchange.sources)
+        unknown = [None] * exchange.in_header
+        sources = (*exchange.numbers(telecommand), *unknown)
         self.begun += 1
         self._set_time(now)
         self._slots.append(
@@ -466,7 +483,7 @@ class EnvelopeClient(Generic[N]):
                 self.begun,
                 request,
                 row.id if row else None,
-                _Awaited(responses, sources, nameless),
+                _Awaited(responses, sources, exchange, nameless),
                 exchange.timeout or self.settings.reply_timeout,
                 request.repeat or (row is not None and row.repeats),
                 kind,

@@ -12,6 +12,7 @@ from .envelope import Direction
 from .errors import UnsupportedError, need
 from .link import Link
 from .stream import stream_encode, stream_encode_packet, stream_encode_request
+from .stuffing import stuffed
 
 
 class Sender:
@@ -30,7 +31,10 @@ class Sender:
         values: Optional[Mapping[str, int]] = None,
     ) -> None:
         self._form = form = need(link.stream, "stream")
-        self._link = link
+        # Without delimiters, to see the header.
+        self._link = link._replace(stream=form._replace(delimited_by="none"))
+        self.header = b""
+        """Header of the last packet."""
         self._direction: Direction = direction
         self._values = dict(values or {})
         fields = form.chosen(direction)
@@ -87,10 +91,15 @@ class Sender:
         """
         field = self._form.packets[packet].of("sequence")
         if field is None or (self._form.per_id and id is None):
-            return encoded(self._values)
+            return self._line(packet, encoded(self._values))
         key = id if self._form.per_id else None
         first = field.values[self._direction == "telemetry"]
         number = self._next.get(key, self._values.get("sequence", first))
-        line = encoded({**self._values, "sequence": number})
+        frame = encoded({**self._values, "sequence": number})
         self._next[key] = (number + 1) & ((1 << field.bits) - 1)
-        return line
+        return self._line(packet, frame)
+
+    def _line(self, packet: int, frame: bytes) -> bytes:
+        """Return the transmitted bytes of a packet."""
+        self.header = frame[: self._form.packets[packet].header_bytes]
+        return stuffed(self._form.delimited_by, frame)

@@ -61,6 +61,8 @@ class StreamEvent(NamedTuple):
     """For a message: its class; None if no message of its id matches."""
     packet: Optional[int] = None
     """For a packet: its index in `Stream.packets`."""
+    header: bytes = b""
+    """For all but packets, gaps and faults of delimiters: the header of the packet."""
     is_request: bool = False
     """For ``unknown_id``, ``length`` and ``checksum``: whether the packet has the format
     of requests of telemetry.
@@ -474,55 +476,54 @@ class StreamDecoder:
         the decoder searches the next frame from the next byte on.
         """
         form, size = packet.form, len(frame)
-        count = size - form.overhead
-        is_request = form.content == "request"
+        count, header = size - form.overhead, frame[: form.header_bytes]
+
+        def fault(why: EventName, id: Optional[int] = None) -> None:
+            is_request = form.content == "request"
+            events.append(StreamEvent(why, id, header=header, is_request=is_request))
+
         if count < 0:
-            return self._doubtful("length", None, events)
+            fault("length")
+            return "doubtful"
         if not packet.fits(frame):
-            return self._doubtful("framing", None, events)
+            fault("framing")
+            return "doubtful"
         if not packet.agrees(frame, count):
-            return self._doubtful("length", None, events)
+            fault("length")
+            return "doubtful"
         given_id = _id_of(form, frame, size)
         row = packet.row(given_id)
         id = packet.only if given_id is None else given_id
         has_row = form.tells_message
         if packet.checksum and form.check:
             if form.check.is_seeded and row is None and has_row:
-                return self._doubtful("unknown_id", id, events, is_request)
+                fault("unknown_id", id)
+                return "doubtful"
             given = _get(form, packet.checksum, frame, size)
             if given != _checksum(form, row, frame):
-                return self._doubtful("checksum", id, events, is_request)
+                fault("checksum", id)
+                return "doubtful"
         if row is None and has_row:
-            events.append(StreamEvent("unknown_id", id, is_request=is_request))
+            fault("unknown_id", id)
             return "proven"
         least, most = packet.bounds(row)
         if not least <= count <= most or (row and not packet.awaits(row, frame)):
-            events.append(StreamEvent("length", id, is_request=is_request))
+            fault("length", id)
             return "proven"
         values = {entry.role: _get(form, entry, frame, size) for entry in packet.values}
         if row is None:
             event = StreamEvent("packet", id, frame, values, packet=packet.number)
         elif packet.is_request_of(row):
-            event = StreamEvent("request", id, b"", values)
+            event = StreamEvent("request", id, b"", values, header=header)
         else:
             data = frame[form.header_bytes : form.header_bytes + count]
             kind = self._types.which(id, bytes(data))
-            event = StreamEvent("message", id, data, values, 0, kind)
+            event = StreamEvent("message", id, data, values, 0, kind, header=header)
         # If each id has its own sequence, only those of messages are counted.
         if event.event == "message" or not self._form.per_id:
             self._check_sequence(packet, id, values, events)
         events.append(event)
         return "message"
-
-    def _doubtful(
-        self,
-        why: EventName,
-        id: Optional[int],
-        events: list[StreamEvent],
-        is_request: bool = False,
-    ) -> Literal["doubtful"]:
-        events.append(StreamEvent(why, id, is_request=is_request))
-        return "doubtful"
 
     def _check_sequence(
         self,

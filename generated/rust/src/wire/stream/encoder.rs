@@ -19,6 +19,9 @@ pub(super) const COBS_WHOLE: u8 = 0xff;
 /// Bytes of a header or trailer, at most.
 const ENVELOPE_BYTES: usize = 64;
 
+/// A header, followed by zeros.
+pub(super) type Header = [u8; ENVELOPE_BYTES];
+
 /// Values of the header and trailer fields that the sender chooses.
 ///
 /// In a message to send, None stands for the default of the ICD, and values of fields that its
@@ -101,6 +104,18 @@ pub fn encode(
     values: &Values,
     out: &mut [u8],
 ) -> Result<usize, Error> {
+    encoded(link, direction, id, data, values, out).map(|(size, _)| size)
+}
+
+/// As [`encode`]; also return the header.
+pub(super) fn encoded(
+    link: &Link,
+    direction: Direction,
+    id: u32,
+    data: &[u8],
+    values: &Values,
+    out: &mut [u8],
+) -> Result<(usize, Header), Error> {
     let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
     let (_, row) = form.row(direction, id).ok_or(Error::UnknownId { id })?;
     if data.len() < row.least || data.len() > row.most {
@@ -145,6 +160,16 @@ pub fn encode_request(
     values: &Values,
     out: &mut [u8],
 ) -> Result<usize, Error> {
+    encoded_request(link, id, values, out).map(|(size, _)| size)
+}
+
+/// As [`encode_request`]; also return the header.
+pub(super) fn encoded_request(
+    link: &Link,
+    id: u32,
+    values: &Values,
+    out: &mut [u8],
+) -> Result<(usize, Header), Error> {
     let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
     let request = form.request.as_ref().ok_or(Error::Unsupported)?;
     let row = form.row(Direction::Telemetry, id).map(|(_, row)| row);
@@ -174,7 +199,7 @@ impl Message<'_> {
         delimited_by: Delimiter,
         values: &Values,
         out: &mut [u8],
-    ) -> Result<usize, Error> {
+    ) -> Result<(usize, Header), Error> {
         let (packet, data) = (self.packet, self.data);
         let (mut header, mut trailer) = ([0; ENVELOPE_BYTES], [0; ENVELOPE_BYTES]);
         let mut values = *values;
@@ -208,9 +233,10 @@ impl Message<'_> {
             };
             field.put(into, sum);
         }
-        let header = head(&header, packet.header_bytes);
+        let front = head(&header, packet.header_bytes);
         let trailer = head(&trailer, packet.trailer_bytes);
-        line(delimited_by, [header, data, trailer], out)
+        let size = line(delimited_by, [front, data, trailer], out)?;
+        Ok((size, header))
     }
 }
 

@@ -207,8 +207,11 @@ pub struct Response {
 #[derive(Clone, Copy, Debug)]
 pub struct Exchange {
     /// Numbers of the telecommand that responses repeat, at most [`Exchange::SOURCES`]: places in
-    /// its id, as 4 bytes with the most significant first, followed by its data.
+    /// its id, as 4 bytes with the most significant first, followed by its data. The last
+    /// `in_header` of them are places in the header of its packet.
     pub sources: &'static [NumberPlace],
+    /// Number of sources in the header.
+    pub in_header: usize,
     /// The responses.
     pub responses: &'static [Response],
     /// The time-out; 0: that of the client.

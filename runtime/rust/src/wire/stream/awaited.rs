@@ -1,10 +1,11 @@
 //! Responses to requests.
 
-use crate::wire::link::{Exchange, Response, ResponseKind, StreamRow, Verdict};
+use crate::wire::link::{Exchange, NumberPlace, Response, ResponseKind, StreamRow, Verdict};
 
 /// Exchange of a telecommand to which nothing responds.
 const SILENCE: &Exchange = &Exchange {
     sources: &[],
+    in_header: 0,
     responses: &[],
     timeout_ms: 0,
 };
@@ -80,7 +81,8 @@ impl Awaited {
     ) -> Self {
         let exchange = exchange.unwrap_or(SILENCE);
         let mut sources = [0; Exchange::SOURCES];
-        for (number, place) in sources.iter_mut().zip(exchange.sources) {
+        let (known, _) = exchange.parts();
+        for (number, place) in sources.iter_mut().zip(known) {
             *number = place.get(&id.to_be_bytes(), data);
         }
         let mut replies = exchange.responses.iter();
@@ -94,6 +96,20 @@ impl Awaited {
             sources,
             nameless: None,
         }
+    }
+
+    /// Store the numbers of the header with which the request was sent.
+    pub(super) fn set_header(&mut self, header: &[u8]) {
+        let (known, in_header) = self.exchange.parts();
+        let numbers = self.sources.iter_mut().skip(known.len());
+        for (number, place) in numbers.zip(in_header) {
+            *number = place.get(header, &[]);
+        }
+    }
+
+    /// Return whether a number is known before it is sent.
+    fn is_known(&self, source: usize) -> bool {
+        source < self.exchange.parts().0.len()
     }
 
     fn responses(&self) -> impl Iterator<Item = Response> {
@@ -160,9 +176,19 @@ impl Awaited {
         mine.echoes.iter().any(|echo| {
             theirs.echoes.iter().any(|repeated| {
                 echo.place == repeated.place
+                    && self.is_known(echo.source)
+                    && other.is_known(repeated.source)
                     && self.source(echo.source) != other.source(repeated.source)
             })
         })
+    }
+}
+
+impl Exchange {
+    /// Return the sources in id and data, and those in the header.
+    fn parts(&self) -> (&'static [NumberPlace], &'static [NumberPlace]) {
+        let known = self.sources.len().saturating_sub(self.in_header);
+        self.sources.split_at(known)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sender that does not wait for replies.
 
-use super::encoder::{encode, encode_request, Values};
+use super::encoder::{encoded, encoded_request, Header, Values};
 use crate::wire::link::{EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
@@ -78,7 +78,8 @@ impl<T, const S: usize> Sender<T, S> {
     /// wrong length or `out` is too small, [`Error::Range`] if a header or trailer value does not
     /// fit into its field.
     pub fn put(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
-        self.put_packet(Sent::Telecommand(id), data, out)
+        let sent = self.put_packet(Sent::Telecommand(id), data, out);
+        sent.map(|(size, _)| size)
     }
 
     /// Encode a request of the telemetry with this id and return the number of bytes written to
@@ -86,18 +87,19 @@ impl<T, const S: usize> Sender<T, S> {
     ///
     /// # Errors
     ///
-    /// See [`encode_request`].
+    /// See [`crate::wire::stream::encode_request`].
     pub fn put_request(&mut self, id: u32, out: &mut [u8]) -> Result<usize, Error> {
-        self.put_packet(Sent::Request(id), &[], out)
+        let sent = self.put_packet(Sent::Request(id), &[], out);
+        sent.map(|(size, _)| size)
     }
 
-    /// Encode a packet with the next sequence number.
+    /// Encode a packet with the next sequence number. Return its size and its header.
     pub(super) fn put_packet(
         &mut self,
         sent: Sent,
         data: &[u8],
         out: &mut [u8],
-    ) -> Result<usize, Error> {
+    ) -> Result<(usize, Header), Error> {
         let form = self.link.stream.as_ref().ok_or(Error::Unsupported)?;
         let (place, packet) = match sent {
             Sent::Telecommand(id) => {
@@ -117,11 +119,11 @@ impl<T, const S: usize> Sender<T, S> {
         if let Some(Some(next)) = counter {
             values.sequence = Some(*next);
         }
-        let size = match sent {
+        let written = match sent {
             Sent::Telecommand(id) => {
-                encode(self.link, Direction::Telecommand, id, data, &values, out)
+                encoded(self.link, Direction::Telecommand, id, data, &values, out)
             }
-            Sent::Request(id) => encode_request(self.link, id, &values, out),
+            Sent::Request(id) => encoded_request(self.link, id, &values, out),
         }?;
         let packet = form.packets.get(packet);
         let field = packet.and_then(|packet| packet.field(EnvelopeRole::Sequence));
@@ -130,6 +132,6 @@ impl<T, const S: usize> Sender<T, S> {
             let number = values.sequence.unwrap_or(default);
             *counter = Some(number.wrapping_add(1) & field.mask());
         }
-        Ok(size)
+        Ok(written)
     }
 }

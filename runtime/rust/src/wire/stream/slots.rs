@@ -1,7 +1,7 @@
 //! The requests of a client, and the responses that may still arrive after their end.
 
 use super::awaited::{Awaited, Needed, Owed};
-use super::encoder::Values;
+use super::encoder::{Header, Values};
 use super::judge::Event;
 use super::sender::Sent;
 use super::Request;
@@ -242,7 +242,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
     /// Write the next message to send, by `put` with its data.
     pub(super) fn output(
         &mut self,
-        put: impl FnOnce(Sent, &[u8]) -> Result<usize, Error>,
+        put: impl FnOnce(Sent, &[u8]) -> Result<(usize, Header), Error>,
     ) -> Result<Option<usize>, Error> {
         let place = self.oldest(|slot| slot.state == State::Queued);
         let sent = place.filter(|place| self.may_be_sent(*place));
@@ -250,7 +250,8 @@ impl<const N: usize, const R: usize> Slots<N, R> {
             Some(slot) => slot,
             None => return Ok(None),
         };
-        let size = put(slot.sent, head(&slot.data, slot.length))?;
+        let (size, header) = put(slot.sent, head(&slot.data, slot.length))?;
+        slot.awaited.set_header(&header);
         let now = self.now;
         slot.attempts = slot.attempts.saturating_add(1);
         slot.missing = slot.awaited.needed();
