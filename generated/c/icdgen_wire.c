@@ -2274,24 +2274,35 @@ ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, 
 
 ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number)
 {
-    const uint32_t position = number - link->files->first_packet;
-    if (position >= packets) {
+    const icd_hole_map_form_t *const form = link->hole_map;
+    uint32_t position;
+    if (form == NULL || link->files == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    position = number - link->files->first_packet;
+    if (position >= packets || position >= form->bytes * 8u) {
         return ICD_ERROR_RANGE;
     }
-    icdgen_hole_put(link->hole_map, map, position, link->hole_map->received);
+    icdgen_hole_put(form, map, position, form->received);
     return ICD_OK;
 }
 
 ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number)
 {
-    const uint32_t position = number - link->files->first_packet;
-    return ((map[position / 8u] & icdgen_hole_bit(link->hole_map, position)) != 0u) == link->hole_map->received;
+    const icd_hole_map_form_t *const form = link->hole_map;
+    uint32_t position;
+    if (form == NULL || link->files == NULL) {
+        return false;
+    }
+    position = number - link->files->first_packet;
+    return position < form->bytes * 8u &&
+        ((map[position / 8u] & icdgen_hole_bit(form, position)) != 0u) == form->received;
 }
 
 ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < packets; ++i) {
+    for (uint32_t i = 0; link->files != NULL && i < packets; ++i) {
         count += icd_hole_map_get(link, map, link->files->first_packet + i) ? 0u : 1u;
     }
     return count;
@@ -3980,7 +3991,12 @@ static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, siz
         return;
     }
     if (!list->has_last || memcmp(list->last, frame, length) != 0) {
+        if (list->count == procedure->link->list->max_entries) {
+            icdgen_end(procedure, ICD_LIMIT);
+            return;
+        }
         icdgen_list_tell(list, frame);
+        list->count++;
         list->again = 0;
     } else if (list->again > procedure->link->client.retries) {
         icdgen_end(procedure, ICD_TIMED_OUT);
@@ -4028,14 +4044,19 @@ ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, 
     return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);
 }
 
+/* Return the number of packets of a block; a block has at most the bytes of the ICD. */
 static inline uint32_t icdgen_block_packets(const icd_link_t *link, uint32_t block)
 {
-    return (block + link->files->packet_bytes - 1u) / link->files->packet_bytes;
+    const icd_files_form_t *const files = link->files;
+    if (files == NULL) {
+        return 0u;
+    }
+    return ((block < files->block_bytes ? block : files->block_bytes) + files->packet_bytes - 1u) / files->packet_bytes;
 }
 
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block)
 {
-    return ICDGEN_SIZE(icdgen_block_packets(link, block) * link->files->packet_bytes);
+    return ICDGEN_SIZE(icdgen_block_packets(link, block) * (link->files != NULL ? link->files->packet_bytes : 0u));
 }
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block)
@@ -4075,14 +4096,12 @@ static inline void icdgen_download_packet(
     icd_download_t *const download = icdgen_download(procedure);
     const icd_files_form_t *const files = procedure->link->files;
     const uint32_t position = number - files->first_packet;
-    if (position >= download->count || length != files->packet_bytes) {
+    if (position >= download->count || length != files->packet_bytes || icdgen_bit(download->got, position)) {
         return;
     }
-    if (!icdgen_bit(download->got, position)) {
-        icdgen_set_bit(download->got, position, true);
-        (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
-        download->there++;
-    }
+    icdgen_set_bit(download->got, position, true);
+    (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
+    download->there++;
     download->last = procedure->now;
     if (download->there == download->count && procedure->want == ICDGEN_WANT_TIME) {
         procedure->until = procedure->now;
@@ -4219,6 +4238,10 @@ static inline void icdgen_download_ready(icd_download_t *download, const uint8_t
         icdgen_end(procedure, ICD_LENGTH);
         return;
     }
+    if (download->length > link->download->max_bytes - download->offset) {
+        icdgen_end(procedure, ICD_LIMIT);
+        return;
+    }
     download->count = (download->length + link->files->packet_bytes - 1u) / link->files->packet_bytes;
     (void)memset(download->got, 0, icd_block_bitmap(link, download->length));
     icdgen_download_round(download);
@@ -4315,6 +4338,9 @@ ICDGEN_API icd_status_t icd_download_init(
     (void)memset(download, 0, sizeof *download);
     if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
+    }
+    if (size != ICD_SIZE_UNKNOWN && size > link->download->max_bytes) {
+        return ICD_ERROR_RANGE;
     }
     block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
     if (buffer_size < icdgen_block_packets(link, block) * link->files->packet_bytes ||

@@ -372,6 +372,8 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest time that the busy flag is set, in milliseconds. */
     uint32_t timeout;
+    /** Maximum number of files in the list. */
+    uint32_t max_entries;
 } icd_list_form_t;
 
 /** Downloading a file. */
@@ -392,10 +394,12 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest time to load a block, in milliseconds. */
     uint32_t ready_timeout;
-    /** Time without a packet after which a burst has ended, in milliseconds. */
+    /** Time without a new packet after which a burst has ended, in milliseconds. */
     uint32_t silence;
     /** Maximum number of bursts for one block. */
     uint32_t rounds;
+    /** Maximum number of bytes of a file. */
+    uint32_t max_bytes;
 } icd_download_form_t;
 
 /** Uploading a file. */
@@ -1314,10 +1318,13 @@ icd_dos_time_pack(const icd_link_t *link, const icd_dos_time_t *time, uint32_t *
  */
 ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
 
-/** Mark packet `number` as received. Return ICD_ERROR_RANGE if the block has no such packet. */
+/**
+ * Mark packet `number` as received. Return ICD_ERROR_RANGE if the block or the map has no such packet,
+ * ICD_ERROR_UNSUPPORTED if the node has no hole maps.
+ */
 ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
 
-/** Return whether packet `number` is marked as received. The block must have such a packet. */
+/** Return whether packet `number` is marked as received; false if the map has no such packet. */
 ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
 
 /** Return the number of missing packets of a block. */
@@ -1703,6 +1710,7 @@ typedef enum {
     ICD_TIMED_OUT, /**< No reply to a necessary request, or a flag did not change in time. */
     ICD_PARAMETER, /**< The node cannot load the block. */
     ICD_LENGTH,    /**< A block or frame has a different length than requested. */
+    ICD_LIMIT,     /**< The file or the list is longer than the ICD allows. */
     ICD_ROUNDS,    /**< Packets are still missing after the maximum number of rounds. */
     ICD_CHECKSUM,  /**< The checksum is still wrong after the maximum number of rounds. */
     ICD_FAILED     /**< The node reports that the operation failed. */
@@ -1780,6 +1788,7 @@ typedef struct {
     icd_procedure_t procedure;
     icd_file_fn *on_file;
     void *context;
+    uint32_t count; /* files passed to `on_file` */
     uint32_t again; /* number of identical frames in a row */
     bool has_last;
     uint8_t last[ICD_STEP_BYTES];
@@ -1812,10 +1821,13 @@ typedef struct {
     uint32_t there;    /* packets received */
     uint32_t rounds;
     uint32_t left; /* I2C, CAN: packets still to be requested; or messages of the hole map sent */
-    uint32_t last; /* time of the last packet */
+    uint32_t last; /* time of the last new packet */
 } icd_download_t;
 
-/** Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes. */
+/**
+ * Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes; 0 if the node
+ * has no file transfer.
+ */
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block);
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
@@ -1824,7 +1836,8 @@ ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
  * Initialize a download. `size`: file size in bytes, or ICD_SIZE_UNKNOWN. `block`: bytes per block, or 0 for the block
  * size of the ICD. `buffer` needs icd_block_buffer() bytes and `bitmap` icd_block_bitmap() bytes; NODE_BLOCK_BYTES and
  * NODE_BLOCK_BITMAP_BYTES are always enough. Both must stay valid during the download.
- * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
+ * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_RANGE if the size is above the limit of the ICD,
+ * ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
  */
 ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,

@@ -380,6 +380,9 @@ class Listing:
     information: Step = telemetry("information", "describes a file")
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
     timeout: int = time("timeout_ms", "longest time that the busy flag is set")
+    max_entries: int = number(
+        "max_entries", "maximum number of files in the list", 1, U32
+    )
 
 
 _COVERS_FILL = "whether the checksum of a block covers the padding of its last packet"
@@ -406,9 +409,17 @@ class Download:
     poll_interval: int = time("poll_interval_ms", f"{_POLL}the ready flag")
     ready_timeout: int = time("ready_timeout_ms", "longest time to load a block")
     silence: int = time(
-        "silence_ms", "time without a packet after which a burst has ended"
+        "silence_ms", "time without a new packet after which a burst has ended"
     )
     rounds: int = number("rounds", "maximum number of bursts for one block", 1, U32)
+    # One less than 32 bits hold: C stores the unknown size as 0xFFFFFFFF.
+    max_bytes: int = number(
+        "max_bytes",
+        "maximum number of bytes of a file",
+        1,
+        U32 - 1,
+        holds=U32,
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -19,6 +19,7 @@ from icdgen.runtime_objects.request_keys import flag, mappings, number, octets, 
 from icdgen.runtime_objects.scripts import bus_of
 
 LONGEST = 1 << 20  # maximum repetitions of the bytes of an upload
+UNKNOWN_CODE = 255  # code of a refusal that the ICD does not define
 
 Row = dict[str, Any]
 ProcedureEvent = AnyDone | Refused | Timeout | Packet
@@ -67,7 +68,9 @@ def event_of(row: object) -> ProcedureEvent:
         case dict(), "done":
             return Done(0, 1, octets(row))
         case dict(), "refused":
-            return Refused(0, 1, row.get("code"))
+            return Refused(0, 1)
+        case dict(), "damaged":
+            return Refused(0, 1, UNKNOWN_CODE)
         case dict(), "timeout":
             return Timeout(0, 1)
     raise Refusal("request", detail="there is no such event")

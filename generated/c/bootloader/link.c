@@ -384,8 +384,9 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
 #endif
 #ifndef ICDGEN_NO_FILES
     /**
-     * Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. The checksum of a large file
-     * has to be computed meanwhile.
+     * Assumed poll_interval_ms: No time is given. Assumed max_entries: No number is given. A list without a last file
+     * has to end at some point. Assumed timeout_ms: No time is given. The checksum of a large file has to be computed
+     * meanwhile.
      */
     static const icd_list_form_t list = {
         {118, -1, 0u, 0u, NULL, NULL}, /* Reset File List Read Pointer */
@@ -393,6 +394,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
         50u, /* poll_interval in ms */
         10000u, /* timeout in ms */
+        1024u, /* max_entries */
     };
 #endif
 #ifndef ICDGEN_NO_FILES
@@ -423,9 +425,10 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
      * Assumed checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the
      * fill. Assumed index_counter: Which counter goes with the index file is not said. Assumed poll_interval_ms: No
      * time is given. Assumed ready_timeout_ms: No time is given. Assumed silence_ms: How a burst ends is not said.
-     * Packets follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed i2c:
-     * That the reads are headed by the id of the frame with the packet's format is not said. Assumed can: Download over
-     * CAN is not described. The packets are requested one by one as on I2C.
+     * Packets follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed
+     * max_bytes: No number is given. A file of unknown size has to end at some point. Assumed i2c: That the reads are
+     * headed by the id of the frame with the packet's format is not said. Assumed can: Download over CAN is not
+     * described. The packets are requested one by one as on I2C.
      */
     static const icd_download_form_t download = {
         {112, -1, 8u, 4u, download_load_places, NULL}, /* Load File Download Block */
@@ -438,6 +441,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         10000u, /* ready_timeout in ms */
         500u, /* silence in ms */
         32u, /* rounds */
+        16777216u, /* max_bytes */
     };
 #endif
 #ifndef ICDGEN_NO_FILES

@@ -7,14 +7,19 @@
 #include "files.c"
 #include "procedure.c"
 
+/* Return the number of packets of a block; a block has at most the bytes of the ICD. */
 static inline uint32_t icdgen_block_packets(const icd_link_t *link, uint32_t block)
 {
-    return (block + link->files->packet_bytes - 1u) / link->files->packet_bytes;
+    const icd_files_form_t *const files = link->files;
+    if (files == NULL) {
+        return 0u;
+    }
+    return ((block < files->block_bytes ? block : files->block_bytes) + files->packet_bytes - 1u) / files->packet_bytes;
 }
 
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block)
 {
-    return ICDGEN_SIZE(icdgen_block_packets(link, block) * link->files->packet_bytes);
+    return ICDGEN_SIZE(icdgen_block_packets(link, block) * (link->files != NULL ? link->files->packet_bytes : 0u));
 }
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block)
@@ -54,14 +59,12 @@ static inline void icdgen_download_packet(
     icd_download_t *const download = icdgen_download(procedure);
     const icd_files_form_t *const files = procedure->link->files;
     const uint32_t position = number - files->first_packet;
-    if (position >= download->count || length != files->packet_bytes) {
+    if (position >= download->count || length != files->packet_bytes || icdgen_bit(download->got, position)) {
         return;
     }
-    if (!icdgen_bit(download->got, position)) {
-        icdgen_set_bit(download->got, position, true);
-        (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
-        download->there++;
-    }
+    icdgen_set_bit(download->got, position, true);
+    (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
+    download->there++;
     download->last = procedure->now;
     if (download->there == download->count && procedure->want == ICDGEN_WANT_TIME) {
         procedure->until = procedure->now;
@@ -198,6 +201,10 @@ static inline void icdgen_download_ready(icd_download_t *download, const uint8_t
         icdgen_end(procedure, ICD_LENGTH);
         return;
     }
+    if (download->length > link->download->max_bytes - download->offset) {
+        icdgen_end(procedure, ICD_LIMIT);
+        return;
+    }
     download->count = (download->length + link->files->packet_bytes - 1u) / link->files->packet_bytes;
     (void)memset(download->got, 0, icd_block_bitmap(link, download->length));
     icdgen_download_round(download);
@@ -294,6 +301,9 @@ ICDGEN_API icd_status_t icd_download_init(
     (void)memset(download, 0, sizeof *download);
     if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
+    }
+    if (size != ICD_SIZE_UNKNOWN && size > link->download->max_bytes) {
+        return ICD_ERROR_RANGE;
     }
     block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
     if (buffer_size < icdgen_block_packets(link, block) * link->files->packet_bytes ||

@@ -35,10 +35,13 @@ typedef struct {
     uint32_t there;    /* packets received */
     uint32_t rounds;
     uint32_t left; /* I2C, CAN: packets still to be requested; or messages of the hole map sent */
-    uint32_t last; /* time of the last packet */
+    uint32_t last; /* time of the last new packet */
 } icd_download_t;
 
-/** Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes. */
+/**
+ * Return the size in bytes of the buffer (and below, of the bitmap) for blocks of at most `block` bytes; 0 if the node
+ * has no file transfer.
+ */
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block);
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
@@ -47,7 +50,8 @@ ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
  * Initialize a download. `size`: file size in bytes, or ICD_SIZE_UNKNOWN. `block`: bytes per block, or 0 for the block
  * size of the ICD. `buffer` needs icd_block_buffer() bytes and `bitmap` icd_block_bitmap() bytes; NODE_BLOCK_BYTES and
  * NODE_BLOCK_BITMAP_BYTES are always enough. Both must stay valid during the download.
- * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
+ * Return ICD_ERROR_LENGTH if a buffer is too small, ICD_ERROR_RANGE if the size is above the limit of the ICD,
+ * ICD_ERROR_UNSUPPORTED if the node has no downloads on this bus.
  */
 ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,

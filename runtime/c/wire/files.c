@@ -32,24 +32,35 @@ ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, 
 
 ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number)
 {
-    const uint32_t position = number - link->files->first_packet;
-    if (position >= packets) {
+    const icd_hole_map_form_t *const form = link->hole_map;
+    uint32_t position;
+    if (form == NULL || link->files == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    position = number - link->files->first_packet;
+    if (position >= packets || position >= form->bytes * 8u) {
         return ICD_ERROR_RANGE;
     }
-    icdgen_hole_put(link->hole_map, map, position, link->hole_map->received);
+    icdgen_hole_put(form, map, position, form->received);
     return ICD_OK;
 }
 
 ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number)
 {
-    const uint32_t position = number - link->files->first_packet;
-    return ((map[position / 8u] & icdgen_hole_bit(link->hole_map, position)) != 0u) == link->hole_map->received;
+    const icd_hole_map_form_t *const form = link->hole_map;
+    uint32_t position;
+    if (form == NULL || link->files == NULL) {
+        return false;
+    }
+    position = number - link->files->first_packet;
+    return position < form->bytes * 8u &&
+        ((map[position / 8u] & icdgen_hole_bit(form, position)) != 0u) == form->received;
 }
 
 ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < packets; ++i) {
+    for (uint32_t i = 0; link->files != NULL && i < packets; ++i) {
         count += icd_hole_map_get(link, map, link->files->first_packet + i) ? 0u : 1u;
     }
     return count;

@@ -14,10 +14,13 @@
  */
 ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
 
-/** Mark packet `number` as received. Return ICD_ERROR_RANGE if the block has no such packet. */
+/**
+ * Mark packet `number` as received. Return ICD_ERROR_RANGE if the block or the map has no such packet,
+ * ICD_ERROR_UNSUPPORTED if the node has no hole maps.
+ */
 ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
 
-/** Return whether packet `number` is marked as received. The block must have such a packet. */
+/** Return whether packet `number` is marked as received; false if the map has no such packet. */
 ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
 
 /** Return the number of missing packets of a block. */

@@ -39,7 +39,12 @@ static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, siz
         return;
     }
     if (!list->has_last || memcmp(list->last, frame, length) != 0) {
+        if (list->count == procedure->link->list->max_entries) {
+            icdgen_end(procedure, ICD_LIMIT);
+            return;
+        }
         icdgen_list_tell(list, frame);
+        list->count++;
         list->again = 0;
     } else if (list->again > procedure->link->client.retries) {
         icdgen_end(procedure, ICD_TIMED_OUT);

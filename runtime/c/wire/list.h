@@ -26,6 +26,7 @@ typedef struct {
     icd_procedure_t procedure;
     icd_file_fn *on_file;
     void *context;
+    uint32_t count; /* files passed to `on_file` */
     uint32_t again; /* number of identical frames in a row */
     bool has_last;
     uint8_t last[ICD_STEP_BYTES];

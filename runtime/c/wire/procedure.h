@@ -19,6 +19,7 @@ typedef enum {
     ICD_TIMED_OUT, /**< No reply to a necessary request, or a flag did not change in time. */
     ICD_PARAMETER, /**< The node cannot load the block. */
     ICD_LENGTH,    /**< A block or frame has a different length than requested. */
+    ICD_LIMIT,     /**< The file or the list is longer than the ICD allows. */
     ICD_ROUNDS,    /**< Packets are still missing after the maximum number of rounds. */
     ICD_CHECKSUM,  /**< The checksum is still wrong after the maximum number of rounds. */
     ICD_FAILED     /**< The node reports that the operation failed. */

@@ -16,6 +16,8 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest time that the busy flag is set, in milliseconds. */
     uint32_t timeout;
+    /** Maximum number of files in the list. */
+    uint32_t max_entries;
 } icd_list_form_t;
 
 /** Downloading a file. */
@@ -36,10 +38,12 @@ typedef struct {
     uint32_t poll_interval;
     /** Longest time to load a block, in milliseconds. */
     uint32_t ready_timeout;
-    /** Time without a packet after which a burst has ended, in milliseconds. */
+    /** Time without a new packet after which a burst has ended, in milliseconds. */
     uint32_t silence;
     /** Maximum number of bursts for one block. */
     uint32_t rounds;
+    /** Maximum number of bytes of a file. */
+    uint32_t max_bytes;
 } icd_download_form_t;
 
 /** Uploading a file. */

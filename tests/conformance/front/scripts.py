@@ -241,7 +241,7 @@ def _outcome(given: object) -> tuple[object, ...]:
         return name, octets(given).hex()
     if name == "packet":
         return name, number(given, "number", 0, 65535), octets(given).hex()
-    if name in ("refused", "timeout"):
+    if name in ("refused", "damaged", "timeout"):
         return (name,)
     raise Refusal("request", detail="there is no such event")
 

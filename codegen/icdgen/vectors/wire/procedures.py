@@ -19,6 +19,8 @@ from icdgen.vectors.wire.operations import neighbours
 
 STEPS = 100_000  # limit above the steps of any procedure
 ATTEMPTS = 8  # attempts of a client
+MOST_FILES = 16  # of a list for a script of its limit, which would otherwise be long
+MOST_BYTES = 1 << 12  # of a file for the same
 
 
 def record(
@@ -57,8 +59,10 @@ def scripts(link: AnyLink, facts: Facts) -> Requests:
     if form.list:
         for loss in (0.0, 0.3):
             yield from _recorded(link, facts, "the list of files", {"do": "list"}, loss)
+        if form.list.max_entries <= MOST_FILES:
+            yield from _more_files_than_allowed(link, facts, form.list.max_entries)
     if form.download:
-        yield from _downloads(link, facts)
+        yield from _downloads(link, facts, form.download.max_bytes)
     if form.upload:
         yield from _uploads(link, facts, form.upload)
     else:
@@ -115,9 +119,29 @@ def _recorded(
     yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
 
 
-def _downloads(link: AnyLink, facts: Facts) -> Requests:
+def _more_files_than_allowed(link: AnyLink, facts: Facts, most: int) -> Requests:
+    for files in (most, most + 1):
+        node = FileNode(link, facts, UART, Random(files))
+        node.files = {(2, counter): bytes(counter) for counter in range(files)}
+        script, _ = record(link, {"do": "list"}, node)
+        yield f"{files} files", {"op": "file", "do": "list", "script": script}
+
+
+def _downloads(link: AnyLink, facts: Facts, most: int) -> Requests:
     assert facts.files
     size = facts.files.packet_bytes
+    request: dict[str, Any] = {"do": "download", "bus": UART, "type": 2, "counter": 0}
+    for length in (most, most + 1):
+        first = {"op": "file", **request, "size": length, "script": [{"at": 0}]}
+        yield f"a file of {length} bytes", first
+        if length <= MOST_BYTES:
+            node = FileNode(link, facts, UART, Random(length))
+            node.files[2, 0] = node.source.randbytes(length)
+            script, _ = record(link, request, node)
+            why = f"a file of {length} bytes, of unknown size"
+            yield why, {"op": "file", **request, "script": script}
+    if most < max(131, 3 * size):
+        return
     for bus in facts.files.packet_ids:
         for loss in (0.0, 0.3):
             request = {

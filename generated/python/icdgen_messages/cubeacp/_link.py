@@ -507,6 +507,9 @@ LINK: link.Link[_Node] = link.Link(
             # Assumed: No time is given. The checksum of a large file has to be
             #   computed meanwhile.
             timeout=10000,
+            # Assumed: No number is given. A list without a last file has to end at
+            #   some point.
+            max_entries=1024,
         ),
         download=link.DownloadForm(
             load=link.Step(
@@ -551,6 +554,9 @@ LINK: link.Link[_Node] = link.Link(
             silence=500,
             # Assumed: Nothing is said about giving up.
             rounds=32,
+            # Assumed: No number is given. A file of unknown size has to end at some
+            #   point.
+            max_bytes=16777216,
         ),
         erase=link.ErasureForm(
             request=link.Step(
@@ -737,6 +743,12 @@ LINK: link.Link[_Node] = link.Link(
         ),
         link.Assumption(
             section="file_transfer.download",
+            key="max_bytes",
+            value=16777216,
+            why="No number is given. A file of unknown size has to end at some point.",
+        ),
+        link.Assumption(
+            section="file_transfer.download",
             key="i2c",
             value={
                 "packet": "File Download Buffer with File Contents",
@@ -795,6 +807,12 @@ LINK: link.Link[_Node] = link.Link(
             key="poll_interval_ms",
             value=50,
             why="No time is given.",
+        ),
+        link.Assumption(
+            section="file_transfer.list",
+            key="max_entries",
+            value=1024,
+            why="No number is given. A list without a last file has to end at some point.",
         ),
         link.Assumption(
             section="file_transfer.list",

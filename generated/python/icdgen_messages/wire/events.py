@@ -67,6 +67,11 @@ class Refused:
     handle: int = field(default=0, compare=False, repr=False)
 
     @property
+    def may_be_damaged(self) -> bool:
+        """Whether the ICD does not define the code."""
+        return self.code is not None and self.reason is None
+
+    @property
     def message(self) -> Optional[Message]:
         """The response with header and trailer; None on other links."""
         return self.type.from_bytes(self.data) if self.type else None

@@ -11,7 +11,7 @@ from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 from .._base import Message
 from .._errors import IcdError
 from .._hints import N
-from .client import Client, Request
+from .client import Client
 from .envelope_client import EnvelopeClient
 from .errors import BusyError, UnsupportedError
 from .events import (
@@ -197,30 +197,16 @@ class Exchanges(Generic[N]):
     def _drive(self, procedure: P, progress: Optional[Progress] = None) -> Exchange[P]:
         events: list[Event] = []
         reported: Optional[tuple[int, Optional[int]]] = None
-        request: Optional[Request] = None
         refused: Optional[Refused] = None
-        attempts_left = 0
         while True:
-            is_again = False
             for event in events:
                 if isinstance(event, Refused):
                     refused = event
-                    if _may_be_damaged(event):
+                    if event.may_be_damaged:
                         self._report(event)
-                        is_again = (
-                            bool(request and request.repeat) and attempts_left > 0
-                        )
-                        if is_again:
-                            continue
-                        event = Timeout(event.id, event.attempts)
                 procedure.event(self._now(), event)
             events = []
-            if is_again:
-                attempts_left -= 1
-            elif not self.client.busy:
-                request = procedure.next(self._now())
-                attempts_left = self.client.settings.retries
-            if request and not self.client.busy:
+            if not self.client.busy and (request := procedure.next(self._now())):
                 events = self.client.start(self._now(), request)
             yield "send"
             if progress and procedure.progress != reported:
@@ -266,8 +252,3 @@ def _with_data(outcome: Outcome, reply: Optional[Reply]) -> Outcome:
 def outcome_of(outcome: Outcome, message: type[R_co]) -> OutcomeOf[R_co]:
     """Return the outcome with the type of the message, which the client has checked."""
     return cast(OutcomeOf[R_co], outcome)
-
-
-def _may_be_damaged(event: Refused) -> bool:
-    """Return whether the ICD does not define the code."""
-    return event.code is not None and event.reason is None

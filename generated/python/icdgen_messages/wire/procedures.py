@@ -13,7 +13,15 @@ from .events import AnyDone, Done, Event, Outcome, Packet, Refused, Timeout
 from .link import Link, Step
 
 Result = Literal[
-    "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"
+    "done",
+    "refused",
+    "timeout",
+    "parameter",
+    "length",
+    "limit",
+    "rounds",
+    "checksum",
+    "error",
 ]
 
 
@@ -56,6 +64,7 @@ class Procedure:
         self._now: float = 0
         self._action: Optional[Action] = None
         self._is_requested = False
+        self._repetitions = 0  # of the request, after damaged acknowledges
         self._steps: Optional[Steps] = None
 
     @property
@@ -90,7 +99,23 @@ class Procedure:
             self._packet(event.number, event.data)
         elif isinstance(event, (Done, Refused, Timeout)) and self._is_requested:
             self._is_requested = False
-            self._advance(event)
+            if not (isinstance(event, Refused) and event.may_be_damaged):
+                self._repetitions = 0
+                self._advance(event)
+            elif self._is_repeatable:
+                self._repetitions += 1
+            else:
+                self._repetitions = 0
+                self._advance(Timeout(event.id, event.attempts))
+
+    @property
+    def _is_repeatable(self) -> bool:
+        """Whether the request can be sent again after a damaged acknowledge."""
+        return (
+            isinstance(self._action, Request)
+            and self._action.repeat
+            and self._repetitions < self.link.settings.retries
+        )
 
     def _run(self) -> Steps:
         raise NotImplementedError

@@ -57,6 +57,8 @@ class FileList(FileProcedure):
             if not any(frame):
                 return
             if frame != last:
+                if len(self.entries) == form.max_entries:
+                    raise Ended("limit")
                 numbers = {
                     role: values[role] for role in FileEntry._fields if role in values
                 }
@@ -78,7 +80,8 @@ class Download(FileProcedure):
     """Download a file, block by block.
 
     ``size`` None: up to the end of the file, as required for the index file. ``block``:
-    bytes of a block, limited by the ICD.
+    bytes of a block, limited by the ICD. Raise `RangeError` for a size above the limit
+    of the ICD, and `UnsupportedError`.
     """
 
     def __init__(
@@ -91,7 +94,9 @@ class Download(FileProcedure):
         block: Optional[int] = None,
     ) -> None:
         super().__init__(link)
-        self._form = need(self._files.download, "file_transfer.download")
+        form = self._form = need(self._files.download, "file_transfer.download")
+        if size is not None and not 0 <= size <= form.max_bytes:
+            raise RangeError("size", f"0 to {form.max_bytes}", size)
         self.size = size
         self.blocks: list[tuple[int, bytes]] = []
         """Offset and data of each received block."""
@@ -103,7 +108,7 @@ class Download(FileProcedure):
         self._offset = 0
         self._packets: dict[int, bytes] = {}
         self._count = 0  # packets of the block
-        self._last: float = 0  # time of the last packet
+        self._last: float = 0  # time of the last new packet
 
     @property
     def data(self) -> bytes:
@@ -116,9 +121,13 @@ class Download(FileProcedure):
 
     def _packet(self, number: int, data: bytes) -> None:
         position = number - self._files.first_packet
-        if not 0 <= position < self._count:
+        if (
+            not 0 <= position < self._count
+            or position in self._packets
+            or len(data) != self._files.packet_bytes
+        ):
             return
-        self._packets.setdefault(position, data)  # a repeated packet is ignored
+        self._packets[position] = data
         self._last = self._now
         if len(self._packets) == self._count and isinstance(self._action, Wait):
             self._action = Wait(self._now)
@@ -143,6 +152,8 @@ class Download(FileProcedure):
             size: int = ready["length"]
             if size > length or (self.size is not None and size != length):
                 raise Ended("length")
+            if self._offset + size > form.max_bytes:
+                raise Ended("limit")
             self._count = self._files.packets_of(size)
             while len(self._packets) < self._count:
                 if rounds == form.rounds:
@@ -175,9 +186,9 @@ class Download(FileProcedure):
 
     def _round(self) -> Steps:
         """Request and receive one burst of the missing packets."""
-        missing = self._count - len(self._packets)
         if self._packets:
             yield from self._send_hole_map()
+        missing = self._count - len(self._packets)
         self._last = self._now
         values = {
             "length": self._form.message_length,
@@ -211,13 +222,12 @@ class Download(FileProcedure):
     def _send_hole_map(self) -> Steps:
         form = need(self.link.hole_map, "file_transfer.hole_map")
         first = self._files.first_packet
-        received = [first + position for position in self._packets]
-        pieces = HoleMap(self.link, self._count, received).messages()
-        for id, piece in zip(
-            form.telecommands, pieces[: _maps(self.link, self._count)]
-        ):
+        for piece, id in enumerate(form.telecommands[: _maps(self.link, self._count)]):
+            # Packets of the last burst may still arrive between two messages.
+            received = [first + position for position in self._packets]
+            pieces = HoleMap(self.link, self._count, received).messages()
             message = self.link.TELECOMMANDS[id]()
-            setattr(message, form.attribute, piece)
+            setattr(message, form.attribute, pieces[piece])
             data = message.to_bytes()
             yield from self._require(Request("telecommand", id, data, repeat=True))
 

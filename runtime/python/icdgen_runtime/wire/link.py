@@ -287,6 +287,8 @@ class ListForm(NamedTuple):
     """Time between two polls of the busy flag, in milliseconds."""
     timeout: int
     """Longest time that the busy flag is set, in milliseconds."""
+    max_entries: int
+    """Maximum number of files in the list."""
 
 
 class DownloadForm(NamedTuple):
@@ -309,9 +311,11 @@ class DownloadForm(NamedTuple):
     ready_timeout: int
     """Longest time to load a block, in milliseconds."""
     silence: int
-    """Time without a packet after which a burst has ended, in milliseconds."""
+    """Time without a new packet after which a burst has ended, in milliseconds."""
     rounds: int
     """Maximum number of bursts for one block."""
+    max_bytes: int
+    """Maximum number of bytes of a file."""
 
 
 class UploadForm(NamedTuple):

@@ -49,7 +49,7 @@ impl Erasure {
             State::Request => match core.frame(answer) {
                 Some(_) if self.polls => {
                     let (interval, timeout) = (form.poll_interval_ms, form.timeout_ms);
-                    let wanted = (Role::Busy, 0);
+                    let wanted = (Role::Busy, false);
                     let poll = Poll::begin(core, &form.progress, wanted, interval, timeout);
                     self.state = State::Poll(poll);
                 }

@@ -23,6 +23,8 @@ pub enum End {
     Parameter,
     /// A block has a different length than requested.
     Length,
+    /// The file or the list is longer than the ICD allows.
+    Limit,
     /// Packets are still missing after the maximum number of rounds.
     Rounds,
     /// The checksum is still wrong after the maximum number of rounds.

@@ -46,9 +46,9 @@ impl Operation {
         let form = self.form;
         let tells_ready = form.progress.get(Role::Ready, &[]).is_some();
         let wanted = if tells_ready {
-            (Role::Ready, 1)
+            (Role::Ready, true)
         } else {
-            (Role::Busy, 0)
+            (Role::Busy, false)
         };
         let (interval, timeout) = (form.poll_interval_ms, form.timeout_ms);
         let poll = Poll::begin(&mut self.core, &form.progress, wanted, interval, timeout);

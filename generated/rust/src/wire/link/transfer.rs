@@ -78,6 +78,8 @@ pub struct ListForm {
     pub poll_interval_ms: u32,
     /// Longest time that the busy flag is set.
     pub timeout_ms: u32,
+    /// Maximum number of files in the list.
+    pub max_entries: u32,
 }
 
 /// Download.
@@ -99,10 +101,12 @@ pub struct DownloadForm {
     pub poll_interval_ms: u32,
     /// Longest time to load a block.
     pub ready_timeout_ms: u32,
-    /// Time without a packet after which a burst has ended.
+    /// Time without a new packet after which a burst has ended.
     pub silence_ms: u32,
     /// Maximum number of bursts for one block.
     pub rounds: u32,
+    /// Maximum number of bytes of a file.
+    pub max_bytes: u32,
 }
 
 /// Upload.

@@ -533,6 +533,8 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
             poll_interval_ms: 50,
             // Assumed. No time is given. The checksum of a large file has to be computed meanwhile.
             timeout_ms: 10_000,
+            // Assumed. No number is given. A list without a last file has to end at some point.
+            max_entries: 1_024,
         }),
         download: Some(link::DownloadForm {
             load: link::Step {
@@ -583,6 +585,8 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
             silence_ms: 500,
             // Assumed. Nothing is said about giving up.
             rounds: 32,
+            // Assumed. No number is given. A file of unknown size has to end at some point.
+            max_bytes: 16_777_216,
         }),
         upload: None,
         erase: Some(link::ErasureForm {

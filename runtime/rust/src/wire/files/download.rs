@@ -45,7 +45,7 @@ pub struct Download<'a, F> {
     packets: usize, // of the block
     there: [bool; BLOCK_PACKETS],
     got: usize,
-    last: u32, // when the last packet came
+    last: u32, // when the last new packet came
 }
 
 impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
@@ -56,8 +56,8 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
     ///
     /// # Errors
     ///
-    /// [`Error::Length`] if the buffer is smaller than a packet, [`Error::Unsupported`] if the node
-    /// has no downloads on this bus.
+    /// [`Error::Length`] if the buffer is smaller than a packet, [`Error::Range`] if the size is
+    /// above the limit of the ICD, [`Error::Unsupported`] if the node has no downloads on this bus.
     pub fn new(
         link: &'static Link,
         bus: Bus,
@@ -78,11 +78,15 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
             let (expected, actual) = (files.packet_bytes, buffer.len());
             return Err(Error::Length { expected, actual });
         }
+        let form = files.download.as_ref().ok_or(Error::Unsupported)?;
+        if size.map_or(false, |size| size > form.max_bytes) {
+            return Err(Error::range("size"));
+        }
         Ok(Self {
             core: Core::new(link),
             link,
             files,
-            form: files.download.as_ref().ok_or(Error::Unsupported)?,
+            form,
             map: files.hole_map.as_ref().ok_or(Error::Unsupported)?,
             crc: link.crc16.as_ref().ok_or(Error::Unsupported)?,
             bus,
@@ -145,7 +149,7 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
     fn poll(&mut self) {
         let form = self.form;
         let (interval, timeout) = (form.poll_interval_ms, form.ready_timeout_ms);
-        let wanted = (Role::Ready, 1);
+        let wanted = (Role::Ready, true);
         let poll = Poll::begin(&mut self.core, &form.ready, wanted, interval, timeout);
         self.state = State::Poll(poll);
     }
@@ -160,6 +164,9 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
         let shorter = self.size.is_some() && self.length != self.wanted;
         if self.length > self.wanted || shorter {
             return self.core.end(End::Length);
+        }
+        if self.length > self.form.max_bytes.saturating_sub(self.offset) {
+            return self.core.end(End::Limit);
         }
         self.packets = pieces(index(self.length), self.files.packet_bytes);
         self.round();
@@ -273,13 +280,14 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
             Some(position) if index(position) < self.packets => index(position),
             _ => return,
         };
-        if let Some(there) = self.there.get_mut(position).filter(|there| !**there) {
-            *there = true;
-            self.got += 1;
-            let size = self.files.packet_bytes;
-            let at = position.wrapping_mul(size);
-            copy(part_mut(self.buffer, at, size), data);
+        let size = self.files.packet_bytes;
+        match self.there.get_mut(position) {
+            Some(there) if !*there && data.len() == size => *there = true,
+            _ => return,
         }
+        self.got += 1;
+        let at = position.wrapping_mul(size);
+        copy(part_mut(self.buffer, at, size), data);
         self.last = self.core.now;
         if self.got == self.packets {
             self.core.hurry();

@@ -49,6 +49,7 @@ pub struct List<F> {
     state: State,
     last: Option<[u8; STEP_BYTES]>,
     again: u32,
+    count: u32, // files passed to `on_entry`
     on_entry: F,
 }
 
@@ -67,13 +68,14 @@ impl<F: FnMut(Entry)> List<F> {
             state: State::Begin,
             last: None,
             again: 0,
+            count: 0,
             on_entry,
         })
     }
 
     fn poll(&mut self) {
         let form = self.form;
-        let wanted = (Role::Busy, 0);
+        let wanted = (Role::Busy, false);
         let (interval, timeout) = (form.poll_interval_ms, form.timeout_ms);
         let poll = Poll::begin(&mut self.core, &form.information, wanted, interval, timeout);
         self.state = State::Poll(poll);
@@ -85,6 +87,10 @@ impl<F: FnMut(Entry)> List<F> {
         }
         let known = self.last.as_ref().map(|last| head(last, frame.len()));
         if known != Some(frame) {
+            if self.count == self.form.max_entries {
+                return self.core.end(End::Limit);
+            }
+            self.count += 1;
             let read = |role| self.form.information.get(role, frame).unwrap_or(0);
             (self.on_entry)(Entry {
                 kind: read(Role::Type),

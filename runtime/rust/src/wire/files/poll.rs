@@ -9,7 +9,7 @@ use super::procedure::{Answer, Core, End};
 pub(super) struct Poll {
     step: &'static Step,
     role: Role,
-    wanted: u32,
+    wanted: bool,
     interval: u32,
     end: u32,
     program: Option<u32>, // of which the frame must be, if it says of which one it is
@@ -20,7 +20,7 @@ impl Poll {
     pub(super) fn begin(
         core: &mut Core,
         step: &'static Step,
-        (role, wanted): (Role, u32),
+        (role, wanted): (Role, bool),
         interval: u32,
         timeout: u32,
     ) -> Self {
@@ -61,7 +61,7 @@ impl Poll {
             return None;
         }
         let frame = core.frame(answer)?;
-        let flag = self.step.get(self.role, frame);
+        let flag = self.step.get(self.role, frame).map(|flag| flag != 0);
         let failed = self.step.get(Role::Error, frame).unwrap_or(0) != 0;
         if (flag == Some(self.wanted) && self.is_meant(frame)) || failed {
             return Some(frame);

@@ -243,7 +243,7 @@ impl<'a> Upload<'a> {
         } else {
             (&form.finalized, form.finalize_timeout_ms)
         };
-        let wanted = (Role::Busy, 0);
+        let wanted = (Role::Busy, false);
         let poll = Poll::begin(&mut self.core, step, wanted, form.poll_interval_ms, timeout);
         self.state = if erasing {
             State::Erasing(poll)

@@ -248,6 +248,12 @@ static void take_event(icd_procedure_t *procedure, uint32_t now, const char *nam
     icd_event_t event;
     octets_t octets;
     size_t i;
+    if (is_word(name, "damaged")) {
+        event = icdgen_event(ICD_EVENT_REFUSED, 0);
+        event.code = 255;
+        event.reason = ICD_REASON_UNKNOWN;
+        icd_procedure_event(procedure, now, &event);
+    }
     for (i = 0; i < 4u; i++) {
         if (is_word(name, event_name(kinds[i]))) {
             event = icdgen_event(kinds[i], 0);
@@ -265,7 +271,7 @@ static void take_event(icd_procedure_t *procedure, uint32_t now, const char *nam
 static void put_step(icd_procedure_t *procedure, uint32_t now)
 {
     static const char *const results[] = {
-        "", "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"};
+        "", "done", "refused", "timeout", "parameter", "length", "limit", "rounds", "checksum", "error"};
     icd_request_t request;
     uint32_t deadline;
     const bool asks = icd_procedure_next(procedure, now, &request);

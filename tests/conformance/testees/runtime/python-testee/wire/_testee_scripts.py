@@ -207,6 +207,8 @@ def _told(name: str, words: Words) -> Optional[Event]:
         return Done(0, 1, octets(words))
     if name == "packet":
         return Packet(number(words), octets(words))
+    if name == "damaged":
+        return Refused(0, 1, 255)
     return _OUTCOMES[name](0, 1) if name in _OUTCOMES else None
 
 

@@ -240,6 +240,7 @@ fn drive(procedure: &mut dyn Procedure, words: &mut Words) -> String {
             End::Timeout => " result=timeout",
             End::Parameter => " result=parameter",
             End::Length => " result=length",
+            End::Limit => " result=limit",
             End::Rounds => " result=rounds",
             End::Checksum => " result=checksum",
             End::Error => " result=error",
@@ -261,11 +262,11 @@ fn outcome(procedure: &mut dyn Procedure, now: u32, words: &mut Words) {
             procedure.event(now, &Event::Packet { number, data });
         }
         "timeout" => procedure.event(now, &Event::Timeout { id, attempts }),
-        "refused" => {
+        name @ ("refused" | "damaged") => {
             let refused = Event::Refused {
                 id,
                 attempts,
-                code: None,
+                code: (name == "damaged").then_some(255),
                 reason: None,
                 parameter: None,
             };
