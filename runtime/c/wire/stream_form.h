@@ -143,8 +143,8 @@ typedef struct {
 /** The possible responses to a telecommand or to a request of telemetry, except for the requested telemetry. */
 typedef struct {
     /**
-     * Numbers of the telecommand that responses repeat. The last `header_count` of them are in the header of its packet,
-     * and count as in a packet that responds.
+     * Numbers of the telecommand that responses repeat. The last `header_count` of them are in the header of its
+     * packet, and count as in a packet that responds.
      */
     const icd_number_place_t *sources;
     const icd_response_t *responses;
