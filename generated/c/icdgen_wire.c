@@ -2451,46 +2451,122 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
     return client->state != ICD_CLIENT_IDLE;
 }
 
-static inline void icdgen_client_end(
-    icd_client_t *client, uint32_t now, icd_event_t *event, icd_event_fn *on_event, void *context)
+/* Forget the late responses that can no longer arrive. */
+static inline void icdgen_client_forget(icd_client_t *client, uint32_t now)
+{
+    const icd_client_settings_t *const settings = &client->settings;
+    const bool is_i2c = client->bus == ICD_BUS_I2C;
+    const uint32_t longest = (is_i2c ? settings->poll_timeout : settings->reply_timeout) + settings->late;
+    uint8_t kept = 0;
+    for (uint8_t i = 0; i < client->late_count; ++i) {
+        const icd_late_t late = client->late[i];
+        const uint32_t left = late.until - now; /* large if the time is over */
+        if (late.responses != 0u && left != 0u && left <= longest) {
+            client->late[kept] = late;
+            kept++;
+        }
+    }
+    client->late_count = kept;
+}
+
+static inline bool icdgen_client_waits_for(const icd_client_t *client, icd_direction_t direction, uint32_t id)
+{
+    return client->state == ICD_CLIENT_WAIT && client->direction == direction && client->message->id == id;
+}
+
+/* Return whether the request waits for this response. If not, it may be a late one, which can then no longer arrive. */
+static inline bool icdgen_client_is_response(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
+{
+    if (icdgen_client_waits_for(client, direction, id)) {
+        return true;
+    }
+    for (uint8_t i = 0; i < client->late_count; ++i) {
+        icd_late_t *const late = &client->late[i];
+        late->responses -= (late->direction == direction && late->id == id) ? 1u : 0u;
+    }
+    icdgen_client_forget(client, now);
+    return false;
+}
+
+/* End the request, and remember the responses that may still arrive. They count from the last transmission. */
+static inline void icdgen_client_stop(icd_client_t *client)
+{
+    if (client->awaited != 0u && client->late_count < ICDGEN_MOST_AWAITED) {
+        icd_late_t *const late = &client->late[client->late_count];
+        late->direction = client->direction;
+        late->id = client->message->id;
+        late->responses = client->awaited;
+        late->until = client->latest + client->settings.late;
+        client->late_count++;
+    }
+    client->state = ICD_CLIENT_IDLE;
+}
+
+static inline void icdgen_client_end(icd_client_t *client, icd_event_t *event, icd_event_fn *on_event, void *context)
 {
     event->link = client->link;
     event->direction = client->direction;
     event->id = client->message->id;
     event->attempts = client->attempts;
-    client->echo = client->attempts > 1u || event->kind == ICD_EVENT_TIMEOUT;
-    client->echo_id = event->id;
-    client->echo_end = now + client->settings.reply_timeout;
-    client->state = ICD_CLIENT_IDLE;
+    client->awaited -= (event->kind != ICD_EVENT_TIMEOUT && client->awaited != 0u) ? 1u : 0u;
+    icdgen_client_stop(client);
     on_event(context, event);
 }
 
 static inline void icdgen_client_done(
-    icd_client_t *client, uint32_t now, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
+    icd_client_t *client, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_DONE, 0);
     event.data = data;
     event.length = length;
-    icdgen_client_end(client, now, &event, on_event, context);
+    icdgen_client_end(client, &event, on_event, context);
 }
 
-static inline void icdgen_client_timeout(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+static inline void icdgen_client_timeout(icd_client_t *client, icd_event_fn *on_event, void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_TIMEOUT, 0);
-    icdgen_client_end(client, now, &event, on_event, context);
+    icdgen_client_end(client, &event, on_event, context);
 }
 
 /* Send the request, for the first time or again. */
 static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
+    const bool is_telecommand = client->direction == ICD_TELECOMMAND;
+    const bool is_answered = !is_telecommand || (client->message->flags & ICD_ACKNOWLEDGED) != 0u;
     client->attempts++;
     client->sent_whole = false;
     client->state = ICD_CLIENT_WAIT;
     client->until = now + client->settings.reply_timeout;
+    client->latest = client->until;
     client->pending++;
-    if (client->bus != ICD_BUS_I2C && client->direction == ICD_TELECOMMAND &&
-        (client->message->flags & ICD_ACKNOWLEDGED) == 0u) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
+    if (client->bus == ICD_BUS_I2C) { /* a transaction brings telemetry itself; only an acknowledge is polled */
+        client->awaited = (is_telecommand && is_answered) ? 1u : 0u;
+    } else if (is_answered) {
+        client->awaited++;
+    } else {
+        icdgen_client_done(client, NULL, 0, on_event, context);
+    }
+}
+
+/* Send the request, or wait while a late response could be taken for its own. */
+static inline void icdgen_client_send_or_hold(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    bool is_held = false;
+    icdgen_client_forget(client, now);
+    /* So that the responses to all requests can be remembered, no other one is sent. */
+    const bool is_full = client->late_count == ICDGEN_MOST_AWAITED;
+    for (uint8_t i = 0; i < client->late_count; ++i) {
+        const icd_late_t *const late = &client->late[i];
+        const bool is_same = late->direction == client->direction && late->id == client->message->id;
+        if ((is_same || is_full) && (!is_held || icdgen_reached(client->until, late->until))) {
+            is_held = true;
+            client->until = late->until;
+        }
+    }
+    if (is_held) {
+        client->state = ICD_CLIENT_HOLD;
+    } else {
+        icdgen_client_send(client, now, on_event, context);
     }
 }
 
@@ -2540,12 +2616,8 @@ ICDGEN_API icd_status_t icd_client_start(
     client->message = message;
     client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
     client->attempts = 0;
-    if (client->echo && client->echo_id == request->id && !icdgen_reached(now, client->echo_end)) {
-        client->state = ICD_CLIENT_HOLD;
-        client->until = client->echo_end;
-    } else {
-        icdgen_client_send(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
-    }
+    client->awaited = 0;
+    icdgen_client_send_or_hold(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
     return ICD_OK;
 }
 
@@ -2556,12 +2628,9 @@ ICDGEN_API void icd_client_cancel(icd_client_t *client)
     client->encoder.ended = true;
     client->encoder.pending = 0;
     client->splitter.next = client->splitter.count;
-    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
-        client->echo = true;
-        client->echo_id = client->message->id;
-        client->echo_end = client->until + client->settings.reply_timeout;
+    if (client->state != ICD_CLIENT_IDLE) {
+        icdgen_client_stop(client);
     }
-    client->state = ICD_CLIENT_IDLE;
 }
 
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
@@ -2669,19 +2738,20 @@ static inline void icdgen_client_refused(
     }
     if (event.reason == ICD_REASON_CHECKSUM && client->checks_telecommands &&
         client->attempts <= client->settings.retries) {
+        client->awaited -= client->awaited != 0u ? 1u : 0u;
         icdgen_client_send(client, now, on_event, context);
         return;
     }
     event.code = code;
     event.parameter = parameter;
-    icdgen_client_end(client, now, &event, on_event, context);
+    icdgen_client_end(client, &event, on_event, context);
 }
 
 /* Process a missing or unusable reply: send again or end the request. */
 static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     if (!client->repeat || client->attempts > client->settings.retries) {
-        icdgen_client_timeout(client, now, on_event, context);
+        icdgen_client_timeout(client, on_event, context);
     } else if (client->bus == ICD_BUS_I2C) { /* the bus reports the failure immediately: wait before the next attempt */
         client->state = ICD_CLIENT_PAUSE;
         client->until = now + client->settings.poll_interval;
@@ -2695,7 +2765,7 @@ static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, ic
 static inline void icdgen_client_again(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
     if (icdgen_reached(now, client->give_up)) {
-        icdgen_client_timeout(client, now, on_event, context);
+        icdgen_client_timeout(client, on_event, context);
     } else {
         client->state = ICD_CLIENT_PAUSE;
         client->until = now + client->settings.poll_interval;
@@ -2728,30 +2798,44 @@ typedef struct {
 } icdgen_client_call_t;
 
 /*
- * Check the length and the checksum of a received frame. The checksum is optional or required, as the link describes.
+ * Check the length and the checksum of received telemetry, and get the length of its frame. The length shows whether it
+ * has a checksum.
  */
-static inline void icdgen_client_replied(const icdgen_client_call_t *call, const uint8_t *data, size_t length)
+static inline icd_event_kind_t icdgen_client_fault(
+    const icd_client_t *client, uint8_t id, const uint8_t *data, size_t length, size_t *frame)
+{
+    const icd_checksum_form_t *const form = client->link->checksum;
+    const icd_message_t *const message = icd_find_message(client->link, ICD_TELEMETRY, id);
+    *frame = message != NULL ? message->length : 0u;
+    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && length == *frame + form->bytes) {
+        const icd_status_t status = icd_i2c_reply(client->link, id, data, length, true, frame);
+        return status == ICD_OK ? ICD_EVENT_DONE : ICD_EVENT_CHECKSUM;
+    }
+    if (length != *frame) {
+        return ICD_EVENT_MALFORMED;
+    }
+    return client->checks_telemetry ? ICD_EVENT_UNCHECKED : ICD_EVENT_DONE;
+}
+
+/* Process telemetry. Return false if no request waits for it. */
+static inline bool icdgen_client_replied(
+    const icdgen_client_call_t *call, uint8_t id, const uint8_t *data, size_t length)
 {
     icd_client_t *const client = call->client;
-    const icd_checksum_form_t *const form = client->link->checksum;
-    const uint8_t id = client->message->id;
-    size_t frame = client->message->length;
-    icd_event_kind_t fault = ICD_EVENT_DONE;
-    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && length == frame + form->bytes) {
-        fault =
-            icd_i2c_reply(client->link, id, data, length, true, &frame) == ICD_OK ? ICD_EVENT_DONE : ICD_EVENT_CHECKSUM;
-    } else if (length != frame) {
-        fault = ICD_EVENT_MALFORMED;
-    } else if (client->checks_telemetry) {
-        fault = ICD_EVENT_UNCHECKED;
-    } else {
-        /* the checksum is optional */
-    }
+    size_t frame = 0;
+    const icd_event_kind_t fault = icdgen_client_fault(client, id, data, length, &frame);
     if (fault == ICD_EVENT_DONE) {
-        icdgen_client_done(client, call->now, data, frame, call->on_event, call->context);
+        if (!icdgen_client_is_response(client, call->now, ICD_TELEMETRY, id)) {
+            return false;
+        }
+        icdgen_client_done(client, data, frame, call->on_event, call->context);
     } else {
+        if (!icdgen_client_waits_for(client, ICD_TELEMETRY, id)) {
+            return false;
+        }
         icdgen_client_tell(fault, id, NULL, 0, call->on_event, call->context);
     }
+    return true;
 }
 
 static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
@@ -2759,7 +2843,7 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
     icd_client_t *const client = call->client;
     const icd_link_t *const link = client->link;
     const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
-    const bool waits = client->state == ICD_CLIENT_WAIT;
+    bool is_response = false;
     if (kind == ICD_UART_LOG) {
         icdgen_client_tell(ICD_EVENT_LOG, message[0], message, length, call->on_event, call->context);
         return;
@@ -2772,21 +2856,24 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         call->on_event(call->context, &event);
         return;
     }
-    if (waits && kind == ICD_UART_REPLY && client->direction == ICD_TELEMETRY && message[0] == client->message->id) {
-        icdgen_client_replied(call, message + 1, length - 1u);
-        return;
-    }
-    if (waits && kind == ICD_UART_ACKNOWLEDGE && client->direction == ICD_TELECOMMAND &&
-        message[link->acknowledge->id_at] == client->message->id) {
+    if (kind == ICD_UART_REPLY) {
+        is_response = icdgen_client_replied(call, message[0], message + 1, length - 1u);
+    } else if (kind == ICD_UART_ACKNOWLEDGE) {
         const uint8_t code = message[link->acknowledge->error_at];
-        if (code == link->no_error) {
-            icdgen_client_done(client, call->now, NULL, 0, call->on_event, call->context);
-        } else {
+        is_response = icdgen_client_is_response(client, call->now, ICD_TELECOMMAND, message[link->acknowledge->id_at]);
+        if (is_response && code == link->no_error) {
+            icdgen_client_done(client, NULL, 0, call->on_event, call->context);
+        } else if (is_response) {
             icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
+        } else {
+            /* stray */
         }
-        return;
+    } else {
+        /* no request has such a response */
     }
-    icdgen_client_tell(ICD_EVENT_STRAY, message[0], message, length, call->on_event, call->context);
+    if (!is_response) {
+        icdgen_client_tell(ICD_EVENT_STRAY, message[0], message, length, call->on_event, call->context);
+    }
 }
 
 static inline void icdgen_client_on_uart(void *context, const icd_event_t *event)
@@ -2807,23 +2894,29 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
         call->on_event(call->context, event);
         return;
     }
-    if (client->state == ICD_CLIENT_WAIT && event->id == client->message->id &&
-        event->source == client->link->can->node_address) {
-        const bool telecommand = client->direction == ICD_TELECOMMAND;
-        if (telecommand && event->can_kind == ICD_CAN_ACKNOWLEDGE) {
-            icdgen_client_done(client, call->now, NULL, 0, call->on_event, call->context);
-            return;
-        }
-        if (event->can_kind == (telecommand ? ICD_CAN_REFUSAL : ICD_CAN_REQUEST_REFUSAL)) {
+    const icd_can_kind_t kind = event->can_kind;
+    bool is_response = false;
+    if (event->source != client->link->can->node_address) {
+        /* stray */
+    } else if (kind == ICD_CAN_REPLY) {
+        is_response = icdgen_client_replied(call, event->id, event->data, event->length);
+    } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
+        const icd_direction_t direction = kind == ICD_CAN_REQUEST_REFUSAL ? ICD_TELEMETRY : ICD_TELECOMMAND;
+        is_response = icdgen_client_is_response(client, call->now, direction, event->id);
+        if (is_response && kind == ICD_CAN_ACKNOWLEDGE) {
+            icdgen_client_done(client, NULL, 0, call->on_event, call->context);
+        } else if (is_response) {
             icdgen_client_refused(client, call->now, -1, -1, call->on_event, call->context);
-            return;
+        } else {
+            /* stray */
         }
-        if (!telecommand && event->can_kind == ICD_CAN_REPLY) {
-            icdgen_client_replied(call, event->data, event->length);
-            return;
-        }
+    } else {
+        /* stray */
     }
-    icdgen_client_tell(ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
+    if (!is_response) {
+        icdgen_client_tell(
+            ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
+    }
 }
 
 ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
@@ -2831,19 +2924,17 @@ ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn
     if (client->expire != NULL) {
         client->expire(client, now, on_event, context);
     }
-    if (client->echo && icdgen_reached(now, client->echo_end)) {
-        client->echo = false;
-    }
+    icdgen_client_forget(client, now); /* the time may wrap until the next request */
     if (client->state == ICD_CLIENT_IDLE || !icdgen_reached(now, client->until)) {
         return;
     }
     switch (client->state) {
     case ICD_CLIENT_HOLD:
-        icdgen_client_send(client, now, on_event, context);
+        icdgen_client_send_or_hold(client, now, on_event, context);
         break;
     case ICD_CLIENT_PAUSE:
         if (icdgen_reached(now, client->give_up)) {
-            icdgen_client_timeout(client, now, on_event, context);
+            icdgen_client_timeout(client, on_event, context);
         } else if (client->sent_whole) {
             icdgen_client_poll(client, now);
         } else {
@@ -2862,6 +2953,14 @@ ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn
     }
 }
 
+/* Send the request if the late response has arrived for which it waits. */
+static inline void icdgen_client_no_longer_held(const icdgen_client_call_t *call)
+{
+    if (call->client->state == ICD_CLIENT_HOLD) {
+        icdgen_client_send_or_hold(call->client, call->now, call->on_event, call->context);
+    }
+}
+
 ICDGEN_API void icd_client_received(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
@@ -2873,6 +2972,7 @@ ICDGEN_API void icd_client_received(
     icd_client_tick(client, now, on_event, context);
     if (client->ready) {
         icd_uart_feed(&client->decoder, bytes, count, icdgen_client_on_uart, &call);
+        icdgen_client_no_longer_held(&call);
     }
 }
 
@@ -2887,6 +2987,7 @@ ICDGEN_API void icd_client_packet(
     icd_client_tick(client, now, on_event, context);
     if (client->ready) {
         icd_can_feed(&client->joiner, now, packet, icdgen_client_on_can, &call);
+        icdgen_client_no_longer_held(&call);
     }
 }
 
@@ -2910,7 +3011,7 @@ static inline void icdgen_client_polled(
     }
     code = icdgen_get(link, step, bytes, ICD_ROLE_ERROR);
     if (code == link->no_error) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
+        icdgen_client_done(client, NULL, 0, on_event, context);
     } else {
         icdgen_client_refused(client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
     }
@@ -2939,20 +3040,22 @@ ICDGEN_API void icd_client_transferred(
             icdgen_client_polled(client, now, bytes, count, on_event, context);
         }
     } else if (bytes == NULL) {
+        client->awaited = 0;
         icdgen_client_no_reply(client, now, on_event, context);
     } else if (client->direction == ICD_TELEMETRY) {
         const uint8_t id = client->message->id;
         if (icd_i2c_reply(client->link, id, bytes, count, client->checks_telemetry, &length) == ICD_OK) {
-            icdgen_client_done(client, now, bytes, length, on_event, context);
+            icdgen_client_done(client, bytes, length, on_event, context);
         } else {
             icdgen_client_tell(ICD_EVENT_MALFORMED, id, NULL, 0, on_event, context);
             icdgen_client_no_reply(client, now, on_event, context);
         }
     } else if ((client->message->flags & ICD_ACKNOWLEDGED) == 0u || client->link->polled == NULL) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
+        icdgen_client_done(client, NULL, 0, on_event, context);
     } else {
         client->sent_whole = true;
         client->give_up = now + client->settings.poll_timeout;
+        client->latest = client->give_up;
         icdgen_client_again(client, now, on_event, context);
     }
 }

@@ -18,8 +18,8 @@
  * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
- *                   Clients of framed links: largest number of requests whose responses are awaited or may still arrive
- *                   late, 8 unless it is defined. Each takes 32 bytes of the client.
+ *                   Largest number of requests whose responses a client awaits or that may still arrive late, 8 unless
+ *                   it is defined. Each takes 16 bytes of a client, and 32 bytes of a client of a framed link.
  * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
  *                   defined and those that the wire layer itself needs.
  */
@@ -656,6 +656,11 @@ typedef struct {
     const uint32_t *confirming; /**< Ids of telemetry that only responds to telecommands, and is not requested. */
     const icd_telemetry_request_t *request; /**< NULL if only telecommands request telemetry. */
 } icd_stream_form_t;
+
+/** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
+#ifndef ICDGEN_MOST_AWAITED
+#define ICDGEN_MOST_AWAITED 8u
+#endif
 
 /** Timeouts (in milliseconds) and retries of a client. */
 typedef struct {
@@ -1356,8 +1361,8 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
 
 typedef enum {
     ICD_CLIENT_IDLE,
-    ICD_CLIENT_HOLD,  /* waits because a late reply to the previous request may still arrive */
-    ICD_CLIENT_WAIT,  /* waits for the reply */
+    ICD_CLIENT_HOLD,  /* waits while a late response could be taken for its own */
+    ICD_CLIENT_WAIT,  /* waits for the response */
     ICD_CLIENT_PAUSE, /* I2C: waits before the next poll or the next attempt */
     ICD_CLIENT_POLL   /* I2C: waits for the acknowledge frame */
 } icd_client_state_t;
@@ -1373,6 +1378,14 @@ typedef struct {
     const uint8_t *data;
     size_t length;
 } icd_request_t;
+
+/* Responses that may still arrive although their request has ended. */
+typedef struct {
+    icd_direction_t direction;
+    uint8_t id;
+    uint32_t responses;
+    uint32_t until;
+} icd_late_t;
 
 typedef struct icd_client icd_client_t;
 
@@ -1400,9 +1413,10 @@ struct icd_client {
     uint32_t attempts;
     uint32_t until;   /* time at which the state ends */
     uint32_t give_up; /* time at which polling ends */
-    bool echo;        /* a second reply to echo_id may arrive until echo_end */
-    uint8_t echo_id;
-    uint32_t echo_end;
+    uint32_t latest;  /* time until which a response is not late */
+    uint32_t awaited; /* number of responses that may still arrive */
+    uint8_t late_count;
+    icd_late_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
     uint8_t address;
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame */
@@ -1458,8 +1472,8 @@ ICDGEN_API icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
 
 /**
- * Cancel the request without an event, and drop its remaining output. The next request may then be started. A late
- * reply to the cancelled request is reported as ICD_EVENT_STRAY.
+ * Cancel the request without an event, and drop its remaining output. Another request may then be started; it waits if
+ * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_STRAY.
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
@@ -1542,11 +1556,6 @@ typedef struct {
     const uint8_t *data;
     size_t length;
 } icd_stream_request_t;
-
-/** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
-#ifndef ICDGEN_MOST_AWAITED
-#define ICDGEN_MOST_AWAITED 8u
-#endif
 
 typedef enum {
     ICD_STREAM_SLOT_QUEUED, /* is to be sent */

@@ -17,8 +17,8 @@
  * ICDGEN_NO_FILES   Leave out the transfer of files and programs. Their functions return ICD_ERROR_UNSUPPORTED.
  * ICDGEN_NO_LOGS    Leave out logs. Do not define it if the node sends unsolicited logs.
  * ICDGEN_MOST_AWAITED
- *                   Clients of framed links: largest number of requests whose responses are awaited or may still arrive
- *                   late, 8 unless it is defined. Each takes 32 bytes of the client.
+ *                   Largest number of requests whose responses a client awaits or that may still arrive late, 8 unless
+ *                   it is defined. Each takes 16 bytes of a client, and 32 bytes of a client of a framed link.
  * NODE_CHOSEN       Leave out all messages in the tables of NODE/link.c, except those for which NODE_WITH_MESSAGE is
  *                   defined and those that the wire layer itself needs.
  */

@@ -612,8 +612,9 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed attempts: One attempt and two more are announced. But the status is raised before each start, so
-     * it reads 3 Failed boot attempts before the third, and at that value no start is said to follow.
+     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed attempts: One
+     * attempt and two more are announced. But the status is raised before each start, so it reads 3 Failed boot
+     * attempts before the third, and at that value no start is said to follow.
      */
     static const icd_link_t link = {
         nodes, /* whose messages */

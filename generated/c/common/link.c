@@ -468,7 +468,8 @@ ICDGEN_API const icd_link_t *common_link(void)
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
      * is said about trying again. Assumed poll_interval_ms: No time is given. Assumed poll_timeout_ms: No time is
-     * given. Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
+     * given. Assumed late_ms: No time is given. It is ten times the longest message on the UART. Assumed
+     * poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
      * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
      * the checksum. Assumed finalize: The procedure ends with the checksum and does not name the telecommand that
      * commits the block. Assumed finalize_timeout_ms: No time is given. Assumed attempts: One attempt and two more are

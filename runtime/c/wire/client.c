@@ -100,46 +100,122 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
     return client->state != ICD_CLIENT_IDLE;
 }
 
-static inline void icdgen_client_end(
-    icd_client_t *client, uint32_t now, icd_event_t *event, icd_event_fn *on_event, void *context)
+/* Forget the late responses that can no longer arrive. */
+static inline void icdgen_client_forget(icd_client_t *client, uint32_t now)
+{
+    const icd_client_settings_t *const settings = &client->settings;
+    const bool is_i2c = client->bus == ICD_BUS_I2C;
+    const uint32_t longest = (is_i2c ? settings->poll_timeout : settings->reply_timeout) + settings->late;
+    uint8_t kept = 0;
+    for (uint8_t i = 0; i < client->late_count; ++i) {
+        const icd_late_t late = client->late[i];
+        const uint32_t left = late.until - now; /* large if the time is over */
+        if (late.responses != 0u && left != 0u && left <= longest) {
+            client->late[kept] = late;
+            kept++;
+        }
+    }
+    client->late_count = kept;
+}
+
+static inline bool icdgen_client_waits_for(const icd_client_t *client, icd_direction_t direction, uint32_t id)
+{
+    return client->state == ICD_CLIENT_WAIT && client->direction == direction && client->message->id == id;
+}
+
+/* Return whether the request waits for this response. If not, it may be a late one, which can then no longer arrive. */
+static inline bool icdgen_client_is_response(icd_client_t *client, uint32_t now, icd_direction_t direction, uint32_t id)
+{
+    if (icdgen_client_waits_for(client, direction, id)) {
+        return true;
+    }
+    for (uint8_t i = 0; i < client->late_count; ++i) {
+        icd_late_t *const late = &client->late[i];
+        late->responses -= (late->direction == direction && late->id == id) ? 1u : 0u;
+    }
+    icdgen_client_forget(client, now);
+    return false;
+}
+
+/* End the request, and remember the responses that may still arrive. They count from the last transmission. */
+static inline void icdgen_client_stop(icd_client_t *client)
+{
+    if (client->awaited != 0u && client->late_count < ICDGEN_MOST_AWAITED) {
+        icd_late_t *const late = &client->late[client->late_count];
+        late->direction = client->direction;
+        late->id = client->message->id;
+        late->responses = client->awaited;
+        late->until = client->latest + client->settings.late;
+        client->late_count++;
+    }
+    client->state = ICD_CLIENT_IDLE;
+}
+
+static inline void icdgen_client_end(icd_client_t *client, icd_event_t *event, icd_event_fn *on_event, void *context)
 {
     event->link = client->link;
     event->direction = client->direction;
     event->id = client->message->id;
     event->attempts = client->attempts;
-    client->echo = client->attempts > 1u || event->kind == ICD_EVENT_TIMEOUT;
-    client->echo_id = event->id;
-    client->echo_end = now + client->settings.reply_timeout;
-    client->state = ICD_CLIENT_IDLE;
+    client->awaited -= (event->kind != ICD_EVENT_TIMEOUT && client->awaited != 0u) ? 1u : 0u;
+    icdgen_client_stop(client);
     on_event(context, event);
 }
 
 static inline void icdgen_client_done(
-    icd_client_t *client, uint32_t now, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
+    icd_client_t *client, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_DONE, 0);
     event.data = data;
     event.length = length;
-    icdgen_client_end(client, now, &event, on_event, context);
+    icdgen_client_end(client, &event, on_event, context);
 }
 
-static inline void icdgen_client_timeout(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+static inline void icdgen_client_timeout(icd_client_t *client, icd_event_fn *on_event, void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_TIMEOUT, 0);
-    icdgen_client_end(client, now, &event, on_event, context);
+    icdgen_client_end(client, &event, on_event, context);
 }
 
 /* Send the request, for the first time or again. */
 static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
+    const bool is_telecommand = client->direction == ICD_TELECOMMAND;
+    const bool is_answered = !is_telecommand || (client->message->flags & ICD_ACKNOWLEDGED) != 0u;
     client->attempts++;
     client->sent_whole = false;
     client->state = ICD_CLIENT_WAIT;
     client->until = now + client->settings.reply_timeout;
+    client->latest = client->until;
     client->pending++;
-    if (client->bus != ICD_BUS_I2C && client->direction == ICD_TELECOMMAND &&
-        (client->message->flags & ICD_ACKNOWLEDGED) == 0u) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
+    if (client->bus == ICD_BUS_I2C) { /* a transaction brings telemetry itself; only an acknowledge is polled */
+        client->awaited = (is_telecommand && is_answered) ? 1u : 0u;
+    } else if (is_answered) {
+        client->awaited++;
+    } else {
+        icdgen_client_done(client, NULL, 0, on_event, context);
+    }
+}
+
+/* Send the request, or wait while a late response could be taken for its own. */
+static inline void icdgen_client_send_or_hold(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    bool is_held = false;
+    icdgen_client_forget(client, now);
+    /* So that the responses to all requests can be remembered, no other one is sent. */
+    const bool is_full = client->late_count == ICDGEN_MOST_AWAITED;
+    for (uint8_t i = 0; i < client->late_count; ++i) {
+        const icd_late_t *const late = &client->late[i];
+        const bool is_same = late->direction == client->direction && late->id == client->message->id;
+        if ((is_same || is_full) && (!is_held || icdgen_reached(client->until, late->until))) {
+            is_held = true;
+            client->until = late->until;
+        }
+    }
+    if (is_held) {
+        client->state = ICD_CLIENT_HOLD;
+    } else {
+        icdgen_client_send(client, now, on_event, context);
     }
 }
 
@@ -189,12 +265,8 @@ ICDGEN_API icd_status_t icd_client_start(
     client->message = message;
     client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
     client->attempts = 0;
-    if (client->echo && client->echo_id == request->id && !icdgen_reached(now, client->echo_end)) {
-        client->state = ICD_CLIENT_HOLD;
-        client->until = client->echo_end;
-    } else {
-        icdgen_client_send(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
-    }
+    client->awaited = 0;
+    icdgen_client_send_or_hold(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
     return ICD_OK;
 }
 
@@ -205,12 +277,9 @@ ICDGEN_API void icd_client_cancel(icd_client_t *client)
     client->encoder.ended = true;
     client->encoder.pending = 0;
     client->splitter.next = client->splitter.count;
-    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
-        client->echo = true;
-        client->echo_id = client->message->id;
-        client->echo_end = client->until + client->settings.reply_timeout;
+    if (client->state != ICD_CLIENT_IDLE) {
+        icdgen_client_stop(client);
     }
-    client->state = ICD_CLIENT_IDLE;
 }
 
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)

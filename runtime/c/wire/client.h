@@ -15,8 +15,8 @@
 
 typedef enum {
     ICD_CLIENT_IDLE,
-    ICD_CLIENT_HOLD,  /* waits because a late reply to the previous request may still arrive */
-    ICD_CLIENT_WAIT,  /* waits for the reply */
+    ICD_CLIENT_HOLD,  /* waits while a late response could be taken for its own */
+    ICD_CLIENT_WAIT,  /* waits for the response */
     ICD_CLIENT_PAUSE, /* I2C: waits before the next poll or the next attempt */
     ICD_CLIENT_POLL   /* I2C: waits for the acknowledge frame */
 } icd_client_state_t;
@@ -32,6 +32,14 @@ typedef struct {
     const uint8_t *data;
     size_t length;
 } icd_request_t;
+
+/* Responses that may still arrive although their request has ended. */
+typedef struct {
+    icd_direction_t direction;
+    uint8_t id;
+    uint32_t responses;
+    uint32_t until;
+} icd_late_t;
 
 typedef struct icd_client icd_client_t;
 
@@ -59,9 +67,10 @@ struct icd_client {
     uint32_t attempts;
     uint32_t until;   /* time at which the state ends */
     uint32_t give_up; /* time at which polling ends */
-    bool echo;        /* a second reply to echo_id may arrive until echo_end */
-    uint8_t echo_id;
-    uint32_t echo_end;
+    uint32_t latest;  /* time until which a response is not late */
+    uint32_t awaited; /* number of responses that may still arrive */
+    uint8_t late_count;
+    icd_late_t late[ICDGEN_MOST_AWAITED]; /* requests that have ended */
     uint8_t address;
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame */
@@ -117,8 +126,8 @@ ICDGEN_API icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
 
 /**
- * Cancel the request without an event, and drop its remaining output. The next request may then be started. A late
- * reply to the cancelled request is reported as ICD_EVENT_STRAY.
+ * Cancel the request without an event, and drop its remaining output. Another request may then be started; it waits if
+ * a late response to the cancelled one could be taken for its own. The late response is reported as ICD_EVENT_STRAY.
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 

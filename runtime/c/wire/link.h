@@ -7,6 +7,11 @@
 #include "procedure_forms.h"
 #include "stream_form.h"
 
+/** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
+#ifndef ICDGEN_MOST_AWAITED
+#define ICDGEN_MOST_AWAITED 8u
+#endif
+
 /** Timeouts (in milliseconds) and retries of a client. */
 typedef struct {
     /** Time-out of a reply, in milliseconds. */

@@ -22,11 +22,6 @@ typedef struct {
     size_t length;
 } icd_stream_request_t;
 
-/** Largest number of requests whose responses are awaited or may still arrive late. A program may define less. */
-#ifndef ICDGEN_MOST_AWAITED
-#define ICDGEN_MOST_AWAITED 8u
-#endif
-
 typedef enum {
     ICD_STREAM_SLOT_QUEUED, /* is to be sent */
     ICD_STREAM_SLOT_SENT,   /* was sent, and nothing responds to it */

@@ -58,6 +58,7 @@ BUS_SETTINGS = {
     "retries": (0, 255),
     "poll_interval": (1, MOST),
     "poll_timeout": (1, MOST),
+    "late": (1, MOST),
 }
 STREAM_SETTINGS = {
     "reply_timeout": (1, MOST),

@@ -47,7 +47,7 @@ MOST_VALUES = 256  # of a range of reasons, since a client stores the name of ea
 OTHER_LINKS = (("uart", "framing"), ("i2c",), ("can",))
 """Paths in a protocol section that describe a link other than a framed one."""
 
-STREAM_SETTINGS = ("late_ms", "busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
+STREAM_SETTINGS = ("busy_pause_ms", "gap_ms", "in_flight", "progress_for_ms")
 """Keys of `client` that only framed links use."""
 
 

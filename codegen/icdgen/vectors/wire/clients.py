@@ -4,11 +4,12 @@ and unrelated messages.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from random import Random
 from typing import Any
 
 from icdgen_runtime.wire.can import CanMessage, can_split
+from icdgen_runtime.wire.client import MOST_AWAITED
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import CanKind
 from icdgen_runtime.wire.logs import LogMessage
@@ -20,9 +21,15 @@ from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.runtime_objects.operations import AnyLink
-from icdgen.vectors.wire import Requests
+from icdgen.vectors.wire import Requests, Row, Script
 
-SETTINGS = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
+SETTINGS = {
+    "reply_timeout": 100,
+    "retries": 2,
+    "poll_interval": 10,
+    "poll_timeout": 50,
+    "late": 100,
+}
 OURS = 0x42  # CAN address of the client
 
 
@@ -155,6 +162,15 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
     yield "after a late acknowledge another id need not wait", [
         s.ask(0, plain, repeat=True), {"at": 100}, ack(120, plain), s.ask(125, other), ack(130, plain), ack(140, other),
     ]  # fmt: skip
+    yield "a late acknowledge confirms nothing after another request has ended", [
+        s.ask(0, plain), {"at": 100}, s.request(101, frame), reply(102, frame), s.ask(110, plain), ack(120, plain),
+        ack(130, plain, 3),
+    ]  # fmt: skip
+    yield "a late frame that is damaged is still awaited", [
+        s.request(0, frame), {"at": 1, "cancel": True}, s.request(2, frame), reply(3, frame, 1), reply(4, frame),
+        reply(5, frame),
+    ]  # fmt: skip
+    yield from _many_late(s, reply)
     yield "an unexpected acknowledge", [
         ack(0, plain),
         s.request(1, frame),
@@ -258,6 +274,27 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
         log = LogMessage.encode(s.link, bytes(facts.mask.size), [])
         yield "an unsolicited log while a reply is awaited", [
             s.request(0, frame), {"at": 1, "receive": s.line(log)}, reply(2, frame),
+        ]  # fmt: skip
+
+
+def _many_late(
+    s: Sample, reply: Callable[[int, Message], Row]
+) -> Iterator[tuple[str, Script]]:
+    """Yield requests that are cancelled until a client remembers no more of them."""
+    *frames, last = list(s.facts.telemetry.values())[: MOST_AWAITED + 1]
+    if len(frames) < MOST_AWAITED:
+        return
+    cancelled = [
+        row
+        for at, frame in enumerate(frames)
+        for row in (s.request(10 * at, frame), {"at": 10 * at + 1, "cancel": True})
+    ]
+    for why, rows in {
+        "until one is forgotten": [{"at": 199}, {"at": 200}],
+        "until one has arrived": [reply(90, frames[3])],
+    }.items():
+        yield f"more late frames than a client remembers: the next request waits {why}", [
+            *cancelled, s.request(80, last), *rows, reply(205, last),
         ]  # fmt: skip
 
 
@@ -519,6 +556,10 @@ def _can(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     yield "cancelled: its acknowledge is unexpected", [
         s.ask(0, plain), {"at": 1, "cancel": True}, s.request(2, frame), *come(3, "acknowledge", id),
         *come(4, "reply", frame_id, bytes(frame.length)),
+    ]  # fmt: skip
+    yield "a late acknowledge confirms nothing after another request has ended", [
+        s.ask(0, plain), {"at": 100}, s.request(101, frame), *come(102, "request_refusal", frame_id), s.ask(110, plain),
+        *come(120, "acknowledge", id), *come(130, "refusal", id),
     ]  # fmt: skip
     if s.silent:
         yield "not acknowledged", [s.ask(0, s.silent), s.ask(0, s.silent)]

@@ -30,6 +30,7 @@ LINK: link.Link[_Node] = link.Link(
         poll_interval=20,
         # Assumed: No time is given.
         poll_timeout=5000,
+        # Assumed: No time is given. It is ten times the longest message on the UART.
         late=1000,
         busy_pause=100,
         gap=0,
@@ -640,6 +641,12 @@ LINK: link.Link[_Node] = link.Link(
             key="poll_timeout_ms",
             value=5000,
             why="No time is given.",
+        ),
+        link.Assumption(
+            section="client",
+            key="late_ms",
+            value=1000,
+            why="No time is given. It is ten times the longest message on the UART.",
         ),
         link.Assumption(
             section="uart.framing",

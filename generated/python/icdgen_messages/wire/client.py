@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
@@ -45,6 +46,20 @@ class Request(NamedTuple):
     id: int
     data: bytes = b""
     repeat: bool = False
+
+
+MOST_AWAITED = 8
+"""Largest number of requests whose responses may still arrive late."""
+
+
+@dataclass
+class _Late:
+    """Responses that may still arrive although their request has ended."""
+
+    kind: Literal["telecommand", "telemetry"]
+    id: int
+    responses: int
+    until: float
 
 
 class Client(Generic[N]):
@@ -90,18 +105,19 @@ class Client(Generic[N]):
         self._transfers: list[I2cTransfer] = []
         # I2C: number of transfers taken, but not yet passed to `transferred`
         self._unreported = 0
-        # hold: wait until no reply to an earlier request can arrive. wait: for the
-        # reply. I2C only: pause until the next poll or attempt. poll: wait for the
+        # hold: wait until no response to an earlier request can arrive. wait: for the
+        # response. I2C only: pause until the next poll or attempt. poll: wait for the
         # result.
         self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
         self._request = Request("telemetry", 0)
         self._attempts = 0
-        self._until: float = 0
+        self._until: float = 0  # end of the state
+        self._latest: float = 0  # until when a response is in time
+        self._owed = 0  # number of responses that may still arrive
         self._is_written = False  # I2C: telecommand is sent, acknowledge is polled
         self._poll_end: float = 0  # when polling ends
-        # Id of an ended request whose reply may still arrive, and until when. A new
-        # request of this id waits, so that it does not take the old reply for its own.
-        self._late: Optional[tuple[int, float]] = None
+        # A new request waits while a late response could be taken for its own.
+        self._late: list[_Late] = []
 
     @property
     def busy(self) -> bool:
@@ -149,11 +165,8 @@ class Client(Generic[N]):
                 name = f"telecommand {id}"
                 raise LengthError(name, command.length, len(request.data))
             request = request._replace(repeat=request.repeat or command.setting)
-        self._request, self._attempts = request, 0
-        if self._late and self._late[0] == id and now < self._late[1]:
-            self._state, self._until = "hold", self._late[1]
-            return []
-        return self._transmit(now)
+        self._request, self._attempts, self._owed = request, 0, 0
+        return self._transmit_or_hold(now)
 
     def output(self) -> bytes:
         """UART: return the bytes to send, each once."""
@@ -177,19 +190,19 @@ class Client(Generic[N]):
     def cancel(self) -> None:
         """Cancel the request without an event, and drop its remaining output.
 
-        The next request may begin at once. A late reply to the cancelled one is
-        `Stray`.
+        Another request may begin at once, except one to which a late response to the
+        cancelled one could belong: it waits. The late response is `Stray`.
         """
         self._stream, self._packets, self._transfers = [], [], []
-        if self.busy and self._attempts:
-            self._late = self._request.id, self._until + self.settings.reply_timeout
-        self._state = "idle"
+        if self.busy:
+            self._end()
 
     def tick(self, now: float) -> list[Event]:
         """Process timeouts. Call at `deadline` (in ms) at the latest."""
         events: list[Event] = []
         if self._joiner:
             events += map(_line_error, self._joiner.expire(now))
+        self._late = [late for late in self._late if now < late.until]
         if self.busy and now >= self._until:
             events += self._expired(now)
         return events
@@ -202,7 +215,7 @@ class Client(Generic[N]):
                 events += self._uart_message(now, result.message)
             else:
                 events.append(LineError(result.event))
-        return events
+        return events + self._no_longer_held(now)
 
     def packet(self, now: float, packet: CanPacket) -> list[Event]:
         """CAN: process a received packet."""
@@ -212,7 +225,7 @@ class Client(Generic[N]):
                 events += self._can_message(now, result.message)
             else:
                 events.append(_line_error(result))
-        return events
+        return events + self._no_longer_held(now)
 
     def transferred(self, now: float, data: Optional[Buffer]) -> list[Event]:
         """I2C: process the bytes that were read; None if the transaction failed.
@@ -228,6 +241,7 @@ class Client(Generic[N]):
         if self._state == "poll":
             return events + self._polled(now, read)
         if read is None:
+            self._owed = 0
             return events + self._no_reply(now)
         if self._request.kind == "telemetry":
             id = self._request.id
@@ -239,7 +253,7 @@ class Client(Generic[N]):
         if not self.link.commands[self._request.id].acknowledged:
             return events + self._done(now)
         self._is_written = True
-        self._poll_end = now + self.settings.poll_timeout
+        self._poll_end = self._latest = now + self.settings.poll_timeout
         return events + self._pause(now)
 
     @property
@@ -247,13 +261,33 @@ class Client(Generic[N]):
         """I2C: whether the last transfer is taken and belongs to the request."""
         return self._state in ("wait", "poll") and not self._transfers
 
+    def _transmit_or_hold(self, now: float) -> list[Event]:
+        """Send the request, or wait while a late response could be taken for its own."""
+        self._late = [late for late in self._late if now < late.until]
+        # So that the responses to all requests can be remembered, no other one is sent.
+        is_full = len(self._late) == MOST_AWAITED
+        ends = [late.until for late in self._late if is_full or self._is_of(late)]
+        if not ends:
+            return self._transmit(now)
+        self._state, self._until = "hold", min(ends)
+        return []
+
+    def _no_longer_held(self, now: float) -> list[Event]:
+        """Send the request if the late response has arrived for which it waits."""
+        return self._transmit_or_hold(now) if self._state == "hold" else []
+
+    def _is_of(self, late: _Late) -> bool:
+        return (late.kind, late.id) == (self._request.kind, self._request.id)
+
     def _transmit(self, now: float) -> list[Event]:
         """Send the request, for the first time or again."""
         request = self._request
         is_telecommand = request.kind == "telecommand"
+        is_answered = not is_telecommand or self.link.commands[request.id].acknowledged
         self._attempts += 1
         self._is_written = False
         self._state, self._until = "wait", now + self.settings.reply_timeout
+        self._latest = self._until
         checked = is_telecommand and self._checks_sent
         message = i2c_write(self.link, request.id, request.data, checked)
         if self.bus == "uart":
@@ -274,9 +308,12 @@ class Client(Generic[N]):
             if not is_telecommand:
                 length = i2c_read_length(self.link, request.id, checks)
             self._transfers.append(I2cTransfer(message, length))
+            # A transaction brings telemetry itself; only an acknowledge is polled.
+            self._owed = int(is_telecommand and is_answered)
             return []
-        if is_telecommand and not self.link.commands[request.id].acknowledged:
+        if not is_answered:
             return self._done(now)
+        self._owed += 1
         return []
 
     def _expired(self, now: float) -> list[Event]:
@@ -291,6 +328,8 @@ class Client(Generic[N]):
             if self._is_written:
                 self._poll(now)
                 return []
+        if self._state == "hold":
+            return self._transmit_or_hold(now)
         return self._transmit(now)
 
     def _no_reply(self, now: float) -> list[Event]:
@@ -336,7 +375,7 @@ class Client(Generic[N]):
         return self._refused(now, code, int(getattr(acknowledge, form.parameter)))
 
     def _uart_message(self, now: float, message: bytes) -> list[Event]:
-        link, request = self.link, self._request
+        link = self.link
         kind, id = uart_kind(link, message), message[0]
         if kind == "log":
             return [Log(message, LogMessage.decode(link, message))]
@@ -344,53 +383,80 @@ class Client(Generic[N]):
             start = 1 + link.files.counter_bytes
             number = int.from_bytes(message[1:start], link.order)
             return [Packet(number, message[start:])]
-        if self._state == "wait" and request.kind == "telemetry":
-            if kind == "reply" and id == request.id:
-                return self._replied(now, message[1:])
-        elif self._state == "wait" and kind == "acknowledge" and link.acknowledge:
-            form = link.acknowledge
-            if message[form.id_at] == request.id:
-                code = message[form.error_at]
+        if kind == "reply":
+            return self._replied(now, id, message[1:]) or [Stray(message)]
+        if kind == "acknowledge" and link.acknowledge:
+            id, code = (
+                message[link.acknowledge.id_at],
+                message[link.acknowledge.error_at],
+            )
+            if self._is_response("telecommand", id):
                 if code == link.errors.get("none", 0):
                     return self._done(now)
                 return self._refused(now, code)
         return [Stray(message)]
 
     def _can_message(self, now: float, message: CanMessage) -> list[Event]:
-        request, node = self._request, need(self.link.can, "can").node_address
-        is_ours = message.id == request.id and message.source == node
-        if self._state == "wait" and is_ours:
-            if request.kind == "telecommand":
-                if message.kind == "acknowledge":
-                    return self._done(now)
-                if message.kind == "refusal":
-                    return self._refused(now, None)
-            elif message.kind == "reply":
-                return self._replied(now, message.data)
-            elif message.kind == "request_refusal":
-                return self._refused(now, None)
-        return [Stray(bytes((message.id,)) + message.data)]
+        id = message.id
+        stray: list[Event] = [Stray(bytes((id,)) + message.data)]
+        if message.source != need(self.link.can, "can").node_address:
+            return stray
+        if message.kind == "reply":
+            return self._replied(now, id, message.data) or stray
+        if message.kind == "acknowledge" and self._is_response("telecommand", id):
+            return self._done(now)
+        if message.kind == "refusal" and self._is_response("telecommand", id):
+            return self._refused(now, None)
+        if message.kind == "request_refusal" and self._is_response("telemetry", id):
+            return self._refused(now, None)
+        return stray
 
-    def _replied(self, now: float, frame: bytes) -> list[Event]:
-        id, form = self._request.id, self.link.checksum
-        length = self.link.frames[id]
+    def _replied(self, now: float, id: int, data: bytes) -> list[Event]:
+        """Process telemetry. Return no event if no request waits for it."""
+        frame, fault = self._frame(id, data)
+        if fault is None:
+            is_response = self._is_response("telemetry", id)
+            return self._done(now, frame) if is_response else []
+        return [fault] if self._waits_for("telemetry", id) else []
+
+    def _frame(self, id: int, data: bytes) -> tuple[bytes, Optional[Event]]:
+        """Return the frame in telemetry, and the fault if it is damaged.
+
+        Its length shows whether it has a checksum.
+        """
+        form, length = self.link.checksum, self.link.frames.get(id)
         may_be_checked = form is not None and self.bus in form.telemetry_buses
-        if form and may_be_checked and len(frame) == length + form.bytes:
+        if form and length and may_be_checked and len(data) == length + form.bytes:
             try:
-                return self._done(now, i2c_reply(self.link, id, frame, True))
+                return i2c_reply(self.link, id, data, True), None
             except ChecksumError:
-                return [LineError("checksum", id)]
-        if len(frame) != length:
-            return [Malformed(id)]
-        if self._checks_frames:
-            return [LineError("unchecked", id)]
-        return self._done(now, frame)
+                return b"", LineError("checksum", id)
+        if len(data) != length:
+            return b"", Malformed(id)
+        return data, LineError("unchecked", id) if self._checks_frames else None
+
+    def _waits_for(self, kind: Literal["telecommand", "telemetry"], id: int) -> bool:
+        request = self._request
+        return self._state == "wait" and (kind, id) == (request.kind, request.id)
+
+    def _is_response(self, kind: Literal["telecommand", "telemetry"], id: int) -> bool:
+        """Return whether the request waits for this response.
+
+        If not, it may be a late one, which can then no longer arrive.
+        """
+        if self._waits_for(kind, id):
+            return True
+        for late in self._late:
+            if (late.kind, late.id) == (kind, id):
+                late.responses -= 1
+        self._late = [late for late in self._late if late.responses]
+        return False
 
     def _done(self, now: float, frame: bytes = b"") -> list[Event]:
         id, message = self._request.id, None
         if self._request.kind == "telemetry":
             message = self.link.TELEMETRY[id]
-        self._end(now, self._attempts > 1)
+        self._end(is_answered=True)
         return [Done(id, self._attempts, frame, message)]
 
     def _refused(
@@ -401,19 +467,25 @@ class Client(Generic[N]):
         reason = None if code is None else codes.get(code)
         is_left = self._attempts <= self.settings.retries
         if reason == "checksum" and self._checks_sent and is_left:
+            self._owed -= 1
             return self._transmit(now)
-        self._end(now, self._attempts > 1)
+        self._end(is_answered=True)
         id = self._request.id
         return [Refused(id, self._attempts, code, reason, parameter)]
 
     def _timeout(self, now: float) -> list[Event]:
-        self._end(now, True)
+        self._end()
         return [Timeout(self._request.id, self._attempts)]
 
-    def _end(self, now: float, may_be_answered_again: bool) -> None:
-        self._state, self._late = "idle", None
-        if may_be_answered_again:
-            self._late = self._request.id, now + self.settings.reply_timeout
+    def _end(self, is_answered: bool = False) -> None:
+        """End the request, and remember the responses that may still arrive."""
+        self._state = "idle"
+        owed = self._owed - is_answered
+        if owed > 0:
+            # A response counts from the last transmission, not from the end.
+            until = self._latest + self.settings.late
+            kind, id = self._request.kind, self._request.id
+            self._late.append(_Late(kind, id, owed, until))
 
 
 def _line_error(event: CanEvent) -> LineError:

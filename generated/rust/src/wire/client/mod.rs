@@ -30,7 +30,7 @@ pub struct Transaction<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Idle,
-    /// A late reply to the previous request may still arrive.
+    /// A late response could be taken for that of this request.
     Hold,
     /// Sent.
     Wait,
@@ -282,8 +282,9 @@ impl<T, const N: usize> Client<T, N> {
         Some(machine.transaction(output))
     }
 
-    /// Cancel the request without an event, and drop its remaining output. The next request may
-    /// then be started. A late reply to the cancelled request is reported as [`Event::Stray`].
+    /// Cancel the request without an event, and drop its remaining output. Another request may then
+    /// be started; it waits if a late response to the cancelled one could be taken for its own. The
+    /// late response is reported as [`Event::Stray`].
     pub fn cancel(&mut self) {
         self.machine.cancel();
     }
@@ -307,6 +308,7 @@ impl<T, const N: usize> Client<T, N> {
                 uart::Event::Overrun => on_event(Event::Overrun),
                 uart::Event::Empty => on_event(Event::Empty),
             });
+            machine.no_longer_held(now, &mut on_event);
         }
     }
 
@@ -325,6 +327,7 @@ impl<T, const N: usize> Client<T, N> {
                 can::Event::Message(message) => machine.joined(now, &message, &mut on_event),
                 other => on_event(trouble(&other)),
             });
+            machine.no_longer_held(now, &mut on_event);
         }
     }
 

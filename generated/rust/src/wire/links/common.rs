@@ -102,6 +102,7 @@ pub static LINK: NodeLink<crate::common::Node> = NodeLink::new(link::Link {
         poll_interval_ms: 20,
         // Assumed. No time is given.
         poll_timeout_ms: 5_000,
+        // Assumed. No time is given. It is ten times the longest message on the UART.
         late_ms: 1_000,
         busy_pause_ms: 100,
         gap_ms: 0,

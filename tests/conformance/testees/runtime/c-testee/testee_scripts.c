@@ -132,6 +132,7 @@ static void client_script(void)
     settings->retries = (uint8_t)next_or(settings->retries);
     settings->poll_interval = next_or(settings->poll_interval);
     settings->poll_timeout = next_or(settings->poll_timeout);
+    settings->late = next_or(settings->late);
     if (checked) {
         icd_client_use_checksums(client);
     }

@@ -18,10 +18,9 @@ impl<const N: usize> Machine<N> {
             [id, data @ ..] => (*id, data),
             [] => return,
         };
-        let waiting = (self.state == State::Wait).then_some(self.direction);
-        match (uart::kind(self.link, message), waiting) {
-            (uart::Kind::Log, _) => return on_event(Event::Log { message }),
-            (uart::Kind::Packet, _) => {
+        match uart::kind(self.link, message) {
+            uart::Kind::Log => return on_event(Event::Log { message }),
+            uart::Kind::Packet => {
                 let size = self
                     .link
                     .files
@@ -33,15 +32,12 @@ impl<const N: usize> Machine<N> {
                     data: data.get(size..).unwrap_or(&[]),
                 });
             }
-            (uart::Kind::Reply, Some(Direction::Telemetry)) if id == self.id => {
-                return self.replied(now, data, on_event);
-            }
-            (uart::Kind::Acknowledge, Some(Direction::Telecommand)) => {
-                match uart::acknowledged(self.link, message) {
-                    Some((id, code)) if id == self.id => {
+            uart::Kind::Reply if self.replied(id.into(), data, on_event) => return,
+            uart::Kind::Acknowledge => {
+                if let Some((id, code)) = uart::acknowledged(self.link, message) {
+                    if self.is_response(Direction::Telecommand, id.into()) {
                         return self.outcome(now, code.into(), None, on_event);
                     }
-                    _ => {}
                 }
             }
             _ => {}
@@ -59,31 +55,47 @@ impl<const N: usize> Machine<N> {
         on_event: &mut dyn FnMut(Event<'_>),
     ) {
         if self.link.is_success(code) {
-            self.done(now, &[], on_event);
+            self.done(&[], on_event);
         } else {
             self.refused(now, Some(code), parameter, on_event);
         }
     }
 
-    /// What came as the frame: with a checksum where there may be one, without where there need not.
-    fn replied(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
-        let id = self.id.into();
-        let length = self
-            .form(self.direction, self.id)
-            .map_or(0, |form| form.length);
+    /// Process telemetry. Return false if no request waits for it.
+    fn replied(&mut self, id: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) -> bool {
+        match self.frame(id, data) {
+            Ok(frame) => {
+                let is_response = self.is_response(Direction::Telemetry, id);
+                if is_response {
+                    self.done(frame, on_event);
+                }
+                is_response
+            }
+            Err(fault) => {
+                let waits = self.waits_for(Direction::Telemetry, id);
+                if waits {
+                    on_event(fault);
+                }
+                waits
+            }
+        }
+    }
+
+    /// Return the frame in telemetry. Its length shows whether it has a checksum.
+    fn frame<'a>(&self, id: u32, data: &'a [u8]) -> Result<&'a [u8], Event<'static>> {
+        let octet = u8::try_from(id).unwrap_or(u8::MAX);
+        let form = self.form(Direction::Telemetry, octet);
+        let length = form.map_or(0, |form| form.length);
         let checksum = self.link.checksum.as_ref();
         let may_have = checksum.filter(|form| form.telemetry_buses.of(self.bus));
         if may_have.map_or(false, |form| data.len() == length + form.bytes) {
-            match i2c::reply(self.link, self.id, data, true) {
-                Ok(frame) => self.done(now, frame, on_event),
-                Err(_) => on_event(Event::Checksum { id }),
-            }
+            i2c::reply(self.link, octet, data, true).map_err(|_| Event::Checksum { id })
         } else if data.len() != length {
-            on_event(Event::Malformed { id });
+            Err(Event::Malformed { id })
         } else if self.checks_telemetry {
-            on_event(Event::Unchecked { id });
+            Err(Event::Unchecked { id })
         } else {
-            self.done(now, data, on_event);
+            Ok(data)
         }
     }
 
@@ -96,17 +108,18 @@ impl<const N: usize> Machine<N> {
     ) {
         let can::Message { id, data, .. } = *message;
         let node = self.link.can.as_ref().map(|can| can.node_address.into());
-        let ours = id == u32::from(self.id) && Some(message.source) == node;
-        let waiting = (self.state == State::Wait && ours).then_some(self.direction);
-        match (waiting, message.kind) {
-            (Some(Direction::Telecommand), can::Kind::Acknowledge) => {
-                self.done(now, &[], on_event);
+        let ours = Some(message.source) == node;
+        match message.kind {
+            can::Kind::Reply if ours && self.replied(id, data, on_event) => {}
+            can::Kind::Acknowledge if ours && self.is_response(Direction::Telecommand, id) => {
+                self.done(&[], on_event);
             }
-            (Some(Direction::Telecommand), can::Kind::Refusal)
-            | (Some(Direction::Telemetry), can::Kind::RequestRefusal) => {
+            can::Kind::Refusal if ours && self.is_response(Direction::Telecommand, id) => {
                 self.refused(now, None, None, on_event);
             }
-            (Some(Direction::Telemetry), can::Kind::Reply) => self.replied(now, data, on_event),
+            can::Kind::RequestRefusal if ours && self.is_response(Direction::Telemetry, id) => {
+                self.refused(now, None, None, on_event);
+            }
             _ => on_event(Event::Stray { id: Some(id), data }),
         }
     }
@@ -122,11 +135,14 @@ impl<const N: usize> Machine<N> {
         match (self.state, bytes) {
             (State::Poll, None) if awaited => self.again(now, on_event),
             (State::Poll, Some(bytes)) if awaited => self.polled(now, bytes, on_event),
-            (State::Wait, None) if awaited => self.no_reply(now, on_event),
+            (State::Wait, None) if awaited => {
+                self.owed_responses = 0;
+                self.no_reply(now, on_event);
+            }
             (State::Wait, Some(bytes)) if awaited && self.direction == Direction::Telemetry => {
                 let reply = i2c::reply(self.link, self.id, bytes, self.checks_telemetry);
                 if let Ok(frame) = reply {
-                    self.done(now, frame, on_event);
+                    self.done(frame, on_event);
                 } else {
                     let id = self.id.into();
                     on_event(Event::Malformed { id });
@@ -138,9 +154,10 @@ impl<const N: usize> Machine<N> {
                 if form.map_or(true, |form| form.acknowledged) {
                     self.sent_whole = true;
                     self.give_up = now.wrapping_add(self.settings.poll_timeout_ms);
+                    self.latest = self.give_up;
                     self.again(now, on_event);
                 } else {
-                    self.done(now, &[], on_event);
+                    self.done(&[], on_event);
                 }
             }
             _ => {

@@ -1,6 +1,7 @@
 //! What a client does, whichever way its bytes come and go.
 
 mod input;
+mod late;
 mod output;
 
 use super::super::bits::reached;
@@ -11,6 +12,7 @@ use super::super::request::{Direction, Request, Started};
 use super::super::uart::Encoder;
 use super::super::Error;
 use super::{Output, State};
+use late::Late;
 
 /// Bytes of a piece of UART output.
 const PIECE: usize = 64;
@@ -33,7 +35,9 @@ pub(super) struct Machine<const N: usize> {
     id: u8,
     repeat: bool,
     attempts: u16,
-    echo: Option<(u8, u32)>, // id and end of what may still be answered a second time
+    latest: u32,         // until when a response is in time
+    owed_responses: u16, // that may still arrive
+    late: Late,
     pub(super) message: [u8; N], // the request, with id and checksum
     pub(super) length: usize,
     poll: [u8; 1],
@@ -64,7 +68,9 @@ impl<const N: usize> Machine<N> {
             id: 0,
             repeat: false,
             attempts: 0,
-            echo: None,
+            latest: 0,
+            owed_responses: 0,
+            late: Late::NONE,
             message: [0; N],
             length: 0,
             poll: [poll],
@@ -108,30 +114,20 @@ impl<const N: usize> Machine<N> {
         self.id = id;
         self.repeat = request.repeat || !telecommand || form.repeatable;
         self.attempts = 0;
-        match self.echo {
-            Some((other, end)) if other == id && !reached(now, end) => {
-                self.state = State::Hold;
-                self.until = end;
-                Ok(Started::Waiting)
-            }
-            _ => {
-                self.send(now, &mut |_| {});
-                Ok(if self.state == State::Idle {
-                    Started::Done
-                } else {
-                    Started::Waiting
-                })
-            }
-        }
+        self.owed_responses = 0;
+        self.send_or_hold(now, &mut |_| {});
+        Ok(if self.state == State::Idle {
+            Started::Done
+        } else {
+            Started::Waiting
+        })
     }
 
     pub(super) fn cancel(&mut self) {
         self.drop_output();
-        if self.state != State::Idle && self.attempts > 0 {
-            let end = self.until.wrapping_add(self.settings.reply_timeout_ms);
-            self.echo = Some((self.id, end));
+        if self.state != State::Idle {
+            self.end(0);
         }
-        self.state = State::Idle;
     }
 
     /// I2C: whether the last transaction was taken, and is that of the request.
@@ -140,16 +136,14 @@ impl<const N: usize> Machine<N> {
     }
 
     pub(super) fn tick(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
-        if self.echo.map_or(false, |(_, end)| reached(now, end)) {
-            self.echo = None; // the time may wrap until the next request
-        }
+        self.late.forget(now); // the time may wrap until the next request
         if self.state == State::Idle || !reached(now, self.until) {
             return;
         }
         match self.state {
             State::Idle => {}
-            State::Hold => self.send(now, on_event),
-            State::Pause if reached(now, self.give_up) => self.timeout(now, on_event),
+            State::Hold => self.send_or_hold(now, on_event),
+            State::Pause if reached(now, self.give_up) => self.timeout(on_event),
             State::Pause if self.sent_whole => {
                 self.state = State::Poll;
                 self.until = now.wrapping_add(self.settings.reply_timeout_ms);
@@ -161,28 +155,68 @@ impl<const N: usize> Machine<N> {
         }
     }
 
+    /// Send the request, or wait while a late response could be taken for its own.
+    fn send_or_hold(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        self.late.forget(now);
+        match self.late.hold(self.direction, self.id) {
+            Some(end) => {
+                self.state = State::Hold;
+                self.until = end;
+            }
+            None => self.send(now, on_event),
+        }
+    }
+
+    /// Send the request if the late response has arrived for which it waits.
+    pub(super) fn no_longer_held(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        if self.state == State::Hold {
+            self.send_or_hold(now, on_event);
+        }
+    }
+
+    /// Return whether the request waits for this response.
+    fn waits_for(&self, direction: Direction, id: u32) -> bool {
+        self.state == State::Wait && self.direction == direction && u32::from(self.id) == id
+    }
+
+    /// Return whether the request waits for this response. If not, it may be a late one, which can
+    /// then no longer arrive.
+    fn is_response(&mut self, direction: Direction, id: u32) -> bool {
+        let waits = self.waits_for(direction, id);
+        if !waits {
+            self.late.count(direction, id);
+        }
+        waits
+    }
+
     /// Sends the request, for the first time or again.
     fn send(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
         self.attempts = self.attempts.saturating_add(1);
         self.sent_whole = false;
         self.state = State::Wait;
         self.until = now.wrapping_add(self.settings.reply_timeout_ms);
+        self.latest = self.until;
         self.push(Output::Request);
         let form = self.form(self.direction, self.id);
-        let acknowledged = form.map_or(true, |form| form.acknowledged);
         let telecommand = self.direction == Direction::Telecommand;
-        if self.bus != Bus::I2c && telecommand && !acknowledged {
-            self.done(now, &[], on_event);
+        let answered = !telecommand || form.map_or(true, |form| form.acknowledged);
+        if self.bus == Bus::I2c {
+            // A transaction brings telemetry itself; only an acknowledge is polled.
+            self.owed_responses = u16::from(telecommand && answered);
+        } else if answered {
+            self.owed_responses = self.owed_responses.saturating_add(1);
+        } else {
+            self.done(&[], on_event);
         }
     }
 
-    fn done(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
-        let (id, attempts) = self.end(now, false);
+    fn done(&mut self, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let (id, attempts) = self.end(1);
         on_event(Event::Done { id, attempts, data });
     }
 
-    fn timeout(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
-        let (id, attempts) = self.end(now, true);
+    fn timeout(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
+        let (id, attempts) = self.end(0);
         on_event(Event::Timeout { id, attempts });
     }
 
@@ -196,9 +230,10 @@ impl<const N: usize> Machine<N> {
     ) {
         let reason = code.and_then(|code| self.link.reason(code));
         if reason == Some(Reason::Checksum) && self.checks_telecommands && self.may_repeat() {
+            self.owed_responses = self.owed_responses.saturating_sub(1);
             return self.send(now, on_event);
         }
-        let (id, attempts) = self.end(now, false);
+        let (id, attempts) = self.end(1);
         on_event(Event::Refused {
             id,
             attempts,
@@ -212,10 +247,12 @@ impl<const N: usize> Machine<N> {
         self.attempts <= self.settings.retries as u16
     }
 
-    fn end(&mut self, now: u32, timeout: bool) -> (u8, u16) {
-        let late = self.attempts > 1 || timeout;
-        let end = now.wrapping_add(self.settings.reply_timeout_ms);
-        self.echo = late.then_some((self.id, end));
+    /// End the request, and remember the responses that may still arrive. They count from the last
+    /// transmission. `received`: number of responses that end it.
+    fn end(&mut self, received: u16) -> (u8, u16) {
+        let responses = self.owed_responses.saturating_sub(received);
+        let until = self.latest.wrapping_add(self.settings.late_ms);
+        self.late.add(self.direction, self.id, responses, until);
         self.state = State::Idle;
         (self.id, self.attempts)
     }
@@ -223,7 +260,7 @@ impl<const N: usize> Machine<N> {
     /// There was no reply, or none that can be used: once more, or the end.
     fn no_reply(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
         if !self.repeat || !self.may_repeat() {
-            self.timeout(now, on_event);
+            self.timeout(on_event);
         } else if self.bus == Bus::I2c {
             // The bus said so at once: give the node some time.
             self.state = State::Pause;
@@ -237,7 +274,7 @@ impl<const N: usize> Machine<N> {
     /// Polls once more after a while.
     fn again(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
         if reached(now, self.give_up) {
-            self.timeout(now, on_event);
+            self.timeout(on_event);
         } else {
             self.state = State::Pause;
             self.until = now.wrapping_add(self.settings.poll_interval_ms);

@@ -28,7 +28,7 @@ from .programs import ProgramCopy, ProgramInformation
 from .transfer import Download, Erase, FileList, Format, Upload
 
 _BUSES: tuple[Bus, ...] = ("uart", "i2c", "can")
-_BUS_SETTINGS = Settings._fields[:4]
+_BUS_SETTINGS = Settings._fields[:5]
 _STREAM_SETTINGS = (*Settings._fields[:2], *Settings._fields[4:])
 _OUTCOMES: dict[str, Any] = {"refused": Refused, "timeout": Timeout}
 

@@ -19,6 +19,7 @@ pub fn client(link: &'static Link, words: &mut Words) -> Answer {
         retries: words.maybe().unwrap_or(usual.retries),
         poll_interval_ms: words.maybe().unwrap_or(usual.poll_interval_ms),
         poll_timeout_ms: words.maybe().unwrap_or(usual.poll_timeout_ms),
+        late_ms: words.maybe().unwrap_or(usual.late_ms),
         ..*usual
     };
     let client = match bus {
