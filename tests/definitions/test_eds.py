@@ -55,8 +55,8 @@ def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
 def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
     (tree,) = camera.trees.values()
     header = tree["protocol"]["stream"]["header"]
-    assert [(one["at"], one["bits"], one["role"]) for one in header if one["role"] in ("id", "length", "sequence")] == [
-        (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
+    assert [(one["bits"], one["role"]) for one in header] == [
+        (3, "constant"), (1, "constant"), (1, "flags"), (11, "id"), (2, "type"), (14, "sequence"), (16, "length"),
     ]  # fmt: skip
     assert (
         header[2]["value"] == {"telecommand": 1, "telemetry": 1}
@@ -296,7 +296,7 @@ def test_packets_of_another_version_have_it_in_their_envelope(tmp_path):
     header = imported("camera.xml", folder).trees["camera"]["protocol"]["stream"][
         "header"
     ]
-    assert header[0] == {"at": 0, "bits": 3, "role": "constant", "value": 1}
+    assert header[0] == {"bits": 3, "role": "constant", "value": 1}
 
 
 BYTE = '<IntegerDataType name="byte"><IntegerDataEncoding sizeInBits="8" encoding="unsigned"/></IntegerDataType>'
@@ -524,7 +524,7 @@ def test_an_id_in_front_of_all_is_the_envelope(tmp_path):
     )
     (tmp_path / "ids.xml").write_text(sheet(container("X", abstract="true") + types))
     (tree,) = run.read(tmp_path / "ids.xml", eds.Eds()).trees.values()
-    assert tree["protocol"]["stream"]["header"] == [{"at": 0, "bits": 8, "role": "id"}]
+    assert tree["protocol"]["stream"]["header"] == [{"bits": 8, "role": "id"}]
     assert [
         (one["id"], one["length"], one["fields"][0]["name"]) for one in tree["messages"]
     ] == [

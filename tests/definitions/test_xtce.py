@@ -39,8 +39,8 @@ def imported(name):
 def test_the_primary_header_is_the_envelope_and_the_application_process_the_id(probe):
     (tree,) = probe.trees.values()
     header = tree["protocol"]["stream"]["header"]
-    assert [(one["at"], one["bits"], one["role"]) for one in header if one["role"] in ("id", "length", "sequence")] == [
-        (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
+    assert [(one["bits"], one["role"]) for one in header] == [
+        (3, "constant"), (1, "constant"), (1, "flags"), (11, "id"), (2, "type"), (14, "sequence"), (16, "length"),
     ]  # fmt: skip
     assert (tree["node"]["id_bits"], [one["id"] for one in tree["messages"]]) == (
         11,

@@ -232,10 +232,12 @@ class Source:
         ]
         if value in types and key.path[-1] != "name":
             return [name for name in types if name != value]
+        stream = self.section.get("stream", {})
         roles = [
             row["role"]
+            for form in (stream, *stream.get("packets", {}).values())
             for part in ("header", "trailer")
-            for row in self.section.get("stream", {}).get(part, ())
+            for row in form.get(part, ())
         ]
         if value in (*roles, "data") and "covers" in key.path:
             return [role for role in (*roles, "data") if role != value]

@@ -8,7 +8,6 @@ import os
 import re
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import accumulate
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element
@@ -194,7 +193,7 @@ class MavLink2:
             },  # incompatibility flags: no signature
             {"bits": 8, "role": "flags"},
         ]
-        parts: list[Item] = [
+        header: list[Item] = [
             {"bits": 8, "role": "sync", "value": Spelled(self.starts_with)},
             {"bits": 8, "role": "length"},
             *(flags if self.has_extensions else ()),
@@ -207,9 +206,7 @@ class MavLink2:
             {"bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
             {"bits": self.id_bits, "role": "id"},
         ]
-        places = accumulate((part["bits"] for part in parts), initial=0)
-        header = [{"at": at, **part} for at, part in zip(places, parts, strict=False)]
-        trailer = [{"at": 0, "bits": 16, "role": "checksum", "checksum": "x25"}]
+        trailer = [{"bits": 16, "role": "checksum", "checksum": "x25"}]
         checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
         return {
             "stream": {"delimited_by": "length", "header": header, "trailer": trailer},

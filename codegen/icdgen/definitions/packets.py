@@ -142,19 +142,18 @@ def _add_packets(containers: Sequence[Sent], network: Network, to: Definitions) 
         "stream": {
             "delimited_by": "length",
             "header": [
-                {"at": 0, "bits": 3, "role": "constant", "value": version},
+                {"bits": 3, "role": "constant", "value": version},
                 {
-                    "at": 3,
                     "bits": 1,
                     "role": "constant",
                     "value": {TELECOMMAND: 1, TELEMETRY: 0},
                 },
-                {"at": 4, "bits": 1, "role": "flags", **_secondary_flag(headers)},
-                {"at": 5, "bits": APID_BITS, "role": "id"},
+                {"bits": 1, "role": "flags", **_secondary_flag(headers)},
+                {"bits": APID_BITS, "role": "id"},
                 # Sequence flags 3: unsegmented, unless the sender sets another value.
-                {"at": 16, "bits": 2, "role": "type", "value": 3},
-                {"at": 18, "bits": 14, "role": "sequence", "per": "id"},
-                {"at": 32, "bits": 16, "role": "length", "plus": -1},
+                {"bits": 2, "role": "type", "value": 3},
+                {"bits": 14, "role": "sequence", "per": "id"},
+                {"bits": 16, "role": "length", "plus": -1},
             ],
         }
     }
@@ -189,7 +188,7 @@ def _add_without_header(
         network.protocol = {
             "stream": {
                 "delimited_by": "none",
-                "header": [{"at": 0, "bits": start, "role": "id"}],
+                "header": [{"bits": start, "role": "id"}],
             }
         }
     for kind in (TELEMETRY, TELECOMMAND):

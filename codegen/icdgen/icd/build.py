@@ -18,6 +18,7 @@ from icdgen.icd import (
     division,
     formula,
     model,
+    packets,
     variable_length,
     variable_structs,
     wire_ids,
@@ -94,6 +95,8 @@ class Builder:
         self.scope.enums.update((enum.name, enum) for enum in enums)
         structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
+        if isinstance(protocol, Map):
+            packets.place_fields(protocol.get("stream"))
         words = tuple(
             w
             for w in (listed if isinstance(listed, list) else ())

@@ -8,7 +8,7 @@ them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message
 from icdgen.icd.responses import Section, declared_responses, responses_in
@@ -168,7 +168,26 @@ def declared_packets(stream: Section, messages: Iterable[Message] = ()) -> Packe
     )
 
 
-def _fields(rows: object) -> list[Section]:
+def place_fields(stream: object) -> None:
+    """Give fields of headers and trailers that have no position the end of the field in
+    front of them.
+
+    ``stream``: the section of an ICD, or anything else, which the schema check reports.
+    """
+    sections = [stream] if isinstance(stream, Mapping) else []
+    for section in sections:
+        packets = section.get("packets")
+        if isinstance(packets, Mapping):
+            sections += [each for each in packets.values() if isinstance(each, Mapping)]
+        for part in ("header", "trailer"):
+            end = 0
+            for row in _fields(section.get(part)):
+                at, bits = row.setdefault("at", end), row.get("bits")
+                if type(at) is int and type(bits) is int:
+                    end = at + bits
+
+
+def _fields(rows: object) -> list[Any]:
     """Return the fields of a header or trailer; the schema check reports the others."""
     fields = rows if isinstance(rows, list | tuple) else ()
     return [row for row in fields if isinstance(row, Mapping)]
@@ -183,6 +202,16 @@ def _responses(stream: Section, messages: Iterable[Message]) -> Iterator[Section
     for message in messages:
         if isinstance(commands, Mapping) and message.telecommand_id is not None:
             yield from declared_responses(commands, message).values()
+
+
+def covers_of(row: Section, checksums: Section) -> Section:
+    """Return what the checksum of a field covers: as the field says, otherwise the
+    declaration of its checksum; empty if neither does.
+    """
+    declaration = checksums.get(row.get("checksum", ""))
+    own = row.get("covers")
+    covers = declaration.get("covers") if isinstance(declaration, Mapping) else None
+    return next((each for each in (own, covers) if isinstance(each, Mapping)), {})
 
 
 def value_of(row: Section, direction: str, is_little: bool) -> int:

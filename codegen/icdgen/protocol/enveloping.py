@@ -13,6 +13,7 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.packets import (
     Packet,
     Packets,
+    covers_of,
     declared_packets,
     id_shifts,
     is_requested,
@@ -157,8 +158,9 @@ def check_of(packet: Packet, checksums: Section) -> Check | None:
         "reflect_out", False
     )
     crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
-    first = _covered(packet.header, declaration["covers"]["from"], False)
-    last = _covered(packet.trailer, declaration["covers"]["to"], True)
+    covers = covers_of(place_of(packet.rows, "checksum") or {}, checksums)
+    first = _covered(packet.header, covers["from"], False)
+    last = _covered(packet.trailer, covers["to"], True)
     return Check(
         kind,
         crc,

@@ -286,7 +286,8 @@ def _unit(row: Section) -> str:
 
 def _holds(row: Section) -> str:
     if row["role"] == "checksum":
-        return str(row["checksum"])
+        covers = row.get("covers")
+        return str(row["checksum"]) + (f", {_covered(covers)}" if covers else "")
     if "enum" in row:
         return str(row["enum"])
     value = row.get("value")
@@ -312,7 +313,7 @@ def sums(section: Section, node_facts: Facts) -> list[Sum]:
     checks = _checks(section, node_facts)
     for name, declaration in section.get("checksums", {}).items():
         form = checks.get(name)
-        kind, covers = declaration["kind"], declaration["covers"]
+        kind, covers = declaration["kind"], declaration.get("covers")
         rows = [
             (
                 "Kind",
@@ -328,7 +329,8 @@ def sums(section: Section, node_facts: Facts) -> list[Sum]:
             for key in _PARAMETERS
             if key in declaration
         ]
-        rows.append(("Covers", _covered(covers)))
+        if covers:
+            rows.append(("Covers", _covered(covers)))
         if declaration.get("seeds"):
             seeds = ", ".join(
                 f"{message} {seed}" for message, seed in declaration["seeds"].items()

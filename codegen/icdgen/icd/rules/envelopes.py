@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 from icdgen.icd.fault import Fault
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Message, Node
-from icdgen.icd.packets import Packet, Packets, declared_packets
+from icdgen.icd.packets import Packet, Packets, covers_of, declared_packets
+from icdgen.icd.responses import Section
 from icdgen.icd.rules.context import Context, section_of
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, of_wide_value
@@ -33,6 +34,7 @@ ONLY_WITH = {
     "unit": ("length", "response_length"),
     "per": ("sequence",),
     "checksum": ("checksum",),
+    "covers": ("checksum",),
     "enum": ("status", "reason"),
 }
 # Keys of a protocol section with `stream`.
@@ -417,7 +419,14 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                 )
             elif _is_valid(declared):
                 yield from _checksum(ctx, link, packet, part, row, declared)
-        for name in checksums:
+                yield from _covered(packet, part, row, covers_of(row, checksums))
+        fields = [row for *_, row in _checksum_fields(link)]
+        for name, declared in checksums.items():
+            own = [row for row in fields if row.get("checksum") == name]
+            has_effect = not own or any("covers" not in row for row in own)
+            if isinstance(declared, Map) and "covers" in declared and not has_effect:
+                text = "`covers` has no effect, because each field with this checksum has its own"
+                yield Fault.at_key(declared, "covers", text, "remove it")
             if name not in used:
                 message = f"no field of the frame has the checksum {quote(name)}"
                 help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
@@ -448,15 +457,7 @@ def _is_valid(checksum: object) -> bool:
         or not 0 < checksum["width"] <= 32
     ):
         return False
-    covers = checksum.get("covers")
-    bounds = (
-        [covers.get(key) for key in ("from", "to")]
-        if isinstance(covers, Map)
-        else [None]
-    )
-    return isinstance(checksum.get("kind"), str) and all(
-        isinstance(bound, str) for bound in bounds
-    )
+    return isinstance(checksum.get("kind"), str)
 
 
 def _checksum(
@@ -505,15 +506,22 @@ def _checksum(
                 yield Fault.at_key(
                     checksum, key, message, "remove it, or correct `kind`"
                 )
-    yield from _covered(packet, part, row, checksum)
     yield from _seeds(ctx, link, checksum)
 
 
-def _covered(packet: LinkPacket, part: str, row: Map, checksum: Map) -> Iterator[Fault]:
+def _covered(
+    packet: LinkPacket, part: str, row: Map, covers: Section
+) -> Iterator[Fault]:
     """Yield the faults of `covers`, which must include the data but not the checksum
     itself.
     """
-    covers = checksum["covers"]
+    if not isinstance(covers, Map) or not covers:
+        message = "nothing says what the checksum covers"
+        help = "add `covers: {from: ..., to: ...}` to the field or to its checksum"
+        yield Fault.at(row, "checksum", message, help)
+        return
+    if not all(isinstance(covers.get(key), str) for key in ("from", "to")):
+        return  # the schema check reports it
     bounds: dict[str, Map | None] = {}
     for key, where in (("from", "header"), ("to", "trailer")):
         role = covers[key]
