@@ -296,9 +296,10 @@ def test_start_values_cycle_times_and_further_senders_arrive(tmp_path):
     )
     read = imported(text, tmp_path)
     assert message(read, "Status")["group"] == "Engine"
+    assert message(read, "Status")["period_ms"] == 20
     assert (
         message(read, "Status")["summary"]
-        == "What the engine does. Sent every 20 ms. Also sent by Gateway."
+        == "What the engine does. Also sent by Gateway."
     )
     assert (
         field(read, "Status", "Speed")["summary"] == "How fast. Start value: 7 (raw)."

@@ -86,6 +86,15 @@ def test_telemetry_that_comes_unasked_is_a_stream_of_messages(node):
     assert all(isinstance(event, Arrived) for event in heard)
 
 
+def test_telemetry_comes_with_the_period_of_the_icd():
+    """The measurement every 10 ms, also if a telecommand can request it."""
+    session, _, _ = talking("tfmini", every=None)
+    came = [message.NAME for message in session.messages(seconds=0.095)]
+    assert came == ["Measurement"] * 10
+    session, _, _ = talking("tfmini", every=0.05)
+    assert len(list(session.messages(seconds=0.095))) == 2
+
+
 def test_only_the_kinds_that_are_listened_for_come():
     session, _, heard = talking("positioner", every=0.1)
     kind = session.client.link.TELEMETRY[0xFFFF]

@@ -15,10 +15,35 @@ import termios
 import time
 
 import pytest
-from icdgen_runtime.wire.events import Done, Timeout
+from icdgen_runtime.wire.events import Arrived, Done, Timeout
 
 from icdgen.link import live
+from icdgen.loading import load
+from tests.conftest import ROOT
 from tests.sim.device import ICD, simulator
+
+
+def test_a_message_with_a_period_may_be_absent_for_as_long(monkeypatch, tmp_path):
+    now = 100.0
+    monkeypatch.setattr(live.time, "monotonic", lambda: now)
+    text = (ROOT / "examples" / "links" / "tfmini.yaml").read_text()
+    path = tmp_path / "tfmini.yaml"
+    path.write_text(text.replace("period_ms: 10\n", "period_ms: 10000\n"))
+    monitor = live.Monitor(load([path]).icd, "tfmini", ["Measurement"])
+
+    def remarks_after_a_round() -> str:
+        monitor.begin()
+        monitor.end()
+        *_, text = next(monitor.rows())
+        return text
+
+    assert remarks_after_a_round() == "nothing came"
+    monitor.event(Arrived(0, bytes(6), {}))
+    assert remarks_after_a_round() == ""
+    now = 119.0
+    assert remarks_after_a_round() == ""
+    now = 121.0
+    assert remarks_after_a_round() == "nothing came; last value, 21 s old"
 
 
 def watched(*names: str) -> live.Monitor:

@@ -144,9 +144,7 @@ class _Sim(click.Command):
 @click.option(
     "--every",
     type=SECONDS,
-    default=1.0,
-    show_default=True,
-    help="Period of telemetry on framed streams, in s; 0: none.",
+    help="Period of telemetry on framed streams, in s; 0: none (default: the ICD's, otherwise 1).",
 )
 @click.option(
     "--envelope",

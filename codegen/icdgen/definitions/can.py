@@ -258,10 +258,13 @@ def _message(
     if senders:
         item["group"] = senders[0]
     cycle = message.cycle_time
+    is_whole = isinstance(cycle, int) and cycle > 0
+    if is_whole:
+        item["period_ms"] = cycle
     item |= summary(
         _sentences(
             message.comment,
-            f"Sent every {printed(cycle)} ms." if cycle else "",
+            f"Sent every {printed(cycle)} ms." if cycle and not is_whole else "",
             f"Also sent by {', '.join(senders[1:])}." if len(senders) > 1 else "",
         )
     )

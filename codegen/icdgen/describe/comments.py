@@ -121,6 +121,8 @@ def message_comment(
         facts.append("The node restarts instead of sending an acknowledge.")
     elif not message.acknowledge:
         facts.append("The node does not send an acknowledge.")
+    if message.period_ms is not None:
+        facts.append(f"Sent every {message.period_ms} ms.")
     if log_bit is not None:
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += [sharing] if sharing else []

@@ -242,6 +242,7 @@ class Builder:
             response=item.get("response"),
             repeat=item.get("repeat", False),
             requested=item.get("requested", True),
+            period_ms=item.get("period_ms"),
             hazard=item.get("hazard", ""),
             assumptions=tuple(
                 (key, str(why)) for key, why in (item.get("assumptions") or {}).items()

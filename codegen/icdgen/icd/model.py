@@ -96,6 +96,7 @@ class Message:
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of each assumption
     contains: tuple[Part, ...] = ()
     requested: bool = True  # telemetry: whether a packet with its id requests it
+    period_ms: int | None = None  # nominal, of telemetry that is sent unasked
     reserved: int = 0  # reserved bytes at the end
     # "zeros": frames may be sent without their trailing zeros; else empty
     may_end_early: str = ""

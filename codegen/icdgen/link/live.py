@@ -129,7 +129,23 @@ class Monitor:
     def end(self) -> None:
         """End a round. Missing messages become silent."""
         if self.listens:
-            self.silent = set(self.awaited)
+            self.silent = {name for name in self.awaited if self._is_overdue(name)}
+
+    def _is_overdue(self, name: str) -> bool:
+        """Return whether a message that did not arrive in a round was to arrive.
+
+        A message with a period may be late by one of them.
+        """
+        if name not in self.received_at:
+            return True
+        age = time.monotonic() - self.received_at[name]
+        return age > 2 * self._period_seconds(name)
+
+    def _period_seconds(self, name: str) -> float:
+        """Return the period of a message; 0 if the ICD does not say it."""
+        messages = self.icd.messages_of(self.node)
+        period = next(each.period_ms for each in messages if each.name == name)
+        return (period or 0) / 1000
 
     def record(self, message: Message, outcome: Outcome) -> None:
         """Record the outcome of a request."""
@@ -237,7 +253,9 @@ class Monitor:
                     yield name, "", "", "", remarks[0]
                 continue
             age = time.monotonic() - self.received_at[name]
-            if name in self.silent or age >= OLD_SECONDS:
+            if name in self.silent or age >= max(
+                OLD_SECONDS, 2 * self._period_seconds(name)
+            ):
                 remarks.append(f"last value, {_age_text(age)} old")
             for number, row in enumerate(self._frame(name, self.last[name]).rows):
                 of_row = "; ".join(

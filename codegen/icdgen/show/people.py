@@ -236,6 +236,7 @@ def _message(icd: Icd, selected: Node, message: Message, width: int | None) -> s
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",
         message.group,
+        f"sent every {message.period_ms} ms" if message.period_ms else "",
         *_outcomes(icd, selected, message),
     ]
     lines = [

@@ -5,6 +5,7 @@ telecommands.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from icdgen_runtime.wire.device import PacketData, response_of, response_to
@@ -31,6 +32,18 @@ _CAUSES: dict[str, Cause] = {  # event of the decoder -> cause
     "checksum": "checksum",
 }
 _SUCCESS: tuple[Verdict, ...] = ("ack", "reply")
+
+
+DEFAULT_PERIOD = 1000  # ms, of unsolicited telemetry
+
+
+@dataclass
+class _Period:
+    """Telemetry that is sent periodically, and when it is sent next, in ms."""
+
+    message: Message
+    period: int
+    next: int
 
 
 class EnvelopeLine(DeviceLine):
@@ -82,11 +95,20 @@ class EnvelopeLine(DeviceLine):
             variant.message
             for id, variants in self.ids.telemetry.items()
             for variant in variants
-            if id not in responding and not requested.get(id)
+            if variant.message.period_ms is not None
+            or (id not in responding and not requested.get(id))
+        ]
+        every = computer.settings.every_ms
+        periods = (
+            (message.period_ms or DEFAULT_PERIOD) if every is None else every
+            for message in self.unsolicited
+        )
+        self._periods = [
+            _Period(message, period, 0)
+            for message, period in zip(self.unsolicited, periods, strict=True)
+            if period
         ]
         self._header = b""  # of the received telecommand or request
-        self._every = computer.settings.every_ms
-        self._next = 0
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -133,22 +155,24 @@ class EnvelopeLine(DeviceLine):
 
     def tick(self, now: int) -> None:
         super().tick(now)
-        if self._every and now >= self._next:
-            # Keep the period after a delay, without sending the missed messages.
-            self._next = now - (now - self._next) % self._every + self._every
-            self.log(now)
+        for row in self._periods:
+            if now >= row.next:
+                # Keep the period after a delay, without sending the missed messages.
+                row.next = now - (now - row.next) % row.period + row.period
+                self._send_telemetry(now, row.message)
 
     def log(self, now: int) -> None:
-        program = self.computer.program
         for message in self.unsolicited:
-            assert message.telemetry_id is not None
-            self._send(
-                now, "telemetry", message.telemetry_id, program.current(now, message)
-            )
+            self._send_telemetry(now, message)
+
+    def _send_telemetry(self, now: int, message: Message) -> None:
+        assert message.telemetry_id is not None
+        data = self.computer.program.current(now, message)
+        self._send(now, "telemetry", message.telemetry_id, data)
 
     @property
     def next_tick(self) -> int | None:
-        return self._next if self._every else None
+        return min((row.next for row in self._periods), default=None)
 
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
         program, settings = self.computer.program, self.computer.settings

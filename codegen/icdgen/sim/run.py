@@ -51,7 +51,7 @@ class Options:
     processing: int = 0
     strict: bool = False
     orders: bool = False
-    every: float = 1.0
+    every: float | None = None
     chosen: Sequence[str] = ()
 
 
@@ -112,7 +112,7 @@ def build(
         options.busy,
         options.processing,
         options.strict,
-        round(options.every * 1000),
+        None if options.every is None else round(options.every * 1000),
     )
     line_faults = Faults(Random(options.seed), late_ms=options.late)
     chosen = values_of(facts.of(icd, node), options.chosen)

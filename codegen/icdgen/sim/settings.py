@@ -17,8 +17,9 @@ class Settings:
     processing_ms: int = 0  # duration of a telecommand; the next one is lost meanwhile
     # also reject unknown enumeration values and values out of limits
     strict: bool = False
-    # period of unsolicited messages with header and trailer; 0: none
-    every_ms: int = 1000
+    # period of unsolicited messages with header and trailer; 0: none; None: that of the
+    # ICD, otherwise 1 s
+    every_ms: int | None = None
     values: dict[str, dict[str, int | bytes]] = field(
         default_factory=dict
     )  # set at each start

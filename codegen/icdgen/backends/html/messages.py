@@ -100,6 +100,7 @@ def _facts(
         ),
         ("Id", sharing(describe(relations.icd).node(node).messages_by_id, message), ""),
         ("Group", message.group, ""),
+        ("Period", f"{message.period_ms} ms" if message.period_ms else "", ""),
         *responses.of_message(relations, node, message),
         (
             "Acknowledged",

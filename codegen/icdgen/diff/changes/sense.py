@@ -167,6 +167,17 @@ def _effect_of_response(section: str, keys: list[str], old: object, new: object)
     return f"A program with the old ICD reports this response as other telemetry{end}."
 
 
+@rule("DIF218", "message", severity="warning")
+def period_changed(pair: MessagePair, ctx: Context) -> Iterator[CheckResult]:
+    if pair.old.period_ms != pair.new.period_ms:
+        was, now = (
+            "not stated" if message.period_ms is None else f"{message.period_ms} ms"
+            for message in (pair.old, pair.new)
+        )
+        text = f"the period of {quote(pair.new.name)} is {now}, was {was}"
+        yield CheckResult(text, ("period_ms", "name"), was, now)
+
+
 @rule("DIF213", "field", "message", severity="warning")
 def name_says_otherwise(
     pair: FieldPair | MessagePair, ctx: Context

@@ -649,6 +649,14 @@ def keys_of_responses_have_an_effect(ctx: Context) -> Iterator[Fault]:
             elif _is_on_other_links(ctx, node) and ctx.complete:
                 text = f"`{key}` has an effect on framed links (`stream`) only"
                 yield Fault.at_key(message.source, key, text, "remove it")
+        if "period_ms" not in message.source:
+            continue
+        if message.telemetry_id is None:
+            text = "`period_ms` applies to telemetry, not to a telecommand"
+            yield Fault.at_key(message.source, "period_ms", text, "remove it")
+        elif _is_on_other_links(ctx, node) and ctx.complete:
+            text = "`period_ms` has no effect, because on this link telemetry is sent on request only"
+            yield Fault.at_key(message.source, "period_ms", text, "remove it")
     for node in ctx.icd.nodes:
         protocol = node.source.get("protocol")
         client = protocol.get("client") if isinstance(protocol, Map) else None
