@@ -248,9 +248,9 @@ class Client(Generic[N]):
                 frame = i2c_reply(self.link, id, read, self._checks_frames)
             except IcdError:
                 return [*events, Malformed(id), *self._no_reply(now)]
-            return events + self._done(now, frame)
+            return events + self._done(frame)
         if not self.link.commands[self._request.id].acknowledged:
-            return events + self._done(now)
+            return events + self._done()
         self._is_written = True
         self._poll_end = self._latest = now + self.settings.poll_timeout
         return events + self._pause(now)
@@ -311,7 +311,7 @@ class Client(Generic[N]):
             self._owed = int(is_telecommand and is_answered)
             return []
         if not is_answered:
-            return self._done(now)
+            return self._done()
         self._owed += 1
         return []
 
@@ -323,7 +323,7 @@ class Client(Generic[N]):
             return self._pause(now)
         if self._state == "pause":
             if now >= self._poll_end:
-                return self._timeout(now)
+                return self._timeout()
             if self._is_written:
                 self._poll(now)
                 return []
@@ -334,7 +334,7 @@ class Client(Generic[N]):
     def _no_reply(self, now: float) -> list[Event]:
         """Process a missing or unusable reply: send again or end the request."""
         if not self._request.repeat or self._attempts > self.settings.retries:
-            return self._timeout(now)
+            return self._timeout()
         if self.bus == "i2c":  # a failure is immediate here: give the node some time
             self._state, self._until = "pause", now + self.settings.poll_interval
             self._poll_end = now + self.settings.poll_timeout
@@ -344,7 +344,7 @@ class Client(Generic[N]):
     def _pause(self, now: float) -> list[Event]:
         """Poll again after the poll interval, until the poll timeout."""
         if now >= self._poll_end:
-            return self._timeout(now)
+            return self._timeout()
         self._state, self._until = "pause", now + self.settings.poll_interval
         return []
 
@@ -370,7 +370,7 @@ class Client(Generic[N]):
             return self._pause(now)
         code = int(getattr(acknowledge, form.error))
         if code == self.link.errors.get("none", 0):
-            return self._done(now)
+            return self._done()
         return self._refused(now, code, int(getattr(acknowledge, form.parameter)))
 
     def _uart_message(self, now: float, message: bytes) -> list[Event]:
@@ -391,7 +391,7 @@ class Client(Generic[N]):
             )
             if self._is_response("telecommand", id):
                 if code == link.errors.get("none", 0):
-                    return self._done(now)
+                    return self._done()
                 return self._refused(now, code)
         return [Stray(message)]
 
@@ -403,7 +403,7 @@ class Client(Generic[N]):
         if message.kind == "reply":
             return self._replied(now, id, message.data) or stray
         if message.kind == "acknowledge" and self._is_response("telecommand", id):
-            return self._done(now)
+            return self._done()
         if message.kind == "refusal" and self._is_response("telecommand", id):
             return self._refused(now, None)
         if message.kind == "request_refusal" and self._is_response("telemetry", id):
@@ -415,7 +415,7 @@ class Client(Generic[N]):
         frame, fault = self._frame(id, data)
         if fault is None:
             is_response = self._is_response("telemetry", id)
-            return self._done(now, frame) if is_response else []
+            return self._done(frame) if is_response else []
         return [fault] if self._waits_for("telemetry", id) else []
 
     def _frame(self, id: int, data: bytes) -> tuple[bytes, Optional[Event]]:
@@ -423,9 +423,11 @@ class Client(Generic[N]):
 
         Its length shows whether it has a checksum.
         """
-        form, length = self.link.checksum, self.link.frames.get(id)
+        if id not in self.link.frames:
+            return b"", Malformed(id)
+        form, length = self.link.checksum, self.link.frames[id]
         may_be_checked = form is not None and self.bus in form.telemetry_buses
-        if form and length and may_be_checked and len(data) == length + form.bytes:
+        if form and may_be_checked and len(data) == length + form.bytes:
             try:
                 return i2c_reply(self.link, id, data, True), None
             except ChecksumError:
@@ -451,7 +453,7 @@ class Client(Generic[N]):
         self._late = [late for late in self._late if late.responses]
         return False
 
-    def _done(self, now: float, frame: bytes = b"") -> list[Event]:
+    def _done(self, frame: bytes = b"") -> list[Event]:
         id, message = self._request.id, None
         if self._request.kind == "telemetry":
             message = self.link.TELEMETRY[id]
@@ -472,7 +474,7 @@ class Client(Generic[N]):
         id = self._request.id
         return [Refused(id, self._attempts, code, reason, parameter)]
 
-    def _timeout(self, now: float) -> list[Event]:
+    def _timeout(self) -> list[Event]:
         self._end()
         return [Timeout(self._request.id, self._attempts)]
 
