@@ -8,6 +8,9 @@ import random
 from itertools import islice
 
 import pytest
+from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.envelope_client import EnvelopeClient
+from icdgen_runtime.wire.events import OUTCOMES
 
 from icdgen.protocol import facts
 from icdgen.runtime_objects import reference
@@ -76,7 +79,7 @@ def test_every_request_ends_once_if_tick_is_called_at_the_deadline(icd):
     for script in islice(outcomes.requests(icd, random.Random(2)), SCRIPTS):
         link = link_of(icd, facts.of(icd, icd.node(script["node"])))
         settings = link.settings._replace(**script["settings"])
-        client = reference.EnvelopeClient(link, settings, requests=script["requests"])
+        client = EnvelopeClient(link, settings, requests=script["requests"])
         ended, now = 0, 0
         for row in script["script"]:
             now = row["at"]
@@ -107,17 +110,17 @@ def number_of_ends(client, now, row):
             return before - len(client._slots)
         if "telecommand" in row:
             data, repeat = bytes.fromhex(row["bytes"]), row.get("repeat", False)
-            request = reference.Request("telecommand", row["telecommand"], data, repeat)
+            request = Request("telecommand", row["telecommand"], data, repeat)
             client.start(now, request, row.get("reply"))
         elif "telemetry" in row:
-            client.start(now, reference.Request("telemetry", row["telemetry"]))
+            client.start(now, Request("telemetry", row["telemetry"]))
         elif "receive" in row:
             reported = client.received(now, bytes.fromhex(row["receive"]))
         else:
             reported = client.tick(now)
     except ValueError:
         pass  # the request did not start
-    return sum(isinstance(event, reference.events.OUTCOMES) for event in reported)
+    return sum(isinstance(event, OUTCOMES) for event in reported)
 
 
 NINE = """\
