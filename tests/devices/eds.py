@@ -87,7 +87,7 @@ def _definition(
         if found is not None
     )
     header = tree.get("protocol", {}).get("stream", {}).get("header", [])
-    skipped = max((one["at"] + one["bits"] for one in header), default=0)
+    skipped = sum(one["bits"] for one in header)  # they follow each other
 
     def raw(data: bytes) -> Values:
         return _named(

@@ -164,6 +164,7 @@ OF_MESSAGE = {
     "response": "none",
     "repeat": True,
     "requested": False,
+    "period_ms": 250,
     "hazard": "It burns.",
     "contains": (Part("Status", 0),),
     "reserved": 2,

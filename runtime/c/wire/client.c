@@ -272,6 +272,8 @@ ICDGEN_API icd_status_t icd_client_start(
 
 ICDGEN_API void icd_client_cancel(icd_client_t *client)
 {
+    /* Nothing responds to what was not sent. */
+    client->awaited -= client->pending < client->awaited ? client->pending : client->awaited;
     client->pending = 0;
     client->poll = false;
     client->encoder.ended = true;

@@ -113,6 +113,7 @@ class Client(Generic[N]):
         self._until: float = 0  # end of the state
         self._latest: float = 0  # until when a response is in time
         self._owed = 0  # number of responses that may still arrive
+        self._untaken = 0  # number of transmissions whose output was not taken
         self._is_written = False  # I2C: telecommand is sent, acknowledge is polled
         self._poll_end: float = 0  # when polling ends
         # A new request waits while a late response could be taken for its own.
@@ -170,11 +171,13 @@ class Client(Generic[N]):
     def output(self) -> bytes:
         """UART: return the bytes to send, each once."""
         taken, self._stream = self._stream, []
+        self._untaken = 0
         return b"".join(taken)
 
     def packets(self) -> list[CanPacket]:
         """CAN: return the packets to send, each once."""
         taken, self._packets = self._packets, []
+        self._untaken = 0
         return taken
 
     def transfers(self) -> list[I2cTransfer]:
@@ -183,6 +186,7 @@ class Client(Generic[N]):
         Call `transferred` once for each transaction, in this order.
         """
         taken, self._transfers = self._transfers, []
+        self._untaken = 0
         self._unreported += len(taken)
         return taken
 
@@ -193,6 +197,8 @@ class Client(Generic[N]):
         cancelled one could belong: it waits. The late response is `Stray`.
         """
         self._stream, self._packets, self._transfers = [], [], []
+        self._owed -= self._untaken  # nothing responds to what was not sent
+        self._untaken = 0
         if self.busy:
             self._end()
 
@@ -284,6 +290,7 @@ class Client(Generic[N]):
         is_telecommand = request.kind == "telecommand"
         is_answered = not is_telecommand or self.link.commands[request.id].acknowledged
         self._attempts += 1
+        self._untaken += 1
         self._is_written = False
         self._state, self._until = "wait", now + self.settings.reply_timeout
         self._latest = self._until

@@ -126,6 +126,8 @@ impl<const N: usize> Machine<N> {
     }
 
     pub(super) fn cancel(&mut self) {
+        // Nothing responds to what was not sent.
+        self.owed_responses = self.owed_responses.saturating_sub(self.untaken());
         self.drop_output();
         if self.state != State::Idle {
             self.end(0);

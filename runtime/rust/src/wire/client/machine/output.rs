@@ -34,6 +34,21 @@ impl<const N: usize> Machine<N> {
         }
     }
 
+    /// Return the number of transmissions of the request of which nothing was taken.
+    pub(super) fn untaken(&self) -> u16 {
+        let requests = self.queue.iter().flatten();
+        let count = requests
+            .filter(|output| **output == Output::Request)
+            .count();
+        let count = u16::try_from(count).unwrap_or(u16::MAX);
+        let repeats = match self.first() {
+            Some(Output::Request) => self.repeats,
+            _ => 0,
+        };
+        let begun = u16::from(self.begun > 0 || self.encoder.is_some());
+        count.saturating_add(repeats).saturating_sub(begun)
+    }
+
     /// Nothing more is to be sent.
     pub(super) fn drop_output(&mut self) {
         self.begun = 0;
