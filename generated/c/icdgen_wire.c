@@ -2840,6 +2840,22 @@ static inline bool icdgen_client_replied(
     return true;
 }
 
+/* Process an acknowledge with this code, or a refusal. Return false if no request waits for it. */
+static inline bool icdgen_client_answered(
+    const icdgen_client_call_t *call, icd_direction_t direction, uint32_t id, bool is_positive, int64_t code)
+{
+    icd_client_t *const client = call->client;
+    if (!icdgen_client_is_response(client, call->now, direction, id)) {
+        return false;
+    }
+    if (is_positive) {
+        icdgen_client_done(client, NULL, 0, call->on_event, call->context);
+    } else {
+        icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
+    }
+    return true;
+}
+
 static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
 {
     icd_client_t *const client = call->client;
@@ -2862,14 +2878,8 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         is_response = icdgen_client_replied(call, message[0], message + 1, length - 1u);
     } else if (kind == ICD_UART_ACKNOWLEDGE) {
         const uint8_t code = message[link->acknowledge->error_at];
-        is_response = icdgen_client_is_response(client, call->now, ICD_TELECOMMAND, message[link->acknowledge->id_at]);
-        if (is_response && code == link->no_error) {
-            icdgen_client_done(client, NULL, 0, call->on_event, call->context);
-        } else if (is_response) {
-            icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
-        } else {
-            /* stray */
-        }
+        is_response = icdgen_client_answered(
+            call, ICD_TELECOMMAND, message[link->acknowledge->id_at], code == link->no_error, code);
     } else {
         /* no request has such a response */
     }
@@ -2904,14 +2914,7 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
         is_response = icdgen_client_replied(call, event->id, event->data, event->length);
     } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
         const icd_direction_t direction = kind == ICD_CAN_REQUEST_REFUSAL ? ICD_TELEMETRY : ICD_TELECOMMAND;
-        is_response = icdgen_client_is_response(client, call->now, direction, event->id);
-        if (is_response && kind == ICD_CAN_ACKNOWLEDGE) {
-            icdgen_client_done(client, NULL, 0, call->on_event, call->context);
-        } else if (is_response) {
-            icdgen_client_refused(client, call->now, -1, -1, call->on_event, call->context);
-        } else {
-            /* stray */
-        }
+        is_response = icdgen_client_answered(call, direction, event->id, kind == ICD_CAN_ACKNOWLEDGE, -1);
     } else {
         /* stray */
     }
@@ -3211,8 +3214,8 @@ static inline const icd_response_t *icdgen_matching(
     return response;
 }
 
-/* Return the number of sources that are known before a packet is sent, because they are not in its header. */
-static inline size_t icdgen_known(const icd_stream_awaited_t *awaited)
+/* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
+static inline size_t icdgen_message_sources(const icd_stream_awaited_t *awaited)
 {
     return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
 }
@@ -3228,8 +3231,8 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < response_b->echo_count; ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_known(a) &&
-                other->source < icdgen_known(b) && a->sources[echo->source] != b->sources[other->source]) {
+            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_message_sources(a) &&
+                other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
         }
@@ -3515,7 +3518,7 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     } else {
         /* as in the ICD */
     }
-    for (size_t i = 0; i < icdgen_known(&slot->awaited); ++i) {
+    for (size_t i = 0; i < icdgen_message_sources(&slot->awaited); ++i) {
         slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
     }
     client->started++;

@@ -174,11 +174,9 @@ def place_fields(stream: object) -> None:
 
     ``stream``: the section of an ICD, or anything else, which the schema check reports.
     """
-    sections = [stream] if isinstance(stream, Mapping) else []
-    for section in sections:
-        packets = section.get("packets")
-        if isinstance(packets, Mapping):
-            sections += [each for each in packets.values() if isinstance(each, Mapping)]
+    packets = stream.get("packets") if isinstance(stream, Mapping) else None
+    own = packets.values() if isinstance(packets, Mapping) else ()
+    for section in (each for each in (stream, *own) if isinstance(each, Mapping)):
         for part in ("header", "trailer"):
             end = 0
             for row in _fields(section.get(part)):
@@ -208,10 +206,11 @@ def covers_of(row: Section, checksums: Section) -> Section:
     """Return what the checksum of a field covers: as the field says, otherwise the
     declaration of its checksum; empty if neither does.
     """
-    declaration = checksums.get(row.get("checksum", ""))
-    own = row.get("covers")
-    covers = declaration.get("covers") if isinstance(declaration, Mapping) else None
-    return next((each for each in (own, covers) if isinstance(each, Mapping)), {})
+    for section in (row, checksums.get(row.get("checksum", ""))):
+        covers = section.get("covers") if isinstance(section, Mapping) else None
+        if isinstance(covers, Mapping):
+            return covers
+    return {}
 
 
 def value_of(row: Section, direction: str, is_little: bool) -> int:

@@ -139,10 +139,12 @@ def _covered(rows: Iterable[Section], name: str, last: bool) -> Section | None:
 
 
 def declaration_of(packet: Packet, checksums: Section) -> Section:
-    """Return the declaration of the checksum of a packet; empty without one."""
+    """Return the declaration of the checksum of a packet, with what it covers; empty
+    without one.
+    """
     row = place_of(packet.rows, "checksum") or {}
     declaration: Section = checksums.get(row.get("checksum", ""), {})
-    return declaration
+    return {**declaration, "covers": covers_of(row, checksums)} if declaration else {}
 
 
 def check_of(packet: Packet, checksums: Section) -> Check | None:
@@ -158,9 +160,8 @@ def check_of(packet: Packet, checksums: Section) -> Check | None:
         "reflect_out", False
     )
     crc = Crc(width, polynomial, init, *reflected, xor_out, declaration.get("empty"))
-    covers = covers_of(place_of(packet.rows, "checksum") or {}, checksums)
-    first = _covered(packet.header, covers["from"], False)
-    last = _covered(packet.trailer, covers["to"], True)
+    first = _covered(packet.header, declaration["covers"]["from"], False)
+    last = _covered(packet.trailer, declaration["covers"]["to"], True)
     return Check(
         kind,
         crc,

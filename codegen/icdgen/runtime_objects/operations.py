@@ -11,7 +11,6 @@ from typing import Any, get_args
 from icdgen_runtime.wire import crc, stream
 from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 from icdgen_runtime.wire.can import can_split as split
-from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.errors import need
 from icdgen_runtime.wire.files import HoleMap, IndexEntry, read_index, write_index
 from icdgen_runtime.wire.i2c import i2c_read_length, i2c_write
@@ -27,13 +26,13 @@ from icdgen.protocol.envelope import DIRECTIONS, GIVEN
 from icdgen.runtime_objects.refusals import Refusal, naming_the_field
 from icdgen.runtime_objects.request_keys import (
     Request,
+    choice,
     flag,
     hex_bytes,
     mappings,
     number,
     octets,
     rows,
-    text,
 )
 
 CAN_BYTES = 8  # of a classic CAN frame
@@ -89,10 +88,7 @@ def can_split(link: AnyLink, request: Request) -> Response:
 
 
 def _can_message(request: Request) -> CanMessage:
-    name, data = text(request, "kind"), octets(request)
-    kind = next((kind for kind in CAN_KINDS if kind == name), None)
-    if kind is None:
-        raise Refusal("request", detail="there is no such kind")
+    kind, data = choice(request, "kind", CAN_KINDS), octets(request)
     id, source, destination = (
         number(request, key, 0, 255) for key in ("id", "source", "destination")
     )
@@ -131,13 +127,11 @@ def _can_event(event: CanEvent) -> Response:
 
 
 def i2c_request(link: AnyLink, request: Request) -> Response:
-    kind = text(request, "kind")
+    kind = choice(request, "kind", DIRECTIONS)
     id, checked = number(request, "id", 0, 255), flag(request, "crc")
     if kind == "telemetry":
         read = i2c_read_length(link, id, checked)
         return {"write": i2c_write(link, id).hex(), "read": read}
-    if kind != "telecommand":
-        raise Refusal("request", detail="there is no such kind")
     written = i2c_write(link, id, octets(request), checked)
     return {"write": written.hex(), "read": 0}
 
@@ -257,12 +251,16 @@ def stream_encode(link: AnyLink, request: Request) -> Response:
         if request.get("direction") == "request":
             line = stream.stream_encode_request(link, id, **chosen)
         else:
-            line = stream.stream_encode(link, id, data, _direction(request), **chosen)
+            line = stream.stream_encode(
+                link, id, data, choice(request, "direction", DIRECTIONS), **chosen
+            )
     return {"bytes": line.hex()}
 
 
 def stream_events(link: AnyLink, request: Request) -> Response:
-    form, direction = need(link.stream, "stream"), _direction(request)
+    form, direction = need(link.stream, "stream"), choice(
+        request, "direction", DIRECTIONS
+    )
     least = max(packet.overhead for packet in form.packets)
     limit = number(request, "limit", least, link.longest, link.longest)
     decoder = stream.StreamDecoder(link, direction, limit)
@@ -274,14 +272,6 @@ def stream_events(link: AnyLink, request: Request) -> Response:
         "discarded": decoder.discarded,
         "pending": decoder.pending,
     }
-
-
-def _direction(request: Request) -> Direction:
-    direction = text(request, "direction")
-    for known in DIRECTIONS:
-        if direction == known:
-            return known
-    raise Refusal("request", detail="there is no such direction")
 
 
 def _stream_row(event: stream.StreamEvent) -> Response:

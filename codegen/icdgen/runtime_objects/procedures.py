@@ -15,8 +15,15 @@ from icdgen_runtime.wire.transfer import Download, Erase, FileList, Format, Uplo
 
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.runtime_objects.refusals import Refusal
-from icdgen.runtime_objects.request_keys import flag, mappings, number, octets, text
-from icdgen.runtime_objects.scripts import bus_of
+from icdgen.runtime_objects.request_keys import (
+    choice,
+    flag,
+    mappings,
+    number,
+    octets,
+    text,
+)
+from icdgen.runtime_objects.scripts import BUSES
 
 LONGEST = 1 << 20  # maximum repetitions of the bytes of an upload
 UNKNOWN_CODE = 255  # code of a refusal that the ICD does not define
@@ -96,7 +103,9 @@ def procedure_of(link: AnyLink, request: Row) -> Procedure:
             return FileList(link)
         case "download":
             size = number(request, "size") if "size" in request else None
-            return Download(link, bus_of(request), *_file(request), size, block)
+            return Download(
+                link, choice(request, "bus", BUSES), *_file(request), size, block
+            )
         case "upload":
             data = octets(request) * number(request, "times", 1, LONGEST, 1)
             destination = number(request, "destination", 0, 255)

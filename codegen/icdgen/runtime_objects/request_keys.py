@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, TypeVar
 
 from icdgen.runtime_objects.refusals import Refusal
 
 Request = dict[str, Any]
+T = TypeVar("T", bound=str)
 
 
 def number(
@@ -36,6 +37,18 @@ def text(request: Request, key: str) -> str:
     if not isinstance(value, str):
         raise Refusal("request", detail=f"`{key}` is missing or is no text")
     return value
+
+
+def choice(request: Request, key: str, values: tuple[T, ...]) -> T:
+    """Return the value that a text names.
+
+    Raises `Refusal` if it names none of them.
+    """
+    name = text(request, key)
+    for value in values:
+        if value == name:
+            return value
+    raise Refusal("request", detail=f"there is no such {key}")
 
 
 def octets(request: Request, key: str = "bytes") -> bytes:

@@ -23,12 +23,12 @@ from icdgen.protocol.sections import Settings as SettingsSection
 from icdgen.runtime_objects.operations import AnyLink, can_packet
 from icdgen.runtime_objects.refusals import Refusal, details_of
 from icdgen.runtime_objects.request_keys import (
+    choice,
     flag,
     hex_bytes,
     mappings,
     number,
     octets,
-    text,
 )
 
 MOST_REQUESTS = 3  # requests that are in progress or waiting
@@ -42,7 +42,7 @@ def client(link: AnyLink, request: Row) -> Row:
     """Return what a client on the UART, I2C or CAN does in a script."""
     tested_client = Client(
         link,
-        bus_of(request),
+        choice(request, "bus", BUSES),
         flag(request, "crc"),
         number(request, "address", 0, 255, 0),
         _settings(link, request),
@@ -55,15 +55,6 @@ def stream_client(link: AnyLink, request: Row) -> Row:
     requests = number(request, "requests", 1, MOST_REQUESTS, 1)
     tested_client = EnvelopeClient(link, _settings(link, request), requests=requests)
     return _steps(request, tested_client, _framed_events, _framed_output, _row)
-
-
-def bus_of(request: Row) -> Bus:
-    """Return the bus that a request names."""
-    name = text(request, "bus")
-    for bus in BUSES:
-        if bus == name:
-            return bus
-    raise Refusal("request", detail="there is no such bus")
 
 
 def _settings(link: AnyLink, request: Row) -> Settings:
@@ -144,6 +135,7 @@ def _bus_output(tested_client: Client[Any], row: Row) -> list[object]:
         *tested_client.transfers(),
     ]
     if lines := tested_client.output():
+        # A row for each message, as the clients of other languages give them.
         link = tested_client.link
         messages = [event.message for event in UartDecoder(link).feed(lines)]
         output += [uart_encode(link, message) for message in messages]

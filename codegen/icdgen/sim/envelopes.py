@@ -99,15 +99,12 @@ class EnvelopeLine(DeviceLine):
             or (id not in responding and not requested.get(id))
         ]
         every = computer.settings.every_ms
-        periods = (
-            (message.period_ms or DEFAULT_PERIOD) if every is None else every
-            for message in self.unsolicited
-        )
-        self._periods = [
-            _Period(message, period, 0)
-            for message, period in zip(self.unsolicited, periods, strict=True)
-            if period
-        ]
+        self._periods: list[_Period] = []
+        if every != 0:
+            self._periods = [
+                _Period(message, every or message.period_ms or DEFAULT_PERIOD, 0)
+                for message in self.unsolicited
+            ]
         self._header = b""  # of the received telecommand or request
 
     @property

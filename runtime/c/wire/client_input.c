@@ -121,6 +121,22 @@ static inline bool icdgen_client_replied(
     return true;
 }
 
+/* Process an acknowledge with this code, or a refusal. Return false if no request waits for it. */
+static inline bool icdgen_client_answered(
+    const icdgen_client_call_t *call, icd_direction_t direction, uint32_t id, bool is_positive, int64_t code)
+{
+    icd_client_t *const client = call->client;
+    if (!icdgen_client_is_response(client, call->now, direction, id)) {
+        return false;
+    }
+    if (is_positive) {
+        icdgen_client_done(client, NULL, 0, call->on_event, call->context);
+    } else {
+        icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
+    }
+    return true;
+}
+
 static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
 {
     icd_client_t *const client = call->client;
@@ -143,14 +159,8 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         is_response = icdgen_client_replied(call, message[0], message + 1, length - 1u);
     } else if (kind == ICD_UART_ACKNOWLEDGE) {
         const uint8_t code = message[link->acknowledge->error_at];
-        is_response = icdgen_client_is_response(client, call->now, ICD_TELECOMMAND, message[link->acknowledge->id_at]);
-        if (is_response && code == link->no_error) {
-            icdgen_client_done(client, NULL, 0, call->on_event, call->context);
-        } else if (is_response) {
-            icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
-        } else {
-            /* stray */
-        }
+        is_response = icdgen_client_answered(
+            call, ICD_TELECOMMAND, message[link->acknowledge->id_at], code == link->no_error, code);
     } else {
         /* no request has such a response */
     }
@@ -185,14 +195,7 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
         is_response = icdgen_client_replied(call, event->id, event->data, event->length);
     } else if (kind == ICD_CAN_ACKNOWLEDGE || kind == ICD_CAN_REFUSAL || kind == ICD_CAN_REQUEST_REFUSAL) {
         const icd_direction_t direction = kind == ICD_CAN_REQUEST_REFUSAL ? ICD_TELEMETRY : ICD_TELECOMMAND;
-        is_response = icdgen_client_is_response(client, call->now, direction, event->id);
-        if (is_response && kind == ICD_CAN_ACKNOWLEDGE) {
-            icdgen_client_done(client, NULL, 0, call->on_event, call->context);
-        } else if (is_response) {
-            icdgen_client_refused(client, call->now, -1, -1, call->on_event, call->context);
-        } else {
-            /* stray */
-        }
+        is_response = icdgen_client_answered(call, direction, event->id, kind == ICD_CAN_ACKNOWLEDGE, -1);
     } else {
         /* stray */
     }

@@ -154,8 +154,8 @@ static inline const icd_response_t *icdgen_matching(
     return response;
 }
 
-/* Return the number of sources that are known before a packet is sent, because they are not in its header. */
-static inline size_t icdgen_known(const icd_stream_awaited_t *awaited)
+/* Return the number of sources in id and data, which are known before the packet is sent: its header is not. */
+static inline size_t icdgen_message_sources(const icd_stream_awaited_t *awaited)
 {
     return ICDGEN_SIZE(awaited->exchange->source_count) - awaited->exchange->header_count;
 }
@@ -171,8 +171,8 @@ static inline bool icdgen_differs_in_echo(
         const icd_echo_t *const echo = &response_a->echoes[i];
         for (size_t j = 0; j < response_b->echo_count; ++j) {
             const icd_echo_t *const other = &response_b->echoes[j];
-            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_known(a) &&
-                other->source < icdgen_known(b) && a->sources[echo->source] != b->sources[other->source]) {
+            if (icdgen_is_same_place(&echo->place, &other->place) && echo->source < icdgen_message_sources(a) &&
+                other->source < icdgen_message_sources(b) && a->sources[echo->source] != b->sources[other->source]) {
                 return true;
             }
         }
@@ -458,7 +458,7 @@ icd_stream_client_start(icd_stream_client_t *client, uint32_t now, const icd_str
     } else {
         /* as in the ICD */
     }
-    for (size_t i = 0; i < icdgen_known(&slot->awaited); ++i) {
+    for (size_t i = 0; i < icdgen_message_sources(&slot->awaited); ++i) {
         slot->awaited.sources[i] = icdgen_stream_number(&exchange->sources[i], row->id, data, slot->length);
     }
     client->started++;

@@ -395,10 +395,9 @@ def _lengths(
 def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         checksums = section_of(link.node, "checksums") or unread()
-        used: set[str] = set()
-        for packet, part, row in _checksum_fields(link):
+        fields = list(_checksum_fields(link))
+        for packet, part, row in fields:
             name = row.get("checksum", "")
-            used.add(name)
             declared = checksums.get(name)
             if declared is None:
                 message = (
@@ -420,19 +419,18 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
             elif _is_valid(declared):
                 yield from _checksum(ctx, link, packet, part, row, declared)
                 yield from _covered(packet, part, row, covers_of(row, checksums))
-        fields = [row for *_, row in _checksum_fields(link)]
         for name, declared in checksums.items():
-            own = [row for row in fields if row.get("checksum") == name]
-            has_effect = not own or any("covers" not in row for row in own)
-            if isinstance(declared, Map) and "covers" in declared and not has_effect:
-                text = "`covers` has no effect, because each field with this checksum has its own"
-                yield Fault.at_key(declared, "covers", text, "remove it")
-            if name not in used:
+            own = [row for *_, row in fields if row.get("checksum") == name]
+            if not own:
                 message = f"no field of the frame has the checksum {quote(name)}"
                 help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
                 yield Fault(
                     section_of(link.node), checksums.key_at(name), message, help
                 )
+            elif isinstance(declared, Map) and "covers" in declared:
+                if all("covers" in row for row in own):
+                    text = "`covers` has no effect, because each field with this checksum has its own"
+                    yield Fault.at_key(declared, "covers", text, "remove it")
 
 
 def _checksum_fields(link: Link) -> Iterator[tuple[LinkPacket, str, Map]]:

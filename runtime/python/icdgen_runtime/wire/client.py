@@ -9,6 +9,7 @@ from .._base import Message
 from .._errors import IcdError, LengthError, UnknownIdError
 from .._hints import Buffer, N
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
+from .envelope import Direction
 from .errors import BusyError, ChecksumError, UnsupportedError, need
 from .events import (
     Done,
@@ -41,21 +42,21 @@ class Request(NamedTuple):
     Requests of telemetry and settings may always be sent again.
     """
 
-    kind: Literal["telecommand", "telemetry"]
+    kind: Direction
     id: int
     data: bytes = b""
     repeat: bool = False
 
 
 MOST_AWAITED = 8
-"""Largest number of requests whose responses may still arrive late."""
+"""Largest number of requests whose responses are awaited or may still arrive late."""
 
 
 @dataclass
 class _Late:
     """Responses that may still arrive although their request has ended."""
 
-    kind: Literal["telecommand", "telemetry"]
+    kind: Direction
     id: int
     responses: int
     until: float
@@ -207,7 +208,7 @@ class Client(Generic[N]):
         events: list[Event] = []
         if self._joiner:
             events += map(_line_error, self._joiner.expire(now))
-        self._late = [late for late in self._late if now < late.until]
+        self._forget(now)
         if self.busy and now >= self._until:
             events += self._expired(now)
         return events
@@ -268,7 +269,7 @@ class Client(Generic[N]):
 
     def _transmit_or_hold(self, now: float) -> list[Event]:
         """Send the request, or wait while a late response could be taken for its own."""
-        self._late = [late for late in self._late if now < late.until]
+        self._forget(now)
         # So that the responses to all requests can be remembered, no other one is sent.
         is_full = len(self._late) == MOST_AWAITED
         ends = [late.until for late in self._late if is_full or self._is_of(late)]
@@ -280,6 +281,10 @@ class Client(Generic[N]):
     def _no_longer_held(self, now: float) -> list[Event]:
         """Send the request if the late response has arrived for which it waits."""
         return self._transmit_or_hold(now) if self._state == "hold" else []
+
+    def _forget(self, now: float) -> None:
+        """Forget the late responses that can no longer arrive."""
+        self._late = [late for late in self._late if now < late.until]
 
     def _is_of(self, late: _Late) -> bool:
         return (late.kind, late.id) == (self._request.kind, self._request.id)
@@ -443,11 +448,11 @@ class Client(Generic[N]):
             return b"", Malformed(id)
         return data, LineError("unchecked", id) if self._checks_frames else None
 
-    def _waits_for(self, kind: Literal["telecommand", "telemetry"], id: int) -> bool:
+    def _waits_for(self, kind: Direction, id: int) -> bool:
         request = self._request
         return self._state == "wait" and (kind, id) == (request.kind, request.id)
 
-    def _is_response(self, kind: Literal["telecommand", "telemetry"], id: int) -> bool:
+    def _is_response(self, kind: Direction, id: int) -> bool:
         """Return whether the request waits for this response.
 
         If not, it may be a late one, which can then no longer arrive.

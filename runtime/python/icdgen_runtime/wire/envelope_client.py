@@ -9,7 +9,7 @@ from typing import Generic, Literal, NamedTuple, Optional
 from .._base import Message
 from .._errors import LengthError, UnknownIdError
 from .._hints import Buffer, N
-from .client import Request
+from .client import MOST_AWAITED, Request
 from .envelope import (
     Direction,
     Exchange,
@@ -47,9 +47,6 @@ from .message_ids import (
 from .sender import Sender
 from .stream import StreamDecoder, StreamEvent
 
-MOST_AWAITED = 8
-"""Largest number of requests whose responses are awaited or may still arrive late."""
-
 _NO_EXCHANGE = Exchange((), ())
 _NEEDED: tuple[Verdict, ...] = ("ack", "reply")
 
@@ -75,8 +72,10 @@ class _Awaited(NamedTuple):
         plain = self.sources[: -self.exchange.in_header]
         return self._replace(sources=(*plain, *self.exchange.numbers_in(header)))
 
-    def _is_known(self, source: int) -> bool:
-        """Return whether a number is known before it is sent."""
+    def _is_in_message(self, source: int) -> bool:
+        """Return whether a number is in id and data, so that it is known before it is
+        sent.
+        """
         return source < len(self.sources) - self.exchange.in_header
 
     @property
@@ -110,8 +109,8 @@ class _Awaited(NamedTuple):
             (mine.telemetry, mine.packet) == (theirs.telemetry, theirs.packet)
             and not any(
                 echo.place == repeated.place
-                and self._is_known(echo.source)
-                and other._is_known(repeated.source)
+                and self._is_in_message(echo.source)
+                and other._is_in_message(repeated.source)
                 and self.sources[echo.source] != other.sources[repeated.source]
                 for echo in mine.echoes
                 for repeated in theirs.echoes

@@ -83,8 +83,8 @@ impl Awaited {
     ) -> Self {
         let exchange = exchange.unwrap_or(SILENCE);
         let mut sources = [0; Exchange::SOURCES];
-        let (known, _) = exchange.parts();
-        for (number, place) in sources.iter_mut().zip(known) {
+        let (in_message, _) = exchange.parts();
+        for (number, place) in sources.iter_mut().zip(in_message) {
             *number = place.get(&id.to_be_bytes(), data);
         }
         let mut replies = exchange.responses.iter();
@@ -102,15 +102,15 @@ impl Awaited {
 
     /// Store the numbers of the header with which the request was sent.
     pub(super) fn set_header(&mut self, header: &[u8]) {
-        let (known, in_header) = self.exchange.parts();
-        let numbers = self.sources.iter_mut().skip(known.len());
+        let (in_message, in_header) = self.exchange.parts();
+        let numbers = self.sources.iter_mut().skip(in_message.len());
         for (number, place) in numbers.zip(in_header) {
             *number = place.get(header, &[]);
         }
     }
 
-    /// Return whether a number is known before it is sent.
-    fn is_known(&self, source: usize) -> bool {
+    /// Return whether a number is in id and data, so that it is known before it is sent.
+    fn is_in_message(&self, source: usize) -> bool {
         source < self.exchange.parts().0.len()
     }
 
@@ -178,8 +178,8 @@ impl Awaited {
         mine.echoes.iter().any(|echo| {
             theirs.echoes.iter().any(|repeated| {
                 echo.place == repeated.place
-                    && self.is_known(echo.source)
-                    && other.is_known(repeated.source)
+                    && self.is_in_message(echo.source)
+                    && other.is_in_message(repeated.source)
                     && self.source(echo.source) != other.source(repeated.source)
             })
         })
@@ -189,8 +189,8 @@ impl Awaited {
 impl Exchange {
     /// Return the sources in id and data, and those in the header.
     fn parts(&self) -> (&'static [NumberPlace], &'static [NumberPlace]) {
-        let known = self.sources.len().saturating_sub(self.in_header);
-        self.sources.split_at(known)
+        let in_message = self.sources.len().saturating_sub(self.in_header);
+        self.sources.split_at(in_message)
     }
 }
 

@@ -177,6 +177,9 @@ pub struct Form {
     pub repeatable: bool,
 }
 
+/// Largest number of requests whose responses are awaited or may still arrive late.
+pub(in crate::wire) const MOST_AWAITED: usize = 8;
+
 /// Timeouts (in milliseconds) and retries of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {

@@ -6,11 +6,10 @@ use super::judge::Event;
 use super::sender::Sent;
 use super::Request;
 use crate::wire::bits::{head, reached};
-use crate::wire::link::{Content, Response, ResponseKind, Settings, Stream, StreamRow, Verdict};
+use crate::wire::link::{
+    Content, Response, ResponseKind, Settings, Stream, StreamRow, Verdict, MOST_AWAITED,
+};
 use crate::wire::{Direction, Error};
-
-/// Largest number of requests whose responses are awaited or may still arrive late.
-const MOST_AWAITED: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {

@@ -3,10 +3,8 @@
 //! Responses that may still arrive although their request has ended.
 
 use super::super::super::bits::reached;
+use super::super::super::link::MOST_AWAITED;
 use super::super::super::Direction;
-
-/// Largest number of requests whose responses may still arrive late.
-const MOST_AWAITED: usize = 8;
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
