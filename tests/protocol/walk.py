@@ -32,6 +32,7 @@ BESIDES = (
     "source",
     "assumptions",
     "summary",
+    "procedures",  # until rules check them
 )  # of every section: where it stands, why it is assumed, prose
 Path_ = tuple[str | int, ...]
 

@@ -220,13 +220,29 @@ class Icd:
         return frame_fields(message.layout, self.node(message.node).orders)
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """Return the protocol facts of the node: the facts of included nodes,
-        overridden by its own.
-        """
-        merged: dict[str, Any] = {}
-        for owner in (*self.included(node), node):
-            merged.update(owner.protocol)
-        return merged
+        """Return the protocol facts of the node: `protocol_of_all`."""
+        return protocol_of_all((*self.included(node), node))
+
+
+# Parts of the protocol section that contain any number of things by name.
+_BY_NAME = ("checksums", "procedures")
+
+
+def protocol_of_all(owners: Iterable[Node]) -> dict[str, Any]:
+    """Return the protocol facts of a node.
+
+    ``owners``: the included nodes, then the node itself. The facts of a later one
+    override those of an earlier one: whole parts, or what has the same name in a part.
+    """
+    merged: dict[str, Any] = {}
+    for owner in owners:
+        named = {
+            key: {**merged[key], **owner.protocol[key]}
+            for key in _BY_NAME
+            if key in merged and key in owner.protocol
+        }
+        merged |= owner.protocol | named
+    return merged
 
 
 def closure(nodes: Iterable[Node], names: Iterable[str]) -> tuple[Node, ...]:

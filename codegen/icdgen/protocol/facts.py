@@ -14,6 +14,7 @@ from icdgen.frozen import dataclass
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol.envelope import Stream
+from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
     Acknowledge,
@@ -75,6 +76,9 @@ class Facts:
     boot_ms: int | None
     # If present, ids have up to 32 bits and the other parts of the link are None
     stream: Stream | None
+    procedures: tuple[Procedure, ...]
+    # UART: telemetry that the node sends unasked, by the id that heads it
+    unsolicited: dict[int, int]
     assumptions: tuple[Assumption, ...]
 
     @property
@@ -203,5 +207,7 @@ def of(icd: Icd, node: Node) -> Facts:
         statistics=reader.step(reader.section("statistics")),
         boot_ms=None if boot is None else boot * 1000,
         stream=reader.stream(),
+        procedures=tuple(reader.procedures()),
+        unsolicited=reader.unsolicited(),
         assumptions=tuple(reader.assumptions()),
     )

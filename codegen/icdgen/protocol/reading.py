@@ -16,6 +16,8 @@ from icdgen.icd.variants import ids_of
 from icdgen.protocol.declared import Fact, read
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.enveloping import stream_of
+from icdgen.protocol.procedure_steps import ProcedureReader
+from icdgen.protocol.procedures import Procedure
 from icdgen.protocol.sections import (
     BUSES,
     PROCEDURES,
@@ -295,6 +297,35 @@ class Reader:
                 packet_ids[bus] = message.ids[0]
         return self.part("file_transfer", Files, packet_ids=packet_ids, **procedures)
 
+    def procedures(self) -> Iterator[Procedure]:
+        """Yield the procedures of the node."""
+        enums = {
+            enum.name: enum
+            for node in (*self.icd.included(self.node), self.node)
+            for enum in node.enums
+        }
+        names = [f"checksums.{name}" for name in self.section("checksums")]
+        checksums = {
+            path.removeprefix("checksums."): crc
+            for path in ("crc8", "crc16", *names)
+            if (crc := self.part(path, Crc))
+        }
+        for name, section in self.section("procedures").items():
+            if self.node.name in section.get("nodes", [self.node.name]):
+                reader = ProcedureReader(
+                    section, self.node, self.messages, enums, checksums
+                )
+                yield reader.read(name)
+
+    def unsolicited(self) -> dict[int, int]:
+        """Return the telemetry that the node sends unasked on the UART: the id that
+        heads it -> its own id.
+        """
+        return {
+            self.messages[row["id_of"]].ids[0]: self.messages[row["message"]].ids[-1]
+            for row in self.section("uart").get("unsolicited", ())
+        }
+
     def step(self, given: dict[str, Any]) -> Step | None:
         message = self.messages.get(given.get("message", ""))
         return Step(message, dict(given.get("fields", {}))) if message else None
@@ -327,12 +358,19 @@ def declared_value(message: Message, key: str) -> object:
 def assumptions_of(
     section: dict[str, Any], path: tuple[str, ...]
 ) -> Iterator[Assumption]:
-    """Return the assumptions of a section and of its subsections."""
+    """Return the assumptions of a section, of its subsections, and of the steps in
+    lists, which have the message or the kind of the step as name.
+    """
     for key, why in section.get("assumptions", {}).items():
         yield Assumption(".".join(path), key, section.get(key), why)
     for key, value in section.items():
         if isinstance(value, dict) and key != "assumptions":
             yield from assumptions_of(value, (*path, key))
+        for row in value if isinstance(value, list) else ():
+            if isinstance(row, dict):
+                step, what = next(iter(row.items()))
+                name = what if isinstance(what, str) else step
+                yield from assumptions_of(row, (*path, name))
 
 
 def by_role(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, Any]]:

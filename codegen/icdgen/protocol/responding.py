@@ -79,7 +79,7 @@ class Sources(NamedTuple):
         if index is None:
             _, message = self.telemetry[row["message"]]
             field = field_of(message, name)
-            place = _place(self.node, field)
+            place = place_of(self.node, field)
             return Number(place, field.scalar.enum) if field and place else None
         packet, form = self.packets.all[index], self.formats[index]
         declared = packet.named(name or "")
@@ -237,11 +237,15 @@ def _id_source(node: Node, name: str) -> NumberPlace | None:
 
 def _source(node: Node, message: Message, name: str) -> NumberPlace | None:
     """Return the place of a number of a telecommand in `Exchange.sources`."""
-    return _id_source(node, name) or _place(node, field_of(message, name), ID_BYTES)
+    return _id_source(node, name) or place_of(node, field_of(message, name), ID_BYTES)
 
 
-def _place(node: Node, field: NodePlace | None, offset: int = 0) -> NumberPlace | None:
-    """Return the place of a number after ``offset`` bytes; None without a field."""
+def place_of(
+    node: Node, field: NodePlace | None, offset: int = 0
+) -> NumberPlace | None:
+    """Return the place of a number after ``offset`` bytes; None without a field, or if
+    its bits are not one run in at most 4 bytes.
+    """
     run = number_run(field, node) if field else None
     if field is None or run is None:
         return None

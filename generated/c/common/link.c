@@ -474,7 +474,27 @@ ICDGEN_API const icd_link_t *common_link(void)
      * the checksum. Assumed finalize: The procedure ends with the checksum and does not name the telecommand that
      * commits the block. Assumed finalize_timeout_ms: No time is given. Assumed attempts: One attempt and two more are
      * announced. But the status is raised before each start, so it reads 3 Failed boot attempts before the third, and
-     * at that value no start is said to follow.
+     * at that value no start is said to follow. Assumed time_s: No time is given. Assumed requests: No number is given.
+     * Assumed entries: No number is given. A list without a last file has to end at some point. Assumed every_ms: No
+     * time is given. Assumed for_ms: No time is given. The checksum of a large file has to be computed meanwhile.
+     * Assumed time_s: No time is given. Assumed requests: No number is given. Assumed bytes: No number is given. A file
+     * of unknown size has to end at some point. Assumed rounds: Nothing is said about giving up. Assumed every_ms: No
+     * time is given. Assumed for_ms: No time is given. Assumed first: Where the count begins is not said. Bit 0 of the
+     * hole map is the first packet. Assumed beyond_end: What the bits beyond the end of a short block are is not said.
+     * Marked as received, nothing is sent for them. Assumed with: Message Length is not explained. Drivers in use send
+     * 20, the bytes of the file in a packet. Assumed silence_ms: How a burst ends is not said. Packets follow one
+     * another in rapid succession. Assumed requested_on: That the reads on I2C are headed by the id of the frame with
+     * the packet's format is not said. Download over CAN is not described; the packets are requested one by one as on
+     * I2C. Assumed verify: Whether the checksum covers the fill is not said. It comes with the length of the block,
+     * which does not count the fill. Assumed time_s: No time is given. Assumed requests: No number is given. Assumed
+     * every_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed first: Where the count
+     * begins is not said. Bit 0 of the hole map is the first packet. Assumed fill: The value is not defined. Erased
+     * flash memory reads 0xFF. Assumed verify: Whether the checksum covers the fill is not said. The node learns the
+     * length of the block only when the block is committed, after the checksum. Assumed send: The procedure ends with
+     * the checksum and does not name the telecommand that commits the block. Assumed every_ms: No time is given.
+     * Assumed for_ms: No time is given. Assumed time_s: No time is given. Assumed requests: No number is given. Assumed
+     * every_ms: No time is given. Assumed for_ms: No time is given. Assumed time_s: No time is given. Assumed requests:
+     * No number is given. Assumed every_ms: No time is given. Assumed for_ms: No time is given.
      */
     static const icd_link_t link = {
         nodes, /* whose messages */

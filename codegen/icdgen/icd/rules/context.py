@@ -13,7 +13,7 @@ from icdgen.icd.errata import Applied
 from icdgen.icd.fault import Fault
 from icdgen.icd.layout import Derived, LayoutNode, Orders, Scalar, scalar_of
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Icd, Message, Node, Struct
+from icdgen.icd.model import Enum, Icd, Message, Node, Struct, protocol_of_all
 from icdgen.icd.trees import at_path, mappings
 from icdgen.once import cached_property
 
@@ -215,13 +215,10 @@ class Context:
         return names - {message.name for message in self.messages_of(node)}
 
     def protocol_of(self, node: Node) -> dict[str, Any]:
-        """Return the protocol facts in effect for a node: the facts of included nodes,
+        """Return the protocol facts in effect for a node: those of included nodes,
         overridden by its own.
         """
-        merged: dict[str, Any] = {}
-        for owner in self.scope(node):
-            merged.update(owner.protocol)
-        return merged
+        return protocol_of_all(self.scope(node))
 
     def fact(self, node: Node, *path: str) -> Any:
         """Return the protocol fact in effect for a node at a path; None if it is

@@ -13,6 +13,113 @@ pub const LONGEST: usize = 28;
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
 /// start is said to follow.
 ///
+/// Assumed (`procedures.list.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.list.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.list.limits`, `entries`): No number is given. A list without a last file
+/// has to end at some point.
+///
+/// Assumed (`procedures.list.repeat.File Information`, `every_ms`): No time is given.
+///
+/// Assumed (`procedures.list.repeat.File Information`, `for_ms`): No time is given. The checksum of
+/// a large file has to be computed meanwhile.
+///
+/// Assumed (`procedures.download.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.download.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.download.limits`, `bytes`): No number is given. A file of unknown size has
+/// to end at some point.
+///
+/// Assumed (`procedures.download.blocks.blocks`, `rounds`): Nothing is said about giving up.
+///
+/// Assumed (`procedures.download.blocks.blocks.Download Block Ready`, `every_ms`): No time is
+/// given.
+///
+/// Assumed (`procedures.download.blocks.blocks.Download Block Ready`, `for_ms`): No time is given.
+///
+/// Assumed (`procedures.download.blocks.blocks.missing.missing`, `first`): Where the count begins
+/// is not said. Bit 0 of the hole map is the first packet.
+///
+/// Assumed (`procedures.download.blocks.blocks.missing.missing.send`, `beyond_end`): What the bits
+/// beyond the end of a short block are is not said. Marked as received, nothing is sent for them.
+///
+/// Assumed (`procedures.download.blocks.blocks.missing.missing.Initiate Download Burst`, `with`):
+/// Message Length is not explained. Drivers in use send 20, the bytes of the file in a packet.
+///
+/// Assumed (`procedures.download.blocks.blocks.missing.missing.File Download Buffer with File
+/// Contents`, `silence_ms`): How a burst ends is not said. Packets follow one another in rapid
+/// succession.
+///
+/// Assumed (`procedures.download.blocks.blocks.missing.missing.File Download Buffer with File
+/// Contents`, `requested_on`): That the reads on I2C are headed by the id of the frame with the
+/// packet's format is not said. Download over CAN is not described; the packets are requested one
+/// by one as on I2C.
+///
+/// Assumed (`procedures.download.blocks.blocks.verify`, `verify`): Whether the checksum covers the
+/// fill is not said. It comes with the length of the block, which does not count the fill.
+///
+/// Assumed (`procedures.upload.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.upload.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.upload.Initialize Upload Complete`, `every_ms`): No time is given.
+///
+/// Assumed (`procedures.upload.blocks.blocks`, `rounds`): Nothing is said about giving up.
+///
+/// Assumed (`procedures.upload.blocks.blocks.missing.missing`, `first`): Where the count begins is
+/// not said. Bit 0 of the hole map is the first packet.
+///
+/// Assumed (`procedures.upload.blocks.blocks.missing.missing`, `fill`): The value is not defined.
+/// Erased flash memory reads 0xFF.
+///
+/// Assumed (`procedures.upload.blocks.blocks.verify`, `verify`): Whether the checksum covers the
+/// fill is not said. The node learns the length of the block only when the block is committed,
+/// after the checksum.
+///
+/// Assumed (`procedures.upload.blocks.blocks.Finalize Upload Block`, `send`): The procedure ends
+/// with the checksum and does not name the telecommand that commits the block.
+///
+/// Assumed (`procedures.upload.blocks.blocks.Upload Block Complete`, `every_ms`): No time is given.
+///
+/// Assumed (`procedures.upload.blocks.blocks.Upload Block Complete`, `for_ms`): No time is given.
+///
+/// Assumed (`procedures.erase.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.erase.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.erase.SD card format/erase progress`, `every_ms`): No time is given.
+///
+/// Assumed (`procedures.erase.SD card format/erase progress`, `for_ms`): No time is given.
+///
+/// Assumed (`procedures.format.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.format.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.format.SD card format/erase progress`, `every_ms`): No time is given.
+///
+/// Assumed (`procedures.format.SD card format/erase progress`, `for_ms`): No time is given.
+///
+/// Assumed (`procedures.program_information.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.program_information.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.program_information.Program Information`, `every_ms`): No time is given.
+///
+/// Assumed (`procedures.program_copy`, `steps`): A copy is described from external flash only. What
+/// the other programs of the enumeration would do is not said.
+///
+/// Assumed (`procedures.program_copy.limits`, `time_s`): No time is given.
+///
+/// Assumed (`procedures.program_copy.limits`, `requests`): No number is given.
+///
+/// Assumed (`procedures.program_copy.Copy To Internal Flash Progress`, `every_ms`): No time is
+/// given.
+///
+/// Assumed (`procedures.program_copy.Copy To Internal Flash Progress`, `for_ms`): No time is given.
+/// The same area is erased as for an upload, which takes up to 8 s, and then written.
+///
 /// Assumed (`message Reset`, `acknowledge`): Whether the acknowledge comes before the restart is
 /// not said. None is waited for, and one that comes is accepted.
 ///
