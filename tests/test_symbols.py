@@ -117,6 +117,8 @@ def names_in_python(icd) -> Names:
     names = defaultdict(set)
     for path, text in generate(icd, "python").items():
         parts = path.split("/")
+        if parts[2:] == ["procedures.py"] and parts[1] != "wire":
+            _add_procedures(names, f"{parts[0]}.{parts[1]}.procedures", text)
         if len(parts) < 4 or parts[2] != "_types" or parts[3] == "__init__.py":
             continue
         package = ".".join(parts[:2])
@@ -127,6 +129,24 @@ def names_in_python(icd) -> Names:
                     _members_of_class(declared)
                 )
     return names
+
+
+def _add_procedures(names: Names, module: str, text: str) -> None:
+    """Add the procedures of a module, their parameters and their outputs."""
+    for declared in ast.parse(text).body:
+        if not isinstance(declared, ast.ClassDef):
+            continue
+        names[f"module {module}"].add(declared.name)
+        functions = [
+            each for each in declared.body if isinstance(each, ast.FunctionDef)
+        ]
+        arguments = functions[0].args
+        names[f"parameters of {module}.{declared.name}"].update(
+            each.arg for each in (*arguments.args[1:], *arguments.kwonlyargs)
+        )
+        names[f"members of {module}.{declared.name}"].update(
+            each.name for each in functions[1:] if each.name != "entries"
+        )
 
 
 def _members_of_class(declared: ast.ClassDef) -> set[str]:

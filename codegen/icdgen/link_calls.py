@@ -8,11 +8,12 @@ code.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
+from icdgen.icd.model import Message
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.envelope import (
     MESSAGE,
@@ -23,6 +24,14 @@ from icdgen.protocol.envelope import (
     TelemetryRequest,
 )
 from icdgen.protocol.exchange import Exchange, NumberPlace, Response
+from icdgen.protocol.procedures import (
+    Blocks,
+    Input,
+    Output,
+    PacketMap,
+    Procedure,
+    Send,
+)
 from icdgen.protocol.sections import (
     Crc,
     Download,
@@ -147,6 +156,14 @@ class _LinkBuilder:
             "stream": self.commented_rest(
                 facts.stream and _stream(facts.stream), "stream"
             ),
+            "procedures": {
+                each.name: _commented(
+                    _procedure(each), self.assumed.of_procedure(each.name)
+                )
+                for each in facts.procedures
+            }
+            or None,
+            "unsolicited": facts.unsolicited or None,
             "assumptions": self.assumptions() or None,
         }
         return _call(
@@ -338,13 +355,7 @@ def _packet(packet: PacketFormat) -> Call:
         "fields": tuple(map(_envelope_field, packet.fields)),
     }
     if packet.check:
-        crc = packet.check.crc
-        declared = {fact.name: getattr(crc, fact.name) for fact in facts_of(crc)}
-        crc_call = _row(
-            "CrcForm",
-            **{key: value for key, value in declared.items() if value is not None},
-        )
-        check = {**_members(packet.check), "crc": crc_call}
+        check = {**_members(packet.check), "crc": _crc(packet.check.crc)}
         parts["check"] = _row("CheckForm", *check.values())
     if packet.name:
         parts |= {"name": packet.name, "directions": packet.directions}
@@ -353,6 +364,14 @@ def _packet(packet: PacketFormat) -> Call:
     if packet.reserved:
         parts["reserved"] = packet.reserved
     return _call("PacketForm", **parts)
+
+
+def _crc(crc: Crc) -> Call:
+    """Return the call for the parameters of a CRC, on one line."""
+    declared = {fact.name: getattr(crc, fact.name) for fact in facts_of(crc)}
+    return _row(
+        "CrcForm", **{key: each for key, each in declared.items() if each is not None}
+    )
 
 
 def _envelope_field(field: EnvelopeField) -> Call:
@@ -425,6 +444,100 @@ def _response(response: Response) -> Call:
         **{key: value for key, value in optional.items() if value},
         **({} if response.packet is None else {"packet": response.packet}),
     )
+
+
+def _procedure(procedure: Procedure) -> Call:
+    """Return the call for a procedure."""
+    blocks, entry = procedure.blocks, procedure.entry
+    parts: dict[str, object] = {
+        "inputs": tuple(map(_input, procedure.inputs)),
+        "outputs": tuple(map(_output, procedure.outputs)),
+        "registers": procedure.registers,
+        "time": procedure.time,
+        "requests": procedure.requests,
+        "steps": tuple(map(_step_row, procedure.steps)),
+    }
+    if blocks:
+        parts["blocks"] = _call(
+            "Blocks", **{**_members(blocks), "map": _packet_map(blocks)}
+        )
+    if entry:
+        parts |= {
+            "entry": entry.telemetry_id,
+            "most_entries": procedure.most_entries,
+        }
+    return _call("ProcedureForm", **parts)
+
+
+def _input(each: Input) -> Call:
+    defaults = {"is_bytes": False, "values": (), "is_optional": False}
+    members = {"is_bytes": each.is_bytes, "most": each.most, "values": each.values}
+    members["is_optional"] = each.is_optional
+    own = {key: part for key, part in members.items() if part != defaults.get(key)}
+    return _row("Input", each.name, **own)
+
+
+def _output(each: Output) -> Call:
+    return _row("Output", each.name, each.register)
+
+
+def _packet_map(blocks: Blocks) -> Call | None:
+    """Return the call for the map of received packets."""
+    form: PacketMap | None = blocks.map
+    if form is None:
+        return None
+    members = _members(form)
+    del members["messages"]
+    return _call(
+        "PacketMap",
+        telecommands=_ids(message.telecommand_id for message in form.messages),
+        telemetry=_ids(message.telemetry_id for message in form.messages),
+        length=form.messages[0].length,
+        **members,
+    )
+
+
+def _ids(ids: Iterable[int | None]) -> tuple[int, ...]:
+    return tuple(id for id in ids if id is not None)
+
+
+_STEP_DEFAULTS: dict[str, object] = {
+    "puts": (),
+    "packet_at": None,
+    "repeats": False,
+    "ignores_timeout": False,
+    "requested_on": (),
+}
+"""Defaults of members of steps in ``wire/procedure_forms.py``."""
+
+
+def _step_row(step: object) -> Call:
+    """Return the call for a step of a procedure. Its message is an id."""
+    members = {}
+    for name, member in _members(step).items():
+        if isinstance(member, Message):
+            is_sent = isinstance(step, Send)
+            name = "telecommand" if is_sent else "telemetry"
+            member = member.telecommand_id if is_sent else member.telemetry_id
+        if name not in _STEP_DEFAULTS or member != _STEP_DEFAULTS[name]:
+            members[name] = _step_part(member)
+    # A step with several fields has a line for each.
+    is_flat = not any(isinstance(each, tuple) and each for each in members.values())
+    return Call(f"link.{type(step).__name__}", (), members, is_flat)
+
+
+def _step_part(part: object) -> object:
+    """Return a member of a step: a call for each part that is an object."""
+    if isinstance(part, tuple):
+        return tuple(map(_step_part, part))
+    if isinstance(part, NumberPlace):
+        return _number_place(part)
+    if isinstance(part, Crc):
+        return _crc(part)
+    if is_dataclass(part):
+        parts = map(_step_part, _members(part).values())
+        return _row(type(part).__name__, *parts)
+    return part
 
 
 def _number_place(place: NumberPlace) -> Call:

@@ -14,7 +14,7 @@ from icdgen_runtime.wire.client import Request
 
 from icdgen.icd.model import Icd
 from icdgen.runtime_objects import reference
-from icdgen.runtime_objects.procedures import event_of, procedure_of
+from icdgen.runtime_objects.file_procedures import event_of, procedure_of
 from icdgen.runtime_objects.refusals import Refusal
 from tests import links
 

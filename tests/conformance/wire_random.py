@@ -15,7 +15,7 @@ from icdgen_runtime.wire.transfer import Download, Upload
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.icd.model import Icd
-from icdgen.runtime_objects.procedures import event_of, procedure_of
+from icdgen.runtime_objects.file_procedures import event_of, procedure_of
 from tests import links
 
 MOST_PACKET_GAP_MS = 700

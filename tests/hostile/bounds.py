@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from icdgen_runtime.wire.file_procedures import RoleProcedure as Procedure
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.procedures import Procedure
 from icdgen_runtime.wire.programs import ProgramOperation
 from icdgen_runtime.wire.transfer import Download, Erase, FileList, Format, Upload
 

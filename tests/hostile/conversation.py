@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 from icdgen_runtime.wire.client import Request
 from icdgen_runtime.wire.events import Done, Event, Packet, Refused, Timeout
 from icdgen_runtime.wire.failures import FailedError
+from icdgen_runtime.wire.file_procedures import RoleProcedure as Procedure
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.procedures import Procedure
 from icdgen_runtime.wire.session import Session
 from icdgen_runtime.wire.transfer import Download, FileList
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from icdgen.runtime_objects.procedures import procedure_of
+from icdgen.runtime_objects.file_procedures import procedure_of
 from tests.hostile.bounds import most_of
 from tests.hostile.devices import Device, Kind
 

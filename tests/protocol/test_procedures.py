@@ -16,7 +16,7 @@ from icdgen_runtime.wire.programs import ProgramCopy, ProgramInformation
 from icdgen_runtime.wire.transfer import Download, FileList, Format, Upload
 
 from icdgen.protocol import facts
-from icdgen.runtime_objects.procedures import event_of, procedure_of
+from icdgen.runtime_objects.file_procedures import event_of, procedure_of
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.procedures import record
 from tests import links

@@ -112,6 +112,15 @@ class Assumptions:
             if where == section
         ]
 
+    def of_procedure(self, name: str) -> list[tuple[str, str]]:
+        """Return step and key, and the reason, of the assumptions of a procedure."""
+        start = f"procedures.{name}"
+        return [
+            (f"{section[len(start) + 1 :]} {key}".lstrip(), self.why(section, key))
+            for section, key in [*self._left]
+            if section == start or section.startswith(f"{start}.")
+        ]
+
     def others(self) -> list[tuple[str, str, str]]:
         """Return section, key and reason of all assumptions that were not returned
         before.

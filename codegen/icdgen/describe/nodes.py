@@ -431,6 +431,16 @@ class NodeDescription:
         return bool(self._description.icd.protocol_of(self.model))
 
     @cached_property
+    def procedures(self) -> dict[str, dict[str, Any]]:
+        """Procedures of the node in the ICD, by name."""
+        rows = self._description.icd.protocol_of(self.model).get("procedures", {})
+        return {
+            name: row
+            for name, row in rows.items()
+            if self.name in row.get("nodes", (self.name,))
+        }
+
+    @cached_property
     def has_client(self) -> bool:
         """Whether its link has messages with an id of one byte: only these have a
         client, procedures and logs.

@@ -7,17 +7,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from icdgen_runtime.wire import events
 from icdgen_runtime.wire.client import Request
-from icdgen_runtime.wire.events import AnyDone, Done, Packet, Refused, Timeout
+from icdgen_runtime.wire.errors import UnsupportedError
 from icdgen_runtime.wire.procedures import Procedure
-from icdgen_runtime.wire.programs import ProgramCopy, ProgramInformation
-from icdgen_runtime.wire.transfer import Download, Erase, FileList, Format, Upload
 
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.runtime_objects.refusals import Refusal
 from icdgen.runtime_objects.request_keys import (
     choice,
-    flag,
     mappings,
     number,
     octets,
@@ -25,62 +23,76 @@ from icdgen.runtime_objects.request_keys import (
 )
 from icdgen.runtime_objects.scripts import BUSES
 
-LONGEST = 1 << 20  # maximum repetitions of the bytes of an upload
+LONGEST = 1 << 20  # maximum repetitions of the bytes to send
 UNKNOWN_CODE = 255  # code of a refusal that the ICD does not define
 
 Row = dict[str, Any]
-ProcedureEvent = AnyDone | Refused | Timeout | Packet
 
 
-def file(link: AnyLink, request: Row) -> Row:
+def procedure(link: AnyLink, request: Row) -> Row:
     """Return what a procedure does in a script."""
-    procedure, steps = procedure_of(link, request), []
+    tested_procedure, steps = procedure_of(link, request), []
     for row in mappings(request, "script"):
         now = number(row, "at")
         if (event := row.get("event")) is not None:
-            procedure.event(now, event_of(event))
-        next_request, deadline = procedure.next(now), procedure.deadline
+            tested_procedure.event(now, event_of(event))
+        next_request, deadline = tested_procedure.next(now), tested_procedure.deadline
         steps.append(
             {
                 "request": _request_row(next_request),
                 "deadline": None if deadline is None else int(deadline),
-                "result": procedure.result,
+                "result": tested_procedure.result,
             }
         )
-    return {"steps": steps, **_results(procedure)}
+    return {"steps": steps, **_results(tested_procedure)}
 
 
 def _results(procedure: Procedure) -> Row:
-    match procedure:
-        case Download():
-            blocks = procedure.blocks
-            return {
-                "blocks": [{"offset": at, "bytes": data.hex()} for at, data in blocks]
-            }
-        case FileList():
-            return {"entries": [entry._asdict() for entry in procedure.entries]}
-        case Upload():
-            return {"sent": procedure.progress[0]}
-        case ProgramInformation():
-            return {"size": procedure.size, "checksum": procedure.checksum}
-    return {}
+    form, results = procedure.form, Row()
+    if form.blocks and form.blocks.sends:
+        results["sent"] = procedure.progress[0]
+    elif form.blocks:
+        blocks = procedure.blocks
+        results["blocks"] = [{"offset": at, "bytes": data.hex()} for at, data in blocks]
+    if form.entry is not None:
+        results["entries"] = [frame.hex() for frame in procedure.frames]
+    if form.outputs:
+        names = [output.name for output in form.outputs]
+        results["outputs"] = {name: procedure.output(name) for name in names}
+    return results
 
 
-def event_of(row: object) -> ProcedureEvent:
+def event_of(row: object) -> events.Event:
     """Return the event of a row: only what procedures use."""
     name = text(row, "event") if isinstance(row, dict) else None
     match row, name:
-        case dict(), "packet":
-            return Packet(number(row, "number", 0, 65535), octets(row))
         case dict(), "done":
-            return Done(0, 1, octets(row))
+            return events.Done(0, 1, octets(row))
+        case dict(), "sent":
+            return events.Sent(0, 1)
+        case dict(), "busy":
+            return events.Busy(0, 1)
         case dict(), "refused":
-            return Refused(0, 1)
+            return events.Refused(0, 1)
         case dict(), "damaged":
-            return Refused(0, 1, UNKNOWN_CODE)
+            return events.Refused(0, 1, UNKNOWN_CODE)
         case dict(), "timeout":
-            return Timeout(0, 1)
+            return events.Timeout(0, 1)
+        case dict(), "arrived":
+            return events.Arrived(number(row, "id"), octets(row), {})
     raise Refusal("request", detail="there is no such event")
+
+
+def row_of(event: events.Event) -> Row:
+    """Return an event that procedures use as a row. See `event_of`."""
+    match event:
+        case events.Done(data=data):
+            return {"event": "done", "bytes": data.hex()}
+        case events.Arrived(id, data):
+            return {"event": "arrived", "id": id, "bytes": data.hex()}
+        case events.Refused() if event.may_be_damaged:
+            return {"event": "damaged"}
+    return {"event": type(event).__name__.lower()}
 
 
 def _request_row(request: Request | None) -> Row | None:
@@ -96,31 +108,23 @@ def _request_row(request: Request | None) -> Row | None:
 
 
 def procedure_of(link: AnyLink, request: Row) -> Procedure:
-    """Return the procedure that a request of the operation ``file`` selects."""
+    """Return the procedure that a request selects."""
+    name, inputs = text(request, "name"), request.get("inputs", {})
+    bus = choice(request, "bus", BUSES) if "bus" in request else BUSES[0]
     block = number(request, "block", 1) if "block" in request else None
-    match text(request, "do"):
-        case "list":
-            return FileList(link)
-        case "download":
-            size = number(request, "size") if "size" in request else None
-            return Download(
-                link, choice(request, "bus", BUSES), *_file(request), size, block
-            )
-        case "upload":
-            data = octets(request) * number(request, "times", 1, LONGEST, 1)
-            destination = number(request, "destination", 0, 255)
-            return Upload(link, destination, data, block)
-        case "erase":
-            return Erase(link, *_file(request), flag(request, "all"))
-        case "format":
-            return Format(link)
-        case "program_copy":
-            return ProgramCopy(link, number(request, "program", 0, 255))
-        case "program_information":
-            return ProgramInformation(link, number(request, "program", 0, 255))
-    raise Refusal("request", detail="there is no such procedure")
-
-
-def _file(request: Row) -> tuple[int, int]:
-    """Return type and counter of a file."""
-    return number(request, "type", 0, 255), number(request, "counter", 0, 255)
+    data = b""
+    if "bytes" in request:
+        data = octets(request) * number(request, "times", 1, LONGEST, 1)
+    if name not in link.procedures:
+        raise UnsupportedError(f"the ICD has no procedure `{name}`")
+    numbers = [form for form in link.procedures[name].inputs if not form.is_bytes]
+    if not isinstance(inputs, dict) or inputs.keys() - {form.name for form in numbers}:
+        raise Refusal("request", detail="`inputs` has no numbers of the procedure")
+    values = {
+        form.name: number(inputs, form.name)
+        for form in numbers
+        if form.name in inputs or not form.is_optional
+    }
+    created = Procedure(link, name, values, data, block)
+    created.bus = bus
+    return created

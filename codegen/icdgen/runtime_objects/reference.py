@@ -13,16 +13,17 @@ from icdgen_runtime._errors import IcdError
 
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
+from icdgen.runtime_objects.file_procedures import file
 from icdgen.runtime_objects.links import link_of
 from icdgen.runtime_objects.operations import OPERATIONS, Operation
-from icdgen.runtime_objects.procedures import file
+from icdgen.runtime_objects.procedures import procedure
 from icdgen.runtime_objects.refusals import Refusal, details_of
 from icdgen.runtime_objects.request_keys import Request, text
 from icdgen.runtime_objects.scripts import client, stream_client
 
 OPS: dict[str, Operation] = {
     operation.__name__: operation
-    for operation in (*OPERATIONS, client, stream_client, file)
+    for operation in (*OPERATIONS, client, stream_client, file, procedure)
 }
 
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar, get_args
 
 from icdgen_runtime._errors import IcdError
@@ -47,7 +48,8 @@ def client(link: AnyLink, request: Row) -> Row:
         number(request, "address", 0, 255, 0),
         _settings(link, request),
     )
-    return _steps(request, tested_client, _bus_events, _bus_output, _bus_row)
+    row_of = partial(_bus_row, link)
+    return _steps(request, tested_client, _bus_events, _bus_output, row_of)
 
 
 def stream_client(link: AnyLink, request: Row) -> Row:
@@ -179,8 +181,13 @@ def _framed_output(tested_client: EnvelopeClient[Any], row: Row) -> list[object]
     return lines
 
 
-def _bus_row(event: events.Event) -> Row:
+def _bus_row(link: AnyLink, event: events.Event) -> Row:
     """Return an event on the UART, I2C or CAN as a mapping."""
+    if isinstance(event, events.Arrived) and link.files:
+        # An unsolicited packet of a download, as the vectors still have it.
+        counter = link.files.counter_bytes
+        number = int.from_bytes(event.data[:counter], link.order)
+        event = events.Packet(number, event.data[counter:])
     row = _row(event)
     if isinstance(event, events.Refused):
         row |= {"reason": event.reason, "parameter": event.parameter}

@@ -8,6 +8,7 @@ from icdgen.describe import describe
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.places import scalars_in
 from icdgen.protocol import facts
+from icdgen.protocol.procedures import Procedure
 
 
 def plan(icd: Icd) -> dict[str, Any]:
@@ -64,6 +65,20 @@ def _message(message: Message) -> dict[str, Any]:
     }
 
 
+def _procedure(procedure: Procedure) -> dict[str, Any]:
+    return {
+        "name": procedure.name,
+        "inputs": [
+            {"name": each.name, "is_optional": each.is_optional}
+            for each in procedure.inputs
+            if not each.is_bytes
+        ],
+        "outputs": [each.name for each in procedure.outputs],
+        "receives": procedure.blocks is not None and not procedure.blocks.sends,
+        "lists": procedure.entry is not None,
+    }
+
+
 def _link(icd: Icd, node: Node) -> dict[str, Any]:
     known = facts.of(icd, node)
     framing, stream = known.framing, known.stream
@@ -72,4 +87,5 @@ def _link(icd: Icd, node: Node) -> dict[str, Any]:
         "longest": known.longest,
         "around": around,
         "framing": [framing.escape, framing.end] if framing else None,
+        "procedures": [_procedure(each) for each in known.procedures],
     }

@@ -15,7 +15,7 @@ from icdgen.runtime_objects.request_keys import (
     octets,
     text,
 )
-from tests.conformance.front.program import Facts, Reply
+from tests.conformance.front.program import Facts, Reply, items
 from tests.conformance.front.wire import MOST, Answer, Asking, Request, event, typed
 
 BUSES = ("uart", "i2c", "can")
@@ -259,6 +259,67 @@ def _file_step(step: Facts) -> Answer:
     return {**found, "request": asked or None}
 
 
+def procedure(to: Asking, request: Request) -> Answer:
+    name, inputs = text(request, "name"), request.get("inputs", {})
+    bus = _bus(request) if "bus" in request else BUSES[0]
+    block = number(request, "block", 1) if "block" in request else ""
+    data = b""
+    if "bytes" in request:
+        data = octets(request) * number(request, "times", 1, MOST_TIMES, 1)
+    forms = to.link["procedures"]
+    index = next((n for n, form in enumerate(forms) if form["name"] == name), None)
+    if index is None:
+        raise Refusal("unsupported")
+    form = forms[index]
+    names = {each["name"] for each in form["inputs"]}
+    if not isinstance(inputs, dict) or inputs.keys() - names:
+        raise Refusal("request", detail="`inputs` has no numbers of the procedure")
+    numbers = [
+        (
+            ""
+            if each["is_optional"] and each["name"] not in inputs
+            else number(inputs, each["name"])
+        )
+        for each in form["inputs"]
+    ]
+    words = [
+        word
+        for row in mappings(request, "script")
+        for word in (number(row, "at"), *_procedure_event(row.get("event")))
+    ]
+    start = (index, bus, block, data.hex(), len(numbers), *numbers)
+    reply = to.ask("procedure", *start, *words)
+    facts = dict(reply.facts)
+    values = items(facts.pop("outputs", ""))
+    answer: Answer = {
+        "steps": [_file_step(step) for step in reply.of("step")],
+        **typed(facts),
+    }
+    if form["receives"]:
+        answer["blocks"] = [typed(row) for row in reply.of("block")]
+    if form["lists"]:
+        answer["entries"] = [row["bytes"] for row in reply.of("entry")]
+    if form["outputs"]:
+        values = values or [""] * len(form["outputs"])
+        answer["outputs"] = {
+            name: int(value) if value else None
+            for name, value in zip(form["outputs"], values, strict=True)
+        }
+    return answer
+
+
+def _procedure_event(given: object) -> tuple[object, ...]:
+    if isinstance(given, dict):
+        name = text(given, "event")
+        if name == "arrived":
+            return name, number(given, "id"), octets(given).hex()
+        if name in ("sent", "busy"):
+            return (name,)
+        if name == "packet":
+            raise Refusal("request", detail="there is no such event")
+    return _outcome(given)
+
+
 def _bus(request: Request) -> str:
     bus = text(request, "bus")
     if bus not in BUSES:
@@ -281,4 +342,5 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     "client": client,
     "stream_client": stream_client,
     "file": file,
+    "procedure": procedure,
 }

@@ -51,6 +51,7 @@ class PythonBackend:
         from icdgen.backends.python import (
             literals,
             nodes,
+            procedures,
         )  # imported late: rules on names do not need them
         from icdgen.describe.links import links_of
         from icdgen.link_calls import link_call
@@ -88,6 +89,12 @@ class PythonBackend:
                     **shared,
                     link=literals.expression(link_call(linked[node.name])),
                 )
+            if node.procedures:
+                facts = linked[node.name].facts
+                classes = procedures.procedure_classes(description, node, facts)
+                yield folder / f"{names.PROCEDURES}.py", render(
+                    "procedures.py.j2", **shared, procedures=classes
+                )
             folder /= names.TYPES
             yield folder / "__init__.py", render("types.py.j2", **shared)
             for enum in node.enums:
@@ -108,13 +115,13 @@ class PythonBackend:
 
 def _functions() -> dict[str, object]:
     """Return the functions with which templates spell names and text."""
-    from icdgen.backends.python import fields, nodes, text
+    from icdgen.backends.python import fields, nodes, procedures, text
 
     functions = (
         fields.annotation, fields.accessors, fields.constant_value, fields.declaration, fields.getter, fields.inner,
         fields.nested, fields.open_part, fields.physical, fields.view_info, names.accessors_in_python,
         names.constant_name, PYTHON_NAMES.symbol, nodes.by_id, nodes.declared, nodes.enum_classes, nodes.imports_of,
-        nodes.listing, nodes.literals, nodes.mapping, nodes.node_docstring, nodes.public_of_node, text.docstring,
-        text.documented, text.literal, text.prose,
+        nodes.listing, nodes.literals, nodes.mapping, nodes.node_docstring, nodes.public_of_node,
+        procedures.procedure_imports, procedures.procedures_docstring, text.docstring, text.documented, text.literal, text.prose,
     )  # fmt: skip
     return {function.__name__: function for function in functions}

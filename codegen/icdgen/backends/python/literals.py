@@ -32,6 +32,8 @@ def _spelled(value: object) -> str | Brackets:
         return value.text
     if isinstance(value, str):
         return literal(value)
+    if isinstance(value, bytes):
+        return f'bytes.fromhex("{value.hex()}")'
     if isinstance(value, Call):
         items = [
             *map(_item, value.positional),

@@ -42,6 +42,18 @@ IN_PACKAGE = dict.fromkeys(
 )
 IN_PACKAGE["wire"] = "the package `wire`"
 
+PROCEDURES = "procedures"  # the module of a node that holds its procedures
+BLOCK = "block"  # the parameter of a procedure with the bytes of a block
+IN_PROCEDURES = {
+    "LINK": "the attribute `{}`",
+    "Optional": "Python's `{}`",
+}
+IN_PROCEDURE = dict.fromkeys(
+    """bus blocks data deadline entries event form frames link next output progress result""".split(),
+    "the attribute `{}`",
+)
+IN_PARAMETERS = {"self": "the parameter `self`", "super": "Python's `super`"}
+
 TYPES = "_types"  # the subpackage of a node that holds its messages and enumerations
 _LONGEST = 200  # characters of a module's name, for the sake of file systems
 

@@ -44,7 +44,8 @@ def declared(node: NodeDescription) -> list[tuple[str, str]]:
 
 def public_of_node(node: NodeDescription) -> list[str]:
     """Return the names that can be imported from a node."""
-    own = (name for name, _ in declared(node))
+    own = [name for name, _ in declared(node)]
+    own += [names.PROCEDURES] if node.procedures else []
     return sorted({*_OF_NODE, *_facts(node.model), *own})
 
 

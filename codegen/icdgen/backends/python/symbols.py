@@ -13,7 +13,7 @@ from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Part, Symbols
 from icdgen.icd.model import Message
-from icdgen.naming import DEVICES
+from icdgen.naming import DEVICES, camel, words
 
 
 class PythonNames(NamingPolicy):
@@ -37,6 +37,29 @@ class PythonNames(NamingPolicy):
             )
         for name in DEVICES:
             yield Identifier(self._files(node.name), name, "a device of Windows", None)
+
+    def link(self, node: NodeDescription) -> Symbols:
+        """Names of the procedures, their parameters and their results."""
+        scope = f"module {self._package}.{node.name}.{names.PROCEDURES}"
+        for name, row in node.procedures.items():
+            owner, source = f"procedure `{name}`", node.model.source
+            class_ = class_name(name)
+            yield Identifier(scope, class_, owner, source)
+            if class_ in names.IN_PROCEDURES:
+                use = names.IN_PROCEDURES[class_].format(class_)
+                yield Identifier(scope, class_, use, None)
+            parameters = [(each, names.IN_PARAMETERS) for each in row.get("inputs", {})]
+            if any("blocks" in step for step in row["steps"]):
+                parameters.append((names.BLOCK, {}))
+            outputs = [(each, names.IN_PROCEDURE) for each in row.get("outputs", {})]
+            for members, kind in ((parameters, "parameters"), (outputs, "members")):
+                own = (
+                    f"{kind} of {self._package}.{node.name}.{names.PROCEDURES}.{class_}"
+                )
+                for text, uses in members:
+                    yield Identifier(own, text, f"`{text}` of {owner}", source)
+                    if text in uses:
+                        yield Identifier(own, text, uses[text].format(text), None)
 
     def in_node(self, node: NodeDescription, part: Part) -> Symbols:
         # The module of a node also has the classes of included nodes.
@@ -92,6 +115,11 @@ class PythonNames(NamingPolicy):
 
     def _members(self, part: Part) -> str:
         return f"members of {self._package}.{part.node.name}.{part.camel_name}"
+
+
+def class_name(procedure: str) -> str:
+    """Return the name of the class of a procedure: ``ProgramCopy``."""
+    return camel(words(procedure))
 
 
 PYTHON_NAMES = PythonNames(Packages.python)

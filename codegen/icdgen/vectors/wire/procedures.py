@@ -7,12 +7,12 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from icdgen_runtime.wire.procedures import Procedure
+from icdgen_runtime.wire.file_procedures import RoleProcedure
 
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import UART, Upload
+from icdgen.runtime_objects.file_procedures import LONGEST, event_of, procedure_of
 from icdgen.runtime_objects.operations import AnyLink
-from icdgen.runtime_objects.procedures import LONGEST, event_of, procedure_of
 from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
@@ -25,7 +25,7 @@ MOST_BYTES = 1 << 12  # of a file for the same
 
 def record(
     link: AnyLink, request: dict[str, Any], node: FileNode
-) -> tuple[Script, Procedure]:
+) -> tuple[Script, RoleProcedure]:
     """Return the script of a procedure with the simulated node.
 
     Repeatable requests are repeated as by a client.

@@ -13,8 +13,8 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import CAN, I2C, UART, Step
+from icdgen.runtime_objects.file_procedures import event_of, procedure_of
 from icdgen.runtime_objects.operations import AnyLink
-from icdgen.runtime_objects.procedures import event_of, procedure_of
 from icdgen.vectors.wire import Requests, Script
 from icdgen.vectors.wire.node import FileNode
 

@@ -83,6 +83,7 @@ __all__ = [
     "UploadBlockComplete",
     "decode_telecommand",
     "decode_telemetry",
+    "procedures",
 ]
 
 TYPE_CHECKING = False
@@ -146,6 +147,7 @@ if TYPE_CHECKING:
     from ._types.run_selected_program import RunSelectedProgram as RunSelectedProgram
     from ._types.set_boot_index import SetBootIndex as SetBootIndex
     from ._types.state import State as State
+    from . import procedures as procedures
 
 NAME = "bootloader"
 TITLE = "Bootloader"
@@ -304,6 +306,10 @@ def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
+        if name == "procedures":
+            from importlib import import_module
+
+            return import_module(".procedures", __name__)
         return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():

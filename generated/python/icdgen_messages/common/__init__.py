@@ -70,6 +70,7 @@ __all__ = [
     "UploadBlockComplete",
     "decode_telecommand",
     "decode_telemetry",
+    "procedures",
 ]
 
 TYPE_CHECKING = False
@@ -123,6 +124,7 @@ if TYPE_CHECKING:
     from ._types.telecommand_acknowledge import TelecommandAcknowledge as TelecommandAcknowledge
     from ._types.unix_time_save_to_flash import UnixTimeSaveToFlash as UnixTimeSaveToFlash
     from ._types.upload_block_complete import UploadBlockComplete as UploadBlockComplete
+    from . import procedures as procedures
 
 NAME = "common"
 TITLE = "Common messages"
@@ -266,6 +268,10 @@ def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
+        if name == "procedures":
+            from importlib import import_module
+
+            return import_module(".procedures", __name__)
         return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():

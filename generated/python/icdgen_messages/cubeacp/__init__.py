@@ -212,6 +212,7 @@ __all__ = [
     "WheelSpeedCommands",
     "decode_telecommand",
     "decode_telemetry",
+    "procedures",
 ]
 
 TYPE_CHECKING = False
@@ -405,6 +406,7 @@ if TYPE_CHECKING:
     from ._types.wheel_currents import WheelCurrents as WheelCurrents
     from ._types.wheel_speed import WheelSpeed as WheelSpeed
     from ._types.wheel_speed_commands import WheelSpeedCommands as WheelSpeedCommands
+    from . import procedures as procedures
 
 NAME = "cubeacp"
 TITLE = "CubeACP"
@@ -849,6 +851,10 @@ def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
+        if name == "procedures":
+            from importlib import import_module
+
+            return import_module(".procedures", __name__)
         return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():

@@ -617,6 +617,223 @@ LINK: link.Link[_Node] = link.Link(
         },
     ),
     boot_time=5000,
+    procedures={
+        # Assumed, limits time_s: No time is given.
+        # Assumed, limits requests: No number is given.
+        # Assumed, limits entries: No number is given. A list without a last file has
+        #   to end at some point.
+        # Assumed, repeat.File Information every_ms: No time is given.
+        # Assumed, repeat.File Information for_ms: No time is given. The checksum of a
+        #   large file has to be computed meanwhile.
+        "list": link.ProcedureForm(
+            inputs=(),
+            outputs=(),
+            registers=6,
+            time=3600000,
+            requests=1000000,
+            steps=(
+                link.Send(telecommand=118, data=bytes.fromhex(""), repeats=True),
+                link.Poll(
+                    telemetry=243,
+                    takes=(
+                        link.Take(link.NumberPlace(0, 1, 4, 1, True), 5),
+                    ),
+                    until=(
+                        link.Test(5, link.Value(0, False)),
+                    ),
+                    fails=(),
+                    interval=50,
+                    timeout=10000,
+                ),
+                link.EndIfZeros(),
+                link.Collect(),
+                link.Send(telecommand=113, data=bytes.fromhex(""), ignores_timeout=True),
+                link.Jump(to=1),
+            ),
+            entry=243,
+            most_entries=1024,
+        ),
+        # Assumed, limits time_s: No time is given.
+        # Assumed, limits requests: No number is given.
+        # Assumed, limits bytes: No number is given. A file of unknown size has to end
+        #   at some point.
+        # Assumed, blocks.blocks rounds: Nothing is said about giving up.
+        # Assumed, blocks.blocks.Download Block Ready every_ms: No time is given.
+        # Assumed, blocks.blocks.Download Block Ready for_ms: No time is given.
+        # Assumed, blocks.blocks.missing.missing first: Where the count begins is not
+        #   said. Bit 0 of the hole map is the first packet.
+        # Assumed, blocks.blocks.missing.missing.send beyond_end: What the bits beyond
+        #   the end of a short block are is not said. Marked as received, nothing is
+        #   sent for them.
+        # Assumed, blocks.blocks.missing.missing.Initiate Download Burst with: Message
+        #   Length is not explained. Drivers in use send 20, the bytes of the file in a
+        #   packet.
+        # Assumed, blocks.blocks.missing.missing.File Download Buffer with File
+        #   Contents silence_ms: How a burst ends is not said. Packets follow one
+        #   another in rapid succession.
+        # Assumed, blocks.blocks.missing.missing.File Download Buffer with File
+        #   Contents requested_on: That the reads on I2C are headed by the id of the
+        #   frame with the packet's format is not said. Download over CAN is not
+        #   described; the packets are requested one by one as on I2C.
+        # Assumed, blocks.blocks.verify verify: Whether the checksum covers the fill
+        #   is not said. It comes with the length of the block, which does not count the
+        #   fill.
+        "download": link.ProcedureForm(
+            inputs=(
+                link.Input("type", most=255),
+                link.Input("counter", most=255),
+                link.Input("size", most=16777216, is_optional=True),
+            ),
+            outputs=(),
+            registers=12,
+            time=86400000,
+            requests=100000000,
+            steps=(
+                link.NextBlock(to=12),
+                link.Send(
+                    telecommand=112,
+                    data=bytes.fromhex("0000000000000000"),
+                    puts=(
+                        link.Put(link.NumberPlace(0, 1, 0, 8, True), link.Value(5, True)),
+                        link.Put(link.NumberPlace(1, 1, 0, 8, True), link.Value(6, True)),
+                        link.Put(link.NumberPlace(2, 4, 0, 32, True), link.Value(0, True)),
+                        link.Put(link.NumberPlace(6, 2, 0, 16, True), link.Value(1, True)),
+                    ),
+                    repeats=True,
+                ),
+                link.Poll(
+                    telemetry=242,
+                    takes=(
+                        link.Take(link.NumberPlace(0, 1, 0, 1, True), 8),
+                        link.Take(link.NumberPlace(0, 1, 1, 1, True), 9),
+                        link.Take(link.NumberPlace(3, 2, 0, 16, True), 10),
+                        link.Take(link.NumberPlace(1, 2, 0, 16, True), 11),
+                    ),
+                    until=(
+                        link.Test(8, link.Value(1, False)),
+                    ),
+                    fails=(
+                        link.Test(9, link.Value(1, False)),
+                    ),
+                    interval=50,
+                    timeout=10000,
+                ),
+                link.SetLength(value=link.Value(10, True)),
+                link.NextRound(to=10),
+                link.SkipUnless(test=link.Test(2, link.Value(0, False)), to=7),
+                link.SendMap(),
+                link.Send(
+                    telecommand=119,
+                    data=bytes.fromhex("0000"),
+                    puts=(
+                        link.Put(link.NumberPlace(0, 1, 0, 8, True), link.Value(20, False)),
+                        link.Put(link.NumberPlace(1, 1, 0, 1, True), link.Value(2, True)),
+                    ),
+                    ignores_timeout=True,
+                ),
+                link.Receive(
+                    telemetry=241,
+                    number=link.NumberPlace(0, 2, 0, 16, True),
+                    data_at=2,
+                    silence=500,
+                    requested_on=("i2c", "can"),
+                ),
+                link.Jump(to=4),
+                link.VerifyChecksum(crc=link.CrcForm(width=16, polynomial=4129, init=0, reflect_in=False, reflect_out=False, xor_out=0), of_block=True, covers_fill=False, value=link.Value(11, True), again=True),
+                link.Jump(to=0),
+            ),
+            blocks=link.Blocks(
+                sends=False,
+                total=7,
+                size=20480,
+                begin=1,
+                packet_bytes=20,
+                first_packet=0,
+                fill=0,
+                rounds=32,
+                most=16777216,
+                map=link.PacketMap(
+                    telecommands=(120, 121, 122, 123, 124, 125, 126, 127),
+                    telemetry=(247, 248, 249, 250, 251, 252, 253, 254),
+                    length=16,
+                    at=0,
+                    bytes=16,
+                    msb0=False,
+                    received=True,
+                    beyond_end=True,
+                ),
+            ),
+        ),
+        # Assumed, limits time_s: No time is given.
+        # Assumed, limits requests: No number is given.
+        # Assumed, SD card format/erase progress every_ms: No time is given.
+        # Assumed, SD card format/erase progress for_ms: No time is given.
+        "erase": link.ProcedureForm(
+            inputs=(
+                link.Input("type", most=255),
+                link.Input("counter", most=255),
+                link.Input("all", most=1),
+            ),
+            outputs=(),
+            registers=9,
+            time=600000,
+            requests=10000,
+            steps=(
+                link.Send(
+                    telecommand=108,
+                    data=bytes.fromhex("000000"),
+                    puts=(
+                        link.Put(link.NumberPlace(0, 1, 0, 8, True), link.Value(5, True)),
+                        link.Put(link.NumberPlace(1, 1, 0, 8, True), link.Value(6, True)),
+                        link.Put(link.NumberPlace(2, 1, 0, 1, True), link.Value(7, True)),
+                    ),
+                    repeats=True,
+                ),
+                link.SkipUnless(test=link.Test(7, link.Value(1, False)), to=3),
+                link.Poll(
+                    telemetry=234,
+                    takes=(
+                        link.Take(link.NumberPlace(0, 1, 1, 1, True), 8),
+                    ),
+                    until=(
+                        link.Test(8, link.Value(0, False)),
+                    ),
+                    fails=(),
+                    interval=200,
+                    timeout=60000,
+                ),
+            ),
+        ),
+        # Assumed, limits time_s: No time is given.
+        # Assumed, limits requests: No number is given.
+        # Assumed, SD card format/erase progress every_ms: No time is given.
+        # Assumed, SD card format/erase progress for_ms: No time is given.
+        "format": link.ProcedureForm(
+            inputs=(),
+            outputs=(),
+            registers=6,
+            time=600000,
+            requests=10000,
+            steps=(
+                link.Send(telecommand=33, data=bytes.fromhex("5a"), repeats=True),
+                link.Poll(
+                    telemetry=234,
+                    takes=(
+                        link.Take(link.NumberPlace(0, 1, 0, 1, True), 5),
+                    ),
+                    until=(
+                        link.Test(5, link.Value(0, False)),
+                    ),
+                    fails=(),
+                    interval=200,
+                    timeout=60000,
+                ),
+            ),
+        ),
+    },
+    unsolicited={
+        119: 241,
+    },
     assumptions=(
         link.Assumption(
             section="client",

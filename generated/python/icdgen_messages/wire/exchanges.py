@@ -31,12 +31,13 @@ from .events import (
     Timeout,
 )
 from .failures import DeviceBusyError, FailedError, RefusedError, ReplyTimeoutError
+from .file_procedures import RoleProcedure
 from .link import Link, Settings
 from .message_ids import NodeMessage, NodeMessageClass
 from .procedures import Procedure
 
 AnyClient = Union[Client[N], EnvelopeClient[N]]
-P = TypeVar("P", bound=Procedure)
+P = TypeVar("P", bound=Union[Procedure, RoleProcedure])
 T = TypeVar("T")
 Step = Union[Literal["send"], float, None]
 Exchange = Generator[Step, list[Event], T]
@@ -189,26 +190,48 @@ class Exchanges(Generic[N]):
         self, procedure: P, progress: Optional[Progress] = None
     ) -> Exchange[P]:
         """Run a procedure to its end. Raise `FailedError`."""
+        client = self.client
+        if isinstance(procedure, Procedure) and isinstance(client, Client):
+            procedure.bus = client.bus
+        handles: list[int] = []
         try:
-            return (yield from self._drive(procedure, progress))
+            return (yield from self._drive(procedure, progress, handles))
         finally:
-            self.client.cancel()
+            if isinstance(client, Client):
+                client.cancel()
+            else:
+                client.cancel(handle=handles[-1] if handles else 0)
 
-    def _drive(self, procedure: P, progress: Optional[Progress] = None) -> Exchange[P]:
+    def _drive(
+        self, procedure: P, progress: Optional[Progress], handles: list[int]
+    ) -> Exchange[P]:
+        """Run a procedure, and add the handles of its requests to a list."""
+        client = self.client
         events: list[Event] = []
         reported: Optional[tuple[int, Optional[int]]] = None
         refused: Optional[Refused] = None
         while True:
             for event in events:
+                if isinstance(event, (*OUTCOMES, Reply)):
+                    if isinstance(client, EnvelopeClient):
+                        # Other tasks may have requests of their own.
+                        if event.handle not in handles[-1:]:
+                            continue
+                    elif isinstance(event, Refused) and event.may_be_damaged:
+                        self._report(event)
                 if isinstance(event, Refused):
                     refused = event
-                    if event.may_be_damaged:
-                        self._report(event)
                 procedure.event(self._now(), event)
             events = []
-            if not self.client.busy and (request := procedure.next(self._now())):
-                events = self.client.start(self._now(), request)
+            is_free = isinstance(client, EnvelopeClient) or not client.busy
+            if is_free and (request := procedure.next(self._now())):
+                events = client.start(self._now(), request)
+                if isinstance(client, EnvelopeClient):
+                    handles.append(client.begun)
             yield "send"
+            if isinstance(client, EnvelopeClient) and handles:
+                sent = client.sent(handles[-1])
+                events += [sent] if sent else []
             if progress and procedure.progress != reported:
                 reported = procedure.progress
                 progress(*reported)

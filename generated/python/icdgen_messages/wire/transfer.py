@@ -11,9 +11,9 @@ from .client import Request
 from .crc import crc16
 from .errors import TooLongError, need
 from .events import Done, Outcome, Refused
+from .file_procedures import Action, Ended, RoleProcedure, Steps, Values, Wait, one_of
 from .files import HoleMap
 from .link import Bus, Link
-from .procedures import Action, Ended, Procedure, Steps, Values, Wait, one_of
 from .times import DosTime, dos_time_unpack
 
 
@@ -31,7 +31,7 @@ class FileEntry(NamedTuple):
         return dos_time_unpack(link, self.time)
 
 
-class FileProcedure(Procedure):
+class FileProcedure(RoleProcedure):
     """Base class of the file transfer procedures. Raise `UnsupportedError`."""
 
     def __init__(self, link: Link) -> None:

@@ -64,6 +64,9 @@ def uart_kind(link: Link, message: bytes) -> Kind:
         return "reply"
     if link.acknowledge and len(message) == link.acknowledge.length:
         return "acknowledge"
+    if id in link.unsolicited:
+        length = 1 + link.frames[link.unsolicited[id]]
+        return "packet" if len(message) == length else "other"
     if files and id == files.packet_ids.get("uart"):
         length = 1 + files.counter_bytes + files.packet_bytes
         return "packet" if len(message) == length else "other"

@@ -12,6 +12,7 @@ from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
 from .envelope import Direction
 from .errors import BusyError, ChecksumError, UnsupportedError, need
 from .events import (
+    Arrived,
     Done,
     Event,
     LineError,
@@ -81,7 +82,8 @@ class Client(Generic[N]):
         address: int = 0,
         settings: Optional[Settings] = None,
     ) -> None:
-        self.link, self.bus = link, bus
+        self.link = link
+        self.bus: Bus = bus
         self.settings = settings or link.settings
         self._checks_sent = self._checks_frames = False
         if form := link.checksum:
@@ -390,6 +392,10 @@ class Client(Generic[N]):
         kind, id = uart_kind(link, message), message[0]
         if kind == "log":
             return [Log(message, LogMessage.decode(link, message))]
+        if kind == "packet" and id in link.unsolicited:
+            telemetry = link.unsolicited[id]
+            type = link.TELEMETRY.which(telemetry, message[1:])
+            return [Arrived(telemetry, message[1:], {}, type)]
         if kind == "packet" and link.files:
             start = 1 + link.files.counter_bytes
             number = int.from_bytes(message[1:start], link.order)

@@ -20,6 +20,32 @@ from .envelope import Response as Response  # noqa: PLC0414
 from .envelope import Stream as Stream  # noqa: PLC0414
 from .envelope import StreamRow as StreamRow  # noqa: PLC0414
 from .envelope import TelemetryRequest as TelemetryRequest  # noqa: PLC0414
+from .procedure_forms import Blocks as Blocks  # noqa: PLC0414
+from .procedure_forms import Collect as Collect  # noqa: PLC0414
+from .procedure_forms import EndIfZeros as EndIfZeros  # noqa: PLC0414
+from .procedure_forms import Get as Get  # noqa: PLC0414
+from .procedure_forms import GetMap as GetMap  # noqa: PLC0414
+from .procedure_forms import Input as Input  # noqa: PLC0414
+from .procedure_forms import Jump as Jump  # noqa: PLC0414
+from .procedure_forms import NextBlock as NextBlock  # noqa: PLC0414
+from .procedure_forms import NextPacket as NextPacket  # noqa: PLC0414
+from .procedure_forms import NextRound as NextRound  # noqa: PLC0414
+from .procedure_forms import Output as Output  # noqa: PLC0414
+from .procedure_forms import PacketDone as PacketDone  # noqa: PLC0414
+from .procedure_forms import PacketMap as PacketMap  # noqa: PLC0414
+from .procedure_forms import Poll as Poll  # noqa: PLC0414
+from .procedure_forms import ProcedureForm as ProcedureForm  # noqa: PLC0414
+from .procedure_forms import Put as Put  # noqa: PLC0414
+from .procedure_forms import Receive as Receive  # noqa: PLC0414
+from .procedure_forms import Send as Send  # noqa: PLC0414
+from .procedure_forms import SendMap as SendMap  # noqa: PLC0414
+from .procedure_forms import SetLength as SetLength  # noqa: PLC0414
+from .procedure_forms import SkipUnless as SkipUnless  # noqa: PLC0414
+from .procedure_forms import Take as Take  # noqa: PLC0414
+from .procedure_forms import Test as Test  # noqa: PLC0414
+from .procedure_forms import Value as Value  # noqa: PLC0414
+from .procedure_forms import Verify as Verify  # noqa: PLC0414
+from .procedure_forms import VerifyChecksum as VerifyChecksum  # noqa: PLC0414
 
 Bus = Literal["uart", "i2c", "can"]
 CanKind = Literal[
@@ -455,6 +481,10 @@ class Facts(NamedTuple):
     statistics: Optional[Step] = None
     boot_time: Optional[int] = None
     stream: Optional[Stream] = None
+    procedures: dict[str, ProcedureForm] = {}  # noqa: RUF012
+    """Procedures by their names in the ICD."""
+    unsolicited: dict[int, int] = {}  # noqa: RUF012
+    """UART: telemetry in an unsolicited message, by the id at its beginning."""
     assumptions: tuple[Assumption, ...] = ()
     """Facts that the manual does not state, and what the ICD assumes."""
 

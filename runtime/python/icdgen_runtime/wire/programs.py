@@ -6,11 +6,11 @@ from typing import Optional
 
 from .._errors import RangeError
 from .errors import need
+from .file_procedures import Ended, RoleProcedure, Steps, Values, one_of
 from .link import Link, Operation
-from .procedures import Ended, Procedure, Steps, Values, one_of
 
 
-class ProgramOperation(Procedure):
+class ProgramOperation(RoleProcedure):
     """An operation on a program: a telecommand starts it and a frame reports its end.
 
     Raise `RangeError` for a program that is not supported.

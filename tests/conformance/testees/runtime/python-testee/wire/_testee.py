@@ -286,4 +286,5 @@ _OPERATIONS = {
     "stream_client": _testee_scripts.stream_client,
     "client": _testee_scripts.client,
     "file": _testee_scripts.file,
+    "procedure": _testee_scripts.procedure,
 }

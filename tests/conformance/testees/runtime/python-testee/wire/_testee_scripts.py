@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from .._errors import LengthError, UnknownIdError
-from .._testee_words import Words, counted, maybe, number, octets, row
+from .._testee_words import Words, counted, listed, maybe, number, octets, row
 from .can import CanPacket
 from .client import Client, Request
 from .envelope_client import EnvelopeClient
@@ -19,9 +19,11 @@ from .events import (
     LineError,
     Packet,
     Refused,
+    Sent,
     Stray,
     Timeout,
 )
+from .file_procedures import RoleProcedure
 from .link import Bus, Link, Settings
 from .procedures import Procedure
 from .programs import ProgramCopy, ProgramInformation
@@ -30,7 +32,12 @@ from .transfer import Download, Erase, FileList, Format, Upload
 _BUSES: tuple[Bus, ...] = ("uart", "i2c", "can")
 _BUS_SETTINGS = Settings._fields[:5]
 _STREAM_SETTINGS = (*Settings._fields[:2], *Settings._fields[4:])
-_OUTCOMES: dict[str, Any] = {"refused": Refused, "timeout": Timeout}
+_OUTCOMES: dict[str, Any] = {
+    "refused": Refused,
+    "timeout": Timeout,
+    "sent": Sent,
+    "busy": Busy,
+}
 
 
 def client(link: Link, words: Words) -> str:
@@ -42,7 +49,8 @@ def client(link: Link, words: Words) -> str:
     for at in words:
         said.append(" step")
         try:
-            said += map(_shown, _happened(tested, int(at), next(words), words))
+            events = _happened(tested, int(at), next(words), words)
+            said += [_shown(_as_packet(link, event)) for event in events]
         except BusyError:
             said.append(" error error=busy")
         except UnknownIdError:
@@ -146,6 +154,15 @@ def _output(tested: Client) -> str:
     return "".join(row("transfer", write=t.write, read=t.read) for t in transfers)
 
 
+def _as_packet(link: Link, event: Event) -> Event:
+    """An unsolicited packet of a download, as the requests still expect it."""
+    if isinstance(event, Arrived) and link.files:
+        counter = link.files.counter_bytes
+        number = int.from_bytes(event.data[:counter], link.order)
+        return Packet(number, event.data[counter:])
+    return event
+
+
 def _shown(event: Event, is_of_stream: bool = False) -> str:
     if isinstance(event, LineError):
         return row(event.error, id=event.id)
@@ -189,7 +206,32 @@ def file(link: Link, words: Words) -> str:
     return "".join(said)
 
 
-def _step(procedure: Procedure, now: int) -> str:
+def procedure(link: Link, words: Words) -> str:
+    """What a procedure of the ICD does in a script."""
+    name = list(link.procedures)[number(words)]
+    form = link.procedures[name]
+    bus, block, data = _bus(words), maybe(words), octets(words)
+    numbers = [maybe(words) for _ in range(number(words))]
+    names = [one.name for one in form.inputs if not one.is_bytes]
+    tested = Procedure(link, name, dict(zip(names, numbers)), data, block)
+    tested.bus = bus
+    said = []
+    for at in words:
+        event = _told(next(words), words)
+        if event is not None:
+            tested.event(int(at), event)
+        said.append(_step(tested, int(at)))
+    said += [row("block", offset=at, bytes=data) for at, data in tested.blocks]
+    said += [row("entry", bytes=frame) for frame in tested.frames]
+    if form.blocks and form.blocks.sends:
+        said.append(row("ok", sent=tested.progress[0]))
+    if form.outputs and tested.result == "done":
+        known = [tested.output(one.name) for one in form.outputs]
+        said.append(row("ok", outputs=listed(known)))
+    return "".join(said)
+
+
+def _step(procedure: Union[Procedure, RoleProcedure], now: int) -> str:
     facts: dict[str, object] = {}
     asked = procedure.next(now)
     if asked is not None:
@@ -205,6 +247,8 @@ def _told(name: str, words: Words) -> Optional[Event]:
     """An event of the client as it stands in a script."""
     if name == "done":
         return Done(0, 1, octets(words))
+    if name == "arrived":
+        return Arrived(number(words), octets(words), {})
     if name == "packet":
         return Packet(number(words), octets(words))
     if name == "damaged":
@@ -212,7 +256,7 @@ def _told(name: str, words: Words) -> Optional[Event]:
     return _OUTCOMES[name](0, 1) if name in _OUTCOMES else None
 
 
-def _procedure(link: Link, name: str, words: Words) -> Procedure:
+def _procedure(link: Link, name: str, words: Words) -> RoleProcedure:
     if name == "list":
         return FileList(link)
     if name == "format":
