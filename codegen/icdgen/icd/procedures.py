@@ -9,6 +9,9 @@ AGAIN = "again"  # `else` of a `verify`: transfer the block again
 BLOCK = "block"  # `of` of a checksum: of the block
 PACKET_DATA = "packet.data"  # value of a field: the bytes of the packet
 
+EFFECTS = ("list", "read", "write", "erase", "copy", "describe")
+"""Effects of a procedure on objects of the device."""
+
 FIXED_NAMES = (
     ("block", "offset"),
     ("block", "length"),

@@ -19,6 +19,7 @@ from icdgen.icd.procedures import (
     AGAIN,
     BLOCK,
     BYTES,
+    EFFECTS,
     FIXED_NAMES,
     FLAG,
     PACKET_DATA,
@@ -30,6 +31,7 @@ from icdgen.protocol.exchange import NumberPlace
 from icdgen.protocol.procedures import (
     Blocks,
     Collect,
+    Effect,
     EndIfZeros,
     Get,
     GetMap,
@@ -119,6 +121,7 @@ class ProcedureReader:
             requests=limits["requests"],
             steps=tuple(self._steps),
             source=section.get("source", {}),
+            effect=self._effect(section.get("effect")),
         )
 
     def _input(self, name: str, row: Section) -> Input:
@@ -143,6 +146,29 @@ class ProcedureReader:
         field = self._field(self._frames[frame], field_name)
         register = self._value(path).number
         return Output(name, register, field.scalar.enum, field.scalar.type == FLAG)
+
+    def _effect(self, row: Section | None) -> Effect | None:
+        if row is None:
+            return None
+        message = list(self._frames.values())[-1] if self._frames else None
+        fields = []
+        for name, field in row.get("fields", {}).items():
+            assert message is not None, "rule ICD190 checks the effect"
+            fields.append((name, self._place(message, field)))
+        all_if = [
+            Test(self._register(("", name)), self._value(value))
+            for name, value in row.get("all_if", {}).items()
+        ]
+        verb, key = next(verb for verb in EFFECTS if verb in row), row.get("key", [])
+        return Effect(
+            verb=verb,
+            kind=row[verb],
+            key=tuple(self._register(("", name)) for name in key),
+            names=tuple(key),
+            all_if=all_if[0] if all_if else None,
+            to=tuple(row.get("to", ())),
+            fields=tuple(fields),
+        )
 
     def _register(self, name: Name) -> int:
         """Return the register of a name; an unknown name gets the next one."""

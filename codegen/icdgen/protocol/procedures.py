@@ -283,6 +283,25 @@ class Blocks:
 
 
 @dataclass(frozen=True, slots=True)
+class Effect:
+    """What a procedure does with the objects of the device, such as files. A client
+    does not use it; a simulated device does.
+
+    An object has a kind, and the numbers of its key identify it among those of its
+    kind. ``fields`` are numbers of the last requested telemetry, which describe an
+    object: a number of its key, ``size``, ``time`` or ``checksum``.
+    """
+
+    verb: str  # one of `icdgen.icd.procedures.EFFECTS`; "" for none
+    kind: str
+    key: tuple[int, ...]  # registers of the inputs that are the key
+    names: tuple[str, ...]  # of these inputs
+    all_if: Test | None = None  # all objects are erased if it holds, or without a key
+    to: tuple[int, ...] = ()  # key of the object that a copy becomes
+    fields: tuple[tuple[str, NumberPlace], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Procedure:
     """Procedure of a node."""
 
@@ -298,6 +317,7 @@ class Procedure:
     requests: int  # largest number of requests
     steps: tuple[Step, ...]
     source: Mapping[str, Any]  # table or section of the manual, as in the ICD
+    effect: Effect | None  # None: not described
 
     @property
     def first_input(self) -> int:

@@ -16,8 +16,10 @@ from icdgen_runtime.wire.stream import StreamDecoder
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.icd.variants import ids_of
+from icdgen.procedures.counterpart import Refused
 from icdgen.protocol.envelope import PACKET
 from icdgen.protocol.facts import need
+from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.faults import Faults
@@ -144,7 +146,8 @@ class EnvelopeLine(DeviceLine):
                     is_request = event.is_request
                     self._refuse(now, event.id, b"", cause, is_request=is_request)
                 continue
-            for _, received_data in self.faults.apply("telecommand", event.data):
+            on = "upload" if self._is_packet(event.id) else "telecommand"
+            for _, received_data in self.faults.apply(on, event.data):
                 if received_data == event.data or not self._is_checked:
                     self._telecommand(now, event.id, received_data)
                 else:
@@ -187,6 +190,11 @@ class EnvelopeLine(DeviceLine):
         program.count("telecommands")
         if message.kind == CONFIGURATION:
             program.values.put(message, data)
+        try:
+            program.counterpart.telecommand(now, message, data)
+        except Refused:
+            self._refuse(now, id, data, "value")
+            return
         program.free_at = now + settings.processing_ms
         if self.faults.hits("silence", "telecommand"):
             return
@@ -194,6 +202,15 @@ class EnvelopeLine(DeviceLine):
             id, data = self._other_telecommand(id)
         for verdict in _SUCCESS:
             self._respond(now + settings.processing_ms, id, data, verdict)
+        for packet in program.counterpart.packets(UART):
+            assert packet.message.telemetry_id is not None
+            self._send(now, "packet", packet.message.telemetry_id, packet.data)
+
+    def _is_packet(self, id: int) -> bool:
+        """Return whether a telecommand has a packet of a block."""
+        counterpart = self.computer.program.counterpart
+        variants = self.ids.telecommand.get(id, ())
+        return any(counterpart.is_packet(variant.message) for variant in variants)
 
     def _request(self, now: int, id: int) -> None:
         """Respond to the request of telemetry."""

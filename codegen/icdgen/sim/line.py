@@ -96,11 +96,11 @@ class Line(DeviceLine):
             for _, received in self.faults.apply("request", message):
                 self._request(now, received)
             return
-        form = facts.files.upload if facts.files else None
-        upload = form is not None and form.packet.message.telecommand_id == message[0]
-        for _, received in self.faults.apply(
-            "upload" if upload else "telecommand", message
-        ):
+        telecommand = facts.telecommands.get(message[0])
+        counterpart = self.computer.program.counterpart
+        is_packet = telecommand is not None and counterpart.is_packet(telecommand)
+        on = "upload" if is_packet else "telecommand"
+        for _, received in self.faults.apply(on, message):
             self._telecommand(now, received)
 
     def _request(self, now: int, message: bytes) -> None:
@@ -140,20 +140,13 @@ class Line(DeviceLine):
             self._push(now)
 
     def _push(self, now: int) -> None:
-        """Send the packets of a burst, which are unsolicited on a UART."""
+        """Send the packets that the device sends unasked."""
         program = self.computer.program
-        transfers = program.transfers
-        if (
-            transfers is None
-            or not transfers.pushed
-            or UART not in transfers.form.packet_ids
-        ):
-            return
-        pushed, transfers.pushed, transfers.burst = transfers.pushed, [], []
-        head = bytes([transfers.form.packet_ids[UART]])
-        for packet in pushed:
-            number = program.facts.bytes_of(packet.number, transfers.form.counter_bytes)
-            self._send(now, "packet", head + number + packet.data)
+        heads = {id: head for head, id in program.facts.unsolicited.items()}
+        for packet in program.counterpart.packets(UART):
+            id = packet.message.telemetry_id
+            assert id is not None
+            self._send(now, "packet", bytes((heads.get(id, id),)) + packet.data)
 
     def _send(self, now: int, on: str, message: bytes) -> None:
         self.queue(now, on, uart_encode(self.link, message))

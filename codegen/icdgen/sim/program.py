@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,14 +11,20 @@ from icdgen_runtime.wire.logs import LogMessage
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
+from icdgen.icd.responses import field_of
+from icdgen.procedures.counterpart import Counterpart, Device, Refused
+from icdgen.procedures.effects import effect_of
 from icdgen.protocol import facts
+from icdgen.protocol.exchange import NumberPlace
+from icdgen.protocol.procedures import Send
+from icdgen.protocol.responding import place_of
 from icdgen.runtime_objects.links import link_of
-from icdgen.sim.programs import Programs
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
-from icdgen.sim.transfers import Raw, Refused, Transfers
 from icdgen.sim.values import Values
 from icdgen.values.frame import violations
+
+Raw = dict[str, "int | bytes"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,20 +50,12 @@ class Program:
         self.facts = facts.of(icd, node)
         self.link = link_of(icd, self.facts)
         self.values = Values(icd, node)
-        form = self.facts.files
-        self.transfers = (
-            Transfers(self.facts, self.link, form, storage, settings.busy_ms)
-            if form
-            else None
+        procedures = [(each, effect_of(each)) for each in self.facts.procedures]
+        self.counterpart = Counterpart(
+            procedures, Device(storage, settings.busy_ms, self.facts.crc16)
         )
-        protocol = icd.protocol_of(node)
-        copy_to = protocol.get("program_copy", {}).get("destination")
-        room = (
-            protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
-        )
-        self.programs = Programs(
-            self.facts, self.link, storage, settings.busy_ms, copy_to, room
-        )
+        kinds = (effect.kind for _, effect in procedures if effect.verb == "read")
+        storage.provide_index(self.link, next(kinds, None))
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
         self.last = (
@@ -116,19 +114,13 @@ class Program:
 
     def current(self, now: int, message: Message) -> bytes:
         """Return the current frame of a message."""
-        raw: Raw = {}
-        if self.transfers:
-            raw |= self.transfers.answer(now, message)
-            buses = self.transfers.form.packet_ids
-            if message.telemetry_id in (buses.get("i2c"), buses.get("can")):
-                return self._fetched(message)
-        raw |= self.programs.answer(now, message)
-        raw |= self._statistics(message) | self._acknowledged(now, message)
-        return (
+        raw = self._statistics(message) | self._acknowledged(now, message)
+        data = (
             self.values.encode(message, {**self.values.raw(message), **raw})
             if raw
             else self.values.frame(message)
         )
+        return self.counterpart.frame(now, message, data)
 
     def log_due(self, now: int) -> bytes | None:
         """Return an unsolicited log message if it is due."""
@@ -201,14 +193,9 @@ class Program:
         if telecommand.kind == CONFIGURATION:
             self.values.put(telecommand, data)
         try:
-            if self.transfers:
-                self.transfers.telecommand(now, telecommand, raw)
-            self.programs.telecommand(now, telecommand, raw)
+            self.counterpart.telecommand(now, telecommand, data)
         except Refused as refused:
-            names = [field.name for field in self.icd.longest_frame(telecommand)]
-            return self._refusal(
-                "parameter", names.index(refused.field) if refused.field else 0
-            )
+            return self._refusal("parameter", self._index(telecommand, refused.place))
         if telecommand.name == self._log_role().get("message"):
             self._plan_log(now)
         code, reset = self.facts.errors.get("none", 0), (
@@ -218,18 +205,29 @@ class Program:
             code, acknowledge=telecommand.acknowledge and not reset, reset=reset
         )
 
+    def _index(self, message: Message, place: NumberPlace | None) -> int:
+        """Return the index of the field at a place; 0 without one."""
+        places = [
+            place_of(self.node, field_of(message, field.name))
+            for field in self.icd.longest_frame(message)
+        ]
+        return places.index(place) if place in places else 0
+
     def _unsupported(self) -> set[str]:
-        """Return the telecommands of a procedure that only other nodes support."""
-        section = (
-            self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
-        )
-        if self.node.name in section.get("nodes", [self.node.name]):
-            return set()
-        return {
-            step["message"]
-            for step in section.values()
-            if isinstance(step, dict) and "message" in step
+        """Return the telecommands of procedures that only other nodes have."""
+        sections = self.icd.protocol_of(self.node).get("procedures", {}).values()
+        others = [
+            section
+            for section in sections
+            if self.node.name not in section.get("nodes", [self.node.name])
+        ]
+        own = {
+            step.message.name
+            for procedure in self.facts.procedures
+            for step in procedure.steps
+            if isinstance(step, Send)
         }
+        return {name for section in others for name in _sent(section["steps"])} - own
 
     def _refusal(
         self, reason: str, parameter: int = 0, acknowledge: bool = True
@@ -276,14 +274,6 @@ class Program:
             polled.parameter: parameter,
         }
 
-    def _fetched(self, message: Message) -> bytes:
-        assert self.transfers
-        packet = self.transfers.fetch()
-        head = self.facts.bytes_of(packet.number, self.transfers.form.counter_bytes)
-        return (head + packet.data).ljust(
-            message.length, bytes([self.transfers.form.fill])
-        )[: message.length]
-
     def _log_role(self) -> dict[str, Any]:
         role: dict[str, Any] = (
             self.icd.protocol_of(self.node)
@@ -307,3 +297,15 @@ class Program:
     def _plan_log(self, now: int) -> None:
         setting = self._log_setting()
         self.log_at = now + setting[1] if setting and setting[1] else None
+
+
+def _sent(steps: list[dict[str, Any]]) -> Iterator[str]:
+    """Yield the telecommands of steps, and of the steps within them."""
+    for step in steps:
+        if "send" in step:
+            yield step["send"]
+        for part in step.values():
+            inner = part if isinstance(part, dict) else {"steps": part}
+            for rows in inner.values():
+                if isinstance(rows, list):
+                    yield from _sent([row for row in rows if isinstance(row, dict)])

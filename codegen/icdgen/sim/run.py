@@ -7,29 +7,23 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from random import Random
 from typing import Any
 
-from icdgen_runtime._errors import IcdError
-from icdgen_runtime.wire.times import dos_time_pack
-
-from icdgen.errors import UserError, unreadable
+from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
-from icdgen.runtime_objects.links import link_of
 from icdgen.sim import control, serve
 from icdgen.sim.computer import Computer
 from icdgen.sim.device_line import DeviceLine
 from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.faults import Faults
+from icdgen.sim.files import read_file, saver
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
-from icdgen.sim.storage import File, Storage
-from icdgen.values import numbers
+from icdgen.sim.storage import Storage
 from icdgen.values.chosen import values_of
-from icdgen.values.entry import from_physical
 from icdgen.values.find import find_node, is_part
 
 Transport = tuple[Any, ...]  # name of a function of `serve`, and its arguments
@@ -105,8 +99,10 @@ def build(
     `icdgen.errors.UserError`.
     """
     node = node_of(icd, name)
-    storage = Storage(on_upload=_saver(options.uploads))
-    storage.files.update(_file(icd, node, text) for text in options.files)
+    storage = Storage(on_write=saver(options.uploads))
+    for text in options.files:
+        kind, key, file = read_file(icd, node, text)
+        storage.of(kind)[key] = file
     settings = Settings(
         options.boot,
         options.busy,
@@ -197,74 +193,3 @@ async def _listen(server: serve.Server, report: Callable[[str], None]) -> None:
             answer = f"error: {error}" + (f"; {error.help}" if error.help else "")
         if answer:
             report(answer.replace("\n", " "))
-
-
-def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
-    """Return a file from a text ``TYPE:COUNTER=PATH``.
-
-    Raise `icdgen.errors.UserError`.
-    """
-    node_facts = facts.of(icd, node)
-    key, _, path = text.partition("=")
-    kind, colon, counter = key.rpartition(":")
-    number = numbers.integer(counter.strip())
-    type_ = _type(icd, node_facts, kind.strip()) if path and colon else None
-    if (
-        type_ is None
-        or number is None
-        or not (0 <= type_ <= 255 and 0 <= number <= 255)
-    ):
-        raise UserError(
-            f"`{text}` is no file of the device",
-            "TYPE:COUNTER=PATH, for instance 2:1=log.bin",
-        )
-    if node_facts.index and type_ == node_facts.index.file_type:
-        raise UserError(
-            f"`{text}`: the index file is made of the others", "leave it out"
-        )
-    try:
-        data = Path(path).read_bytes()
-        changed = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
-    except OSError as error:
-        raise unreadable(path, error, "check the path after the =") from None
-    try:
-        packed = dos_time_pack(link_of(icd, node_facts), changed)
-    except IcdError:
-        packed = 0
-    return (type_, number), File(data, packed)
-
-
-def _type(icd: Icd, node_facts: facts.Facts, text: str) -> int | None:
-    """Return a file type from its number or name. Raise `icdgen.errors.UserError`."""
-    load = (
-        node_facts.files.download.load
-        if node_facts.files and node_facts.files.download
-        else None
-    )
-    fields = icd.longest_frame(load.message) if load else ()
-    field = next(
-        (field for field in fields if load and field.name == load.fields.get("type")),
-        None,
-    )
-    if field is None:
-        raise UserError("the ICD describes no files", "leave --file out")
-    return from_physical(field, text)  # type: ignore[return-value]
-
-
-def _saver(folder: Path | None) -> Callable[[int, bytes], None] | None:
-    """Return the function that stores uploaded programs in a folder."""
-    if folder is None:
-        return None
-    if folder.exists() and not folder.is_dir():
-        raise UserError(
-            f"{folder} is not a folder",
-            "--uploads names the folder for uploaded programs",
-        )
-    folder.mkdir(parents=True, exist_ok=True)
-
-    def save(destination: int, data: bytes) -> None:
-        partial = folder / f"{destination}.bin.part"
-        partial.write_bytes(data)
-        partial.replace(folder / f"{destination}.bin")
-
-    return save

@@ -1,81 +1,44 @@
-"""Files and uploaded programs of the simulated device, which survive a restart."""
+"""Files, programs and other objects of the simulated device, which survive a restart."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass, field
 
 from icdgen_runtime.wire.crc import crc16
 from icdgen_runtime.wire.files import IndexEntry, write_index
 from icdgen_runtime.wire.link import Link
 
-LARGEST = 1 << 24  # bytes of a program: a large offset must not exhaust the memory
+from icdgen.procedures.effects import Key, Object, Objects
+
+__all__ = ["Object", "Storage"]
 
 
-@dataclass
-class File:
-    """A file. ``time`` is packed."""
+class Storage(Objects):
+    """Objects of the device, and the index file, which describes the files."""
 
-    data: bytes
-    time: int = 0
+    def provide_index(self, link: Link, kind: str | None) -> None:
+        """Let the device make an index file of all objects of a kind, if the ICD
+        describes one.
+        """
+        form = link.index_file
 
+        def index(of: str, key: Key) -> bytes | None:
+            if form is None or of != kind or key[:1] != (form.file_type,):
+                return None
+            return write_index(
+                link, [_entry(link, *each) for each in self.of(of).items()]
+            )
 
-@dataclass
-class Storage:
-    """Files by type and counter, and programs by destination.
-
-    ``on_upload`` is called for each committed block.
-    """
-
-    files: dict[tuple[int, int], File] = field(default_factory=dict)
-    programs: dict[int, bytearray] = field(default_factory=dict)
-    on_upload: Callable[[int, bytes], None] | None = None
-
-    def read(self, link: Link, type_: int, counter: int) -> bytes | None:
-        """Return the content of a file, or of the index file, or None."""
-        if link.index_file and type_ == link.index_file.file_type:
-            return write_index(link, [self._entry(link, key) for key in self.files])
-        file = self.files.get((type_, counter))
-        return file.data if file else None
-
-    def _entry(self, link: Link, key: tuple[int, int]) -> IndexEntry:
-        file = self.files[key]
-        _, size = (
-            link.index_file.fields.get("meta", (0, 0)) if link.index_file else (0, 0)
-        )
-        form, mask, meta = link.log_file, link.mask, b""
-        if form and mask and key[0] == form.file_type:
-            meta = file.data[form.mask_at : form.mask_at + mask.size]
-        checksum = checksum_of(link, file.data)
-        return IndexEntry(
-            key[0],
-            key[1],
-            checksum,
-            len(file.data),
-            file.time,
-            meta[:size].ljust(size, b"\0"),
-        )
-
-    def put(self, destination: int, data: bytes) -> None:
-        """Store a complete program."""
-        self.programs[destination] = bytearray(data)
-        if self.on_upload:
-            self.on_upload(destination, data)
-
-    def write(
-        self, destination: int, offset: int, data: bytes, room: int | None = None
-    ) -> bool:
-        """Commit a block of a program. Return whether there is room for it."""
-        if offset + len(data) > (LARGEST if room is None else min(LARGEST, room)):
-            return False
-        program = self.programs.setdefault(destination, bytearray())
-        program.extend(bytes(max(0, offset - len(program))))
-        program[offset : offset + len(data)] = data
-        if self.on_upload:
-            self.on_upload(destination, bytes(program))
-        return True
+        self.computed = index
 
 
-def checksum_of(link: Link, data: bytes) -> int:
-    """Return the CRC of a file or a block, or 0 if the ICD has none."""
-    return crc16(link, data) if link.crc16 else 0
+def _entry(link: Link, key: Key, stored: Object) -> IndexEntry:
+    """Return the entry of a file in the index file."""
+    type_, counter, *_ = (*key, 0, 0)
+    data, form, mask = bytes(stored.data), link.log_file, link.mask
+    _, size = link.index_file.fields.get("meta", (0, 0)) if link.index_file else (0, 0)
+    meta = b""
+    if form and mask and type_ == form.file_type:
+        meta = data[form.mask_at : form.mask_at + mask.size]
+    checksum = crc16(link, data) if link.crc16 else 0
+    return IndexEntry(
+        type_, counter, checksum, len(data), stored.time, meta[:size].ljust(size, b"\0")
+    )

@@ -31,6 +31,7 @@ from icdgen.icd.rules import (  # noqa: F401
     limits,
     loggable,
     packets,
+    procedure_effects,
     protocol,
     protocol_effects,
     protocol_limits,

@@ -1,0 +1,99 @@
+"""Procedures without blocks in the device: lists of objects, and actions on them."""
+
+from __future__ import annotations
+
+from icdgen.procedures.numbers import put_number
+from icdgen.procedures.run import Device, Run, index_of
+from icdgen.protocol.procedures import Collect, Effect, Get, Jump, Poll, Procedure
+
+
+class Listing(Run):
+    """The client reads a list, entry by entry.
+
+    A telecommand of the loop advances to the next entry; others return to the first
+    one. ``entries``: the frames of the entries; None: they describe the objects.
+    """
+
+    entries: list[bytes] | None = None
+
+    def __init__(
+        self,
+        procedure: Procedure,
+        effect: Effect,
+        device: Device,
+        names: tuple[str, ...],
+    ) -> None:
+        super().__init__(procedure, effect, device, names)
+        self._position = 0
+        collect = index_of(procedure.steps, Collect) or 0
+        self._loop = next(
+            range(step.to, index)
+            for index, step in enumerate(procedure.steps)
+            if isinstance(step, Jump) and step.to <= collect < index
+        )
+
+    def execute(self, index: int, data: bytes) -> None:
+        self._position = self._position + 1 if index in self._loop else 0
+
+    def frame(self, step: Get | Poll, data: bytes, is_busy: bool) -> bytearray:
+        if step.message is not self.procedure.entry:
+            return bytearray(data)
+        if is_busy:
+            return bytearray(len(data))
+        if self.entries is not None:
+            entries = self.entries[self._position : self._position + 1]
+            return bytearray(entries[0] if entries else bytes(len(data)))
+        frame, keys = bytearray(len(data)), list(
+            self.device.objects.of(self.effect.kind)
+        )
+        for key in keys[self._position : self._position + 1]:
+            for place, number in self.about(key, False):
+                put_number(place, frame, number)
+        return frame
+
+
+class Action(Run):
+    """The device does something with an object, or describes it."""
+
+    def __init__(
+        self,
+        procedure: Procedure,
+        effect: Effect,
+        device: Device,
+        names: tuple[str, ...],
+    ) -> None:
+        super().__init__(procedure, effect, device, names)
+        naming = [i for i in self.sends if self.given(i) & set(effect.key)]
+        self._step = next(iter(naming or self.sends), None)
+        requests = [s for s in procedure.steps if isinstance(s, (Get, Poll))]
+        self._described = requests[-1].message if requests else None
+
+    def execute(self, index: int, data: bytes) -> None:
+        if index != self._step:
+            return
+        effect, objects = self.effect, self.device.objects
+        if effect.verb == "erase":
+            if self._erases_all:
+                objects.of(effect.kind).clear()
+            else:
+                objects.of(effect.kind).pop(self.key, None)
+        elif effect.verb == "copy":
+            source = objects.read(effect.kind, self.key)
+            self.failed = not source
+            if source:
+                objects.put(effect.kind, effect.to, source)
+                objects.report(effect.kind, effect.to)
+
+    def frame(self, step: Get | Poll, data: bytes, is_busy: bool) -> bytearray:
+        frame = bytearray(data)
+        if self.effect.verb == "describe" and step.message is self._described:
+            for place, number in self.about(self.key, is_busy):
+                put_number(place, frame, number)
+        return frame
+
+    @property
+    def _erases_all(self) -> bool:
+        test = self.effect.all_if
+        if test is None:
+            return not self.effect.key
+        return self.registers.get(test.register) == test.value.number
