@@ -38,7 +38,7 @@ ONLY_WITH = {
     "enum": ("status", "reason"),
 }
 # Keys of a protocol section with `stream`.
-ALLOWED_WITH_STREAM = ("stream", "checksums", "client", "uart", "boot")
+ALLOWED_WITH_STREAM = ("stream", "checksums", "client", "uart", "boot", "procedures")
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -396,6 +396,8 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         checksums = section_of(link.node, "checksums") or unread()
         fields = list(_checksum_fields(link))
+        procedures = link.node.source["protocol"].get("procedures")
+        in_procedures = set(_checksums_in_steps(procedures))
         for packet, part, row in fields:
             name = row.get("checksum", "")
             declared = checksums.get(name)
@@ -421,6 +423,8 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                 yield from _covered(packet, part, row, covers_of(row, checksums))
         for name, declared in checksums.items():
             own = [row for *_, row in fields if row.get("checksum") == name]
+            if not own and name in in_procedures:
+                continue
             if not own:
                 message = f"no field of the frame has the checksum {quote(name)}"
                 help = f"add a field `role: checksum, checksum: {name}`, or remove {quote(name)} here"
@@ -431,6 +435,18 @@ def checksums_can_be_computed(ctx: Context) -> Iterator[Fault]:
                 if all("covers" in row for row in own):
                     text = "`covers` has no effect, because each field with this checksum has its own"
                     yield Fault.at_key(declared, "covers", text, "remove it")
+
+
+def _checksums_in_steps(steps: object) -> Iterator[str]:
+    """Yield the names of the checksums that steps of procedures compare."""
+    if isinstance(steps, Map):
+        if isinstance(name := steps.get("checksum"), str):
+            yield name
+        for row in steps.values():
+            yield from _checksums_in_steps(row)
+    elif isinstance(steps, Seq | list):
+        for row in steps:
+            yield from _checksums_in_steps(row)
 
 
 def _checksum_fields(link: Link) -> Iterator[tuple[LinkPacket, str, Map]]:
