@@ -28,7 +28,13 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
-WIRE = ("logs", "scripts", "stream", "wire")  # what answers requests about the protocol
+WIRE = (
+    "logs",
+    "procedures",
+    "scripts",
+    "stream",
+    "wire",
+)  # what answers requests about the protocol
 
 
 class Route(NamedTuple):
@@ -205,6 +211,9 @@ class RustTesteeBackend:
             nodes=icd.nodes,
             wired=bool(known),
             links=list(known),
+            with_procedures=[
+                name for name, link in known.items() if link.facts.procedures
+            ],
             longest=max(map(longest, known.values()), default=0),
             **common,
         )

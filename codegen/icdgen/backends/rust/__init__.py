@@ -44,6 +44,7 @@ class RustBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """List the files of the crate."""
+        from icdgen.backends.rust.procedures import NodeProcedures
         from icdgen.describe.links import links_of
 
         description = describe(icd)
@@ -58,6 +59,7 @@ class RustBackend:
             message.layout.sequence for node in icd.nodes for message in node.messages
         )
         links = links_of(description)
+        known: dict[str, NodeProcedures] = {}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         of_crate = {
             "has_tails": has_tails,
@@ -70,10 +72,16 @@ class RustBackend:
             folder = PurePosixPath("src") / node.name
             digested = {**common, "origin": origin(node.model, with_digest=True)}
             link = links.get(node.name)
+            shared = {**common, "origin": origin(node.model)}
+            if link and link.facts.procedures:
+                procedures = NodeProcedures(link, description, known)
+                known[node.name] = procedures
+                yield folder / "procedures.rs", render(
+                    "procedures.rs.j2", procedures=procedures, **shared
+                )
             yield folder / "mod.rs", render(
                 "node.rs.j2", node=node, link=link, **digested
             )
-            shared = {**common, "origin": origin(node.model)}
             if node.enums:
                 yield folder / "enums.rs", render(
                     "enums.rs.j2", enums=node.enums, **shared

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from icdgen.backends.literals import Brackets, Item, written
+from icdgen.backends.rust import procedures
 from icdgen.backends.rust.facts import member_name, type_name, value_of
 from icdgen.backends.rust.literals import (
     Expression,
@@ -46,8 +47,13 @@ _NUMBER_BITS = 32
 def sizes(links: Collection[LinkDescription]) -> dict[str, int]:
     """Return the sizes of the buffers of procedures: the largest that any node needs."""
     facts = [link.facts for link in links]
+    of_procedures = procedures.sizes(links)
     return {
-        "step": max((link.longest_step for link in links), default=1),
+        "step": max(
+            of_procedures["telecommand"],
+            max((link.longest_step for link in links), default=1),
+        ),
+        "entry": of_procedures["entry"],
         "map": max((node.hole_map.bytes for node in facts if node.hole_map), default=1),
         "packets": max(
             (node.files.block_packets for node in facts if node.files), default=1
@@ -66,6 +72,8 @@ def values(link: LinkDescription) -> dict[str, object]:
         f"The protocol of node `{facts.node.name}`. Facts that the manual omits are marked as assumed."
     ]
     for section, key, why in link_literal.assumed.others():
+        if section.startswith(procedures.SECTION):
+            continue  # the module of the procedures shows it
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
     tables = crc_tables(facts.stream)
     return {

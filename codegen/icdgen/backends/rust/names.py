@@ -38,10 +38,12 @@ ROOTS = {
     "bin": "the folder of programs",
 }
 ENUMS_MODULE = "enums"
+PROCEDURES_MODULE = "procedures"
 # What stands beside the modules of a node's messages, and what their parent calls by
 # its bare name.
 USED_IN_NODES = (
     ENUMS_MODULE,
+    PROCEDURES_MODULE,
     "u8",
     "u16",
     "u32",
@@ -97,6 +99,11 @@ def scale_name(field: FieldDescription) -> str:
 def constant_name(name: str) -> str:
     """``TIMEOUT_NO_TIMEOUT``: constant of a message with this name in snake case."""
     return name.upper()
+
+
+def memory_constant(procedure: str) -> str:
+    """``DOWNLOAD_MEMORY``: constant with the memory in bytes that a procedure needs."""
+    return f"{constant_name(procedure)}_MEMORY"
 
 
 def setter(name: str) -> str:

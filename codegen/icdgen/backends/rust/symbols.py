@@ -19,7 +19,7 @@ from icdgen.describe.arrays import looped_arrays
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.describe.symbols import NamingPolicy, Symbols
-from icdgen.naming import DEVICES
+from icdgen.naming import DEVICES, camel, words
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "default")
 _METHODS_OF_VARIABLE_LENGTH = ("from_longest", "size")
@@ -58,6 +58,24 @@ class RustNames(NamingPolicy):
     ) -> Symbols:
         scope = f"variants of {node.name}::{direction.capitalize()}"
         yield message.identifier(scope, message.camel_name)
+
+    def link(self, node: NodeDescription) -> Symbols:
+        """Names of the procedures and of their outputs."""
+        scope, source = f"{names.PROCEDURES_MODULE} of {node.name}", node.model.source
+        if node.procedures:
+            yield from _used(scope, ("ALL",))
+        for name, row in node.procedures.items():
+            owner = f"procedure `{name}`"
+            for text in (
+                procedure_type(name),
+                names.constant_name(name),
+                names.memory_constant(name),
+            ):
+                yield Identifier(scope, text, owner, source)
+            methods = f"methods of {node.name}::{procedure_type(name)}"
+            yield from _used(methods, ("new",))
+            for output in row.get("outputs", {}):
+                yield Identifier(methods, output, f"`{output}` of {owner}", source)
 
     def enumeration(self, enum: EnumDescription) -> Symbols:
         yield enum.identifier(
@@ -114,6 +132,11 @@ class RustNames(NamingPolicy):
 
 
 RUST_NAMES = RustNames()
+
+
+def procedure_type(name: str) -> str:
+    """Return the name of the type of a procedure: ``ProgramCopy``."""
+    return camel(words(name))
 
 
 def _scope(composite: Composite[Any]) -> str:

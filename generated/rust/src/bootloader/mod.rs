@@ -29,6 +29,9 @@ use crate::support::{write_to, Error};
 
 pub mod enums;
 
+#[rustfmt::skip]
+pub mod procedures;
+
 mod clear_error_flags;
 pub use self::clear_error_flags::ClearErrorFlags;
 

@@ -26,6 +26,9 @@ use crate::support::{write_to, Error};
 
 pub mod enums;
 
+#[rustfmt::skip]
+pub mod procedures;
+
 mod reset;
 pub use self::reset::Reset;
 

@@ -28,6 +28,9 @@ use crate::support::{write_to, Error};
 
 pub mod enums;
 
+#[rustfmt::skip]
+pub mod procedures;
+
 mod deploy_magnetometer_boom;
 pub use self::deploy_magnetometer_boom::DeployMagnetometerBoom;
 

@@ -73,6 +73,13 @@ pub enum Event<'a> {
         /// Content of the packet.
         data: &'a [u8],
     },
+    /// Telemetry that the node sends without a request, such as a packet of a file.
+    Arrived {
+        /// Id of the telemetry.
+        id: u32,
+        /// Its data.
+        data: &'a [u8],
+    },
     /// An unsolicited log message.
     Log {
         /// The message; starts with its id.

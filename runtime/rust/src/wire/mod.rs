@@ -27,6 +27,7 @@ pub mod log;
 mod message;
 #[cfg(feature = "embedded-io")]
 mod port;
+pub mod procedure;
 mod request;
 #[cfg(feature = "std")]
 pub mod session;

@@ -9,6 +9,7 @@ use super::sender::Sender;
 use super::slots::Slots;
 use super::Request;
 use crate::wire::link::Settings;
+use crate::wire::procedure::{Procedure, Sink};
 use crate::wire::{Direction, Error, Linked, Refusals, TelecommandOf, TelemetryOf};
 use core::fmt;
 use core::marker::PhantomData;
@@ -158,6 +159,26 @@ impl<T, const N: usize, const S: usize, const R: usize> Client<T, N, S, R> {
     /// telemetry.
     pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
         self.slots.start(now, request)
+    }
+
+    /// Start the next request of a procedure if there is one, and room for it. Return whether a
+    /// request was started.
+    ///
+    /// # Errors
+    ///
+    /// See [`Client::start`].
+    pub fn advance<W: Sink>(
+        &mut self,
+        now: u32,
+        procedure: &mut Procedure<'_, W>,
+    ) -> Result<bool, Error> {
+        if self.slots.is_full() {
+            return Ok(false);
+        }
+        match procedure.next(now) {
+            Some(request) => self.start(now, &request).map(|()| true),
+            None => Ok(false),
+        }
     }
 
     /// Encode the next message to send into `line`. Return None if there is none. Its times count

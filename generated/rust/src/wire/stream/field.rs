@@ -2,7 +2,7 @@
 
 //! Fields of the header and trailer.
 
-use crate::wire::bits::{head, number};
+use crate::wire::bits::{head, number, part_mut, put_number};
 use crate::wire::link::{
     Content, EnvelopeField, EnvelopeRole, NumberPlace, PacketForm, Stream, StreamRow,
 };
@@ -74,15 +74,26 @@ impl EnvelopeField {
 
 impl NumberPlace {
     /// Return the number in `first`, followed by `rest`.
-    pub(super) fn get(&self, first: &[u8], rest: &[u8]) -> u32 {
+    pub(in crate::wire) fn get(&self, first: &[u8], rest: &[u8]) -> u32 {
         let mut octets = [0; 4];
         let bytes = first.iter().chain(rest).skip(self.at).take(self.size);
         for (octet, byte) in octets.iter_mut().zip(bytes) {
             *octet = *byte;
         }
         let number = number(head(&octets, self.size), self.little).wrapping_shr(self.shift);
-        let mask = u32::MAX.wrapping_shr(32_u32.wrapping_sub(self.bits));
-        mask & u32::try_from(number).unwrap_or(0)
+        self.mask() & u32::try_from(number).unwrap_or(0)
+    }
+
+    /// Put a number into a message and keep the other bits.
+    pub(in crate::wire) fn put(&self, value: u32, bytes: &mut [u8]) {
+        let place = part_mut(bytes, self.at, self.size);
+        let kept = number(place, self.little) & !(u64::from(self.mask()) << self.shift);
+        let value = u64::from(value & self.mask()) << self.shift;
+        put_number(place, kept | value, self.little);
+    }
+
+    const fn mask(&self) -> u32 {
+        u32::MAX.wrapping_shr(32_u32.wrapping_sub(self.bits))
     }
 }
 

@@ -181,6 +181,20 @@ pub enum Event<'a> {
 }
 
 impl<'a> Event<'a> {
+    /// Return direction and id of the request that the event is about.
+    pub(in crate::wire) const fn request(&self) -> Option<(Direction, u32)> {
+        match *self {
+            Self::Done { direction, id, .. }
+            | Self::Sent { direction, id, .. }
+            | Self::Refused { direction, id, .. }
+            | Self::Busy { direction, id, .. }
+            | Self::Timeout { direction, id, .. }
+            | Self::Progress { direction, id, .. }
+            | Self::Reply { direction, id, .. } => Some((direction, id)),
+            _ => None,
+        }
+    }
+
     /// Return id and data of the telemetry that the event is about.
     pub(super) const fn telemetry(&self) -> Option<(u32, &'a [u8])> {
         match *self {

@@ -4,6 +4,8 @@ use super::super::bits::{head, part_mut, reached};
 use super::super::event::Event;
 use super::super::link::{Link, Role, Step};
 use super::super::links::STEP_BYTES;
+use super::super::message::octet;
+use super::super::procedure::{self, Sink};
 use super::super::request::{Direction, Request};
 use super::super::Error;
 
@@ -266,5 +268,39 @@ impl<T: Run> Procedure for T {
 
     fn result(&self) -> Option<End> {
         self.core().result
+    }
+}
+
+/// Procedures of the ICD run in the same way.
+impl<S: Sink> Procedure for procedure::Procedure<'_, S> {
+    fn next(&mut self, now: u32) -> Option<Request<'_>> {
+        let request = procedure::Procedure::next(self, now)?;
+        Some(Request {
+            direction: request.direction,
+            id: octet(request.id),
+            data: request.data,
+            repeat: request.repeat,
+        })
+    }
+
+    fn event(&mut self, now: u32, event: &Event<'_>) {
+        procedure::Procedure::event(self, now, event);
+    }
+
+    fn deadline(&self) -> Option<u32> {
+        procedure::Procedure::deadline(self)
+    }
+
+    fn result(&self) -> Option<End> {
+        procedure::Procedure::result(self).map(|end| match end {
+            procedure::End::Done => End::Done,
+            procedure::End::Refused | procedure::End::Busy => End::Refused,
+            procedure::End::Timeout => End::Timeout,
+            procedure::End::Failed => End::Error,
+            procedure::End::Length => End::Length,
+            procedure::End::Checksum => End::Checksum,
+            procedure::End::Rounds => End::Rounds,
+            procedure::End::Limit => End::Limit,
+        })
     }
 }

@@ -7,3 +7,5 @@ pub(crate) const STEP_BYTES: usize = 8;
 pub(crate) const MAP_BYTES: usize = 64;
 /// Most packets of a block.
 pub(crate) const BLOCK_PACKETS: usize = 512;
+/// Bytes of the longest entry of a list.
+pub(crate) const ENTRY_BYTES: usize = 8;

@@ -140,6 +140,10 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         ends.chain(chances).reduce(earlier)
     }
 
+    pub(super) fn is_full(&self) -> bool {
+        self.requests.iter().all(|slot| slot.state != State::Idle)
+    }
+
     pub(super) fn start(&mut self, now: u32, request: &Request<'_>) -> Result<(), Error> {
         let asks = request.direction == Direction::Telemetry;
         let (sent, row) = self.sent_for(request)?;

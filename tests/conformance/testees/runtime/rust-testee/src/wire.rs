@@ -2,7 +2,7 @@
 
 use crate::line::{counted, hex, list, ranged, Answer, Refusal, Words};
 use crate::nodes::{link, LONGEST};
-use crate::{logs, scripts, stream};
+use crate::{logs, procedures, scripts, stream};
 use icd::wire::files::{HoleMap, IndexEntries, IndexEntry};
 use icd::wire::uart::{Decoder, Kind};
 use icd::wire::{can, crc16, crc8, i2c, identify, uart, Bus, DosTime, Error, Link};
@@ -60,6 +60,7 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         "stream_encode" => stream::stream_encode,
         "stream_events" => stream::stream_events,
         "stream_client" => stream::stream_client,
+        "procedure" => return procedures::procedure(words.number(), words),
         _ => return Err(Refusal("request".into())),
     };
     answer(link(words.number()).ok_or(Error::Unsupported)?, words)
