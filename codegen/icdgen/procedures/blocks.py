@@ -202,7 +202,7 @@ class Writing(BlockRun):
         names: tuple[str, ...],
     ) -> None:
         super().__init__(procedure, effect, device, names)
-        self.received: dict[int, bytes] = {}  # packets of the block by position
+        self.received: dict[int, bytes] = {}  # packets of the block by their offset
         self._is_complete = False  # the next packet begins another block
         self._map_from = 0  # number of the last telecommand that changed the map
         packets = [i for i in self.inside if sends_packets(procedure, i)]
@@ -240,10 +240,20 @@ class Writing(BlockRun):
             self.map[at], self._map_from = data[part], 0
 
     def covered(self) -> bytes:
-        empty = self.filler * self.blocks.packet_bytes
-        first = 0 if PACKET_NUMBER in self.registers else min(self.received, default=0)
-        positions = range(first, max(self.received, default=-1) + 1)
-        return b"".join(self.received.get(position, empty) for position in positions)
+        size = self.blocks.packet_bytes
+        begin = self._begin_of_block
+        if begin is None:
+            begin = min(self.received, default=0)
+        offsets = range(begin, max(self.received, default=begin - size) + 1, size)
+        empty = self.filler * size
+        return b"".join(self.received.get(offset, empty) for offset in offsets)
+
+    @property
+    def _begin_of_block(self) -> int | None:
+        """Offset of the first packet of the block; None if the device is not told."""
+        if PACKET_OFFSET not in self.registers:
+            return 0
+        return self.registers.get(BLOCK_OFFSET) if BLOCK_OFFSET in self._told else None
 
     def length_of(self, data: bytes) -> int:
         told = BLOCK_LENGTH in self._told
@@ -264,29 +274,32 @@ class Writing(BlockRun):
     def _take(self, step: Send, data: bytes) -> None:
         """Take a packet of a block."""
         size = self.blocks.packet_bytes
-        offset = (
-            self.registers.get(BLOCK_OFFSET, 0) if BLOCK_OFFSET in self._told else 0
-        )
-        if PACKET_NUMBER in self.registers:
-            position = self.registers[PACKET_NUMBER] - self.blocks.first_packet
+        if PACKET_OFFSET in self.registers:
+            offset = self.registers[PACKET_OFFSET]
+            position = (offset - (self._begin_of_block or 0)) // size
         else:
-            position = (self.registers.get(PACKET_OFFSET, 0) - offset) // size
+            number = self.registers.get(PACKET_NUMBER, 0)
+            position = number - self.blocks.first_packet
+            offset = position * size
         # A damaged number must not exhaust the memory.
-        if not 0 <= position * size < LARGEST:
+        if not 0 <= offset < LARGEST:
             return
-        self.received[position] = data
-        if self.blocks.map:
+        self.received[offset] = data
+        if self.blocks.map and position >= 0:
             mark_received(self.blocks.map, self.map, position)
             self._map_from = self.device.telecommands
         if self._commit_step is None:
-            self.failed = not self._store(offset + position * size, self._cut(position))
+            data = self._cut(offset - (self._begin_of_block or 0), data)
+            if PACKET_OFFSET not in self.registers:
+                offset += self.registers.get(BLOCK_OFFSET, 0)
+            self.failed = not self._store(offset, data)
 
-    def _cut(self, position: int) -> bytes:
-        """Return a packet without its fill, as far as the device knows the end."""
-        data = self.received[position]
+    def _cut(self, offset: int, data: bytes) -> bytes:
+        """Return a packet without its fill, as far as the device is told the end of the
+        block. ``offset``: that of the packet in the block.
+        """
         if {BLOCK_OFFSET, BLOCK_LENGTH} <= self._told:
-            length = self.registers.get(BLOCK_LENGTH, 0)
-            return data[: max(0, length - position * self.blocks.packet_bytes)]
+            return data[: max(0, self.registers.get(BLOCK_LENGTH, 0) - offset)]
         return data
 
     def _commit(self) -> None:
