@@ -32,8 +32,9 @@ BESIDES = (
     "source",
     "assumptions",
     "summary",
-    "procedures",  # until rules check them
 )  # of every section: where it stands, why it is assumed, prose
+STEP = "#/$defs/step"
+NESTED = "[**]"
 Path_ = tuple[str | int, ...]
 
 KEYS = ROOT / "tests" / "protocol" / "keys"
@@ -48,8 +49,8 @@ _HEAD = """\
 
 
 class Key(NamedTuple):
-    """A key of the format: its path, `[]` for an entry of a list and `*` for any name,
-    and what it can be.
+    """A key of the format: its path, `[]` for an entry of a list, `[**]` for an entry of
+    a list of steps or a step in it, and `*` for any name, and what it can be.
     """
 
     path: tuple[str, ...]
@@ -80,7 +81,9 @@ def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:
         if isinstance(form.get("additionalProperties"), dict):
             yield from _keys(form["additionalProperties"], (*path, "*"))
     elif kinds == "array" and schema_of_entries(form).get("type") == "object":
-        yield from _keys(form["items"], (*path, "[]"))
+        is_steps = form["items"].get("$ref") == STEP
+        if NESTED not in path:  # otherwise it stands for the steps in a step as well
+            yield from _keys(form["items"], (*path, NESTED if is_steps else "[]"))
     else:
         yield Key(path, form)
 
@@ -99,11 +102,26 @@ def places(section: Any, path: tuple[str, ...], before: Path_ = ()) -> Iterator[
     elif path[0] == "[]" and isinstance(section, list):
         for index, one in enumerate(section):
             yield from places(one, path[1:], (*before, index))
+    elif path[0] == NESTED and isinstance(section, list):
+        for index, one in enumerate(section):
+            yield from places(one, path[1:], (*before, index))
+            yield from _places_in_step(one, path, (*before, index))
     elif path[0] == "*" and isinstance(section, dict):
         for name, one in section.items():
             yield from places(one, path[1:], (*before, name))
     elif isinstance(section, dict) and path[0] in section:
         yield from places(section[path[0]], path[1:], (*before, path[0]))
+
+
+def _places_in_step(
+    step: dict[str, Any], path: tuple[str, ...], before: Path_
+) -> Iterator[Path_]:
+    """Where a key stands in the steps of a step."""
+    for key, value in step.items():
+        if isinstance(value, dict):
+            yield from _places_in_step(value, path, (*before, key))
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            yield from places(value, path, (*before, key))
 
 
 class Source:
@@ -263,7 +281,8 @@ def told(thing: Any) -> Any:
     if isinstance(thing, Message | Node):
         return thing.name
     if is_dataclass(thing):
-        return {one.name: told(getattr(thing, one.name)) for one in fields(thing)}
+        values = {one.name: told(getattr(thing, one.name)) for one in fields(thing)}
+        return {"": type(thing).__name__, **values}
     if isinstance(thing, dict):
         return {key: told(one) for key, one in thing.items()}
     return [told(one) for one in thing] if isinstance(thing, list | tuple) else thing

@@ -21,6 +21,8 @@ FIXED_NAMES = (
 )
 """Numbers that each procedure with blocks has, in the order of their registers."""
 
+FIXED_OWNERS = (BLOCK, "packet")
+
 
 def name_of(value: str) -> tuple[str, str]:
     """Return the owner and the own name of a value: ``ready.Block Length`` is a field of

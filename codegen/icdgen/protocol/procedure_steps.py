@@ -21,6 +21,7 @@ from icdgen.icd.procedures import (
     BYTES,
     EFFECTS,
     FIXED_NAMES,
+    FIXED_OWNERS,
     FLAG,
     PACKET_DATA,
     SEND,
@@ -116,7 +117,10 @@ class ProcedureReader:
             entry=self._entry,
             most_entries=limits.get("entries", 0),
             blocks=self._blocks,
-            registers=len(self._registers),
+            register_names=tuple(
+                f"{owner}.{name}" if owner in FIXED_OWNERS else name
+                for owner, name in self._registers
+            ),
             time=limits["time_s"] * 1000,
             requests=limits["requests"],
             steps=tuple(self._steps),

@@ -312,7 +312,7 @@ class Procedure:
     entry: Message | None  # telemetry that `Collect` adds to the entries
     most_entries: int
     blocks: Blocks | None
-    registers: int  # number of registers
+    register_names: tuple[str, ...]  # as in the ICD; of a field, its own name
     time: int  # longest duration
     requests: int  # largest number of requests
     steps: tuple[Step, ...]
@@ -320,6 +320,23 @@ class Procedure:
     effect: Effect | None  # None: not described
 
     @property
+    def registers(self) -> int:
+        """Number of registers."""
+        return len(self.register_names)
+
+    @property
     def first_input(self) -> int:
         """Register of the first input that is a number."""
         return len(FIXED_NAMES)
+
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """Messages of the steps, each once."""
+        found = [
+            step.message
+            for step in self.steps
+            if isinstance(step, (Send, Get, Poll, Receive))
+        ]
+        if self.blocks and self.blocks.map:
+            found += self.blocks.map.messages
+        return tuple({message.name: message for message in found}.values())
