@@ -24,7 +24,7 @@
 #include "bootloader/client.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
-#define BOOTLOADER_ICD_DIGEST "80ff4f9889981e12"
+#define BOOTLOADER_ICD_DIGEST "04b266fd2f29e0d9"
 /** Type that the node reports. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */

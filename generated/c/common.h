@@ -56,7 +56,7 @@
 #include "common/client.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
-#define COMMON_ICD_DIGEST "66deeeb92833f25e"
+#define COMMON_ICD_DIGEST "2af13559b3f6b52e"
 
 /** Any telemetry message of Common messages. `id` determines which member of `as` is valid. */
 typedef struct {

@@ -131,7 +131,7 @@
 #include "cubeacp/client.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and the ICDs that it includes. */
-#define CUBEACP_ICD_DIGEST "95d05c71349edc90"
+#define CUBEACP_ICD_DIGEST "fc00cbfef97eef82"
 /** Type that the node reports. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */

@@ -68,16 +68,21 @@ def test_a_node_of_which_nothing_is_said_has_no_such_page(site):
     assert not (site / "cubemag" / "protocol.html").exists()
 
 
-def test_the_packets_of_a_download_are_drawn_with_their_ids(site):
+def test_a_procedure_is_drawn_with_its_loops_times_and_limits(site):
     text = (site / PAGE).read_text("utf-8")
     download = text[
-        text.index("<figcaption>File download") : text.index("<figcaption>File erase")
+        text.index("<figcaption>Download") : text.index("<figcaption>Erase")
     ]
-    assert (
-        "id 119 on UART; id 241 on I²C, CAN" in download
-        and "2 bytes of counter, 20 bytes of the file" in download
-    )
-    assert 'href="../common/file_download_buffer_with_file_contents.html"' in download
+    for part in (
+        "for each block",
+        "every 50 ms, for 10000 ms at most",
+        "until Ready = 1",
+        "while packets are missing; if block.is_empty = 0",
+        "under id 119 on UART; requested one by one on I²C, CAN",
+        "Blocks of up to 20480 bytes, in packets of 20",
+        'href="../common/file_download_buffer_with_file_contents.html"',
+    ):
+        assert part in download
 
 
 WIDE = {  # CRC-16/IBM-3740 and CRC-32/ISO-HDLC, as the catalogues have them

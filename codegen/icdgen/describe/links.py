@@ -340,11 +340,11 @@ class LinkDescription:
 
     @cached_property
     def in_procedures(self) -> list[Message]:
-        """Messages of the procedures for files and programs."""
-        facts = self.facts
-        steps = list(facts.files.steps.values()) if facts.files else []
-        for operation in filter(None, (facts.program_copy, facts.program_information)):
-            steps += [operation.request, operation.progress]
-        return [step.message for step in steps] + list(
-            facts.hole_map.messages if facts.hole_map else ()
+        """Messages of the procedures, each once."""
+        return list(
+            {
+                message.name: message
+                for procedure in self.facts.procedures
+                for message in procedure.messages
+            }.values()
         )

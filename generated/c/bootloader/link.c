@@ -164,7 +164,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {234u, 0u, 1u}, /* SD card format/erase progress */
 #endif
         {240u, 0u, 4u}, /* Telecommand Acknowledge */
-#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || !defined(ICDGEN_NO_FILES)
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
 #endif
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_DOWNLOAD_BLOCK_READY) || !defined(ICDGEN_NO_FILES)

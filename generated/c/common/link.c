@@ -138,7 +138,7 @@ ICDGEN_API const icd_link_t *common_link(void)
         {234u, 0u, 1u}, /* SD card format/erase progress */
 #endif
         {240u, 0u, 4u}, /* Telecommand Acknowledge */
-#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || !defined(ICDGEN_NO_FILES)
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
 #endif
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_DOWNLOAD_BLOCK_READY) || !defined(ICDGEN_NO_FILES)

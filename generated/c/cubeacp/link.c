@@ -562,7 +562,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {238u, 0u, 6u}, /* Inertial Pointing Reference Vector */
 #endif
         {240u, 0u, 4u}, /* Telecommand Acknowledge */
-#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS) || !defined(ICDGEN_NO_FILES)
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
 #endif
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY) || !defined(ICDGEN_NO_FILES)

@@ -4,19 +4,29 @@ them.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sized
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from icdgen.backends.html import responses
 from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.texts import BUSES, capitalized, clip
-from icdgen.icd.model import Node
+from icdgen.icd.model import Message, Node
 from icdgen.icd.responses import ACK, BUSY, NAK, PROGRESS
-from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Download, Step
-from icdgen.wording import count
+from icdgen.protocol.procedures import (
+    Get,
+    GetMap,
+    NextBlock,
+    NextPacket,
+    NextRound,
+    Poll,
+    Procedure,
+    Receive,
+    Send,
+    SendMap,
+    SkipUnless,
+    Test,
+)
 
 TOP, ROW = 40, 46
 _TEXT, _NOTE = 50, 62  # characters that fit between the lifelines
@@ -182,85 +192,108 @@ def _on_can(
 
 def procedures(relations: Relations, node: Node, node_facts: Facts) -> list[Sequence]:
     """Return the steps of each procedure of the ICD, in order."""
-    sequences = []
-    for name, procedure in (
-        node_facts.files.procedures if node_facts.files else {}
-    ).items():
-        arrows = [
-            *_steps(relations, procedure),
-            *(
-                _packets(relations, node_facts)
-                if isinstance(procedure, Download)
-                else []
-            ),
-        ]
-        sequences.append(
-            Sequence(f"File {name}", node.title, arrows, _limits(procedure))
+    return [
+        Sequence(
+            capitalized(procedure.name.replace("_", " ")),
+            node.title,
+            list(_steps(relations, node_facts, procedure)),
+            list(_limits(procedure)),
         )
-    for title, operation in (
-        ("Program copy", node_facts.program_copy),
-        ("Program information", node_facts.program_information),
-    ):
-        if operation is not None:
-            sequences.append(
-                Sequence(
-                    title,
-                    node.title,
-                    list(_steps(relations, operation)),
-                    _limits(operation),
-                )
-            )
-    return sequences
+        for procedure in node_facts.procedures
+    ]
 
 
-def _steps(relations: Relations, procedure: object) -> Iterator[Arrow]:
-    for fact in facts_of(procedure):
-        step = getattr(procedure, fact.name)
-        # Optional steps that the ICD does not describe are skipped.
-        if fact.kind is not Kind.STEP or not isinstance(step, Step):
-            continue
-        name, url = step.message.name, relations.links.message(step.message)
-        # Telemetry takes two arrows: the request and the reply.
-        is_asked = fact.direction == "telemetry"
-        yield Arrow(True, f"request for {name}" if is_asked else name, fact.about, url)
-        if is_asked:
-            yield Arrow(False, name, ", ".join(step.fields.values()), url)
+def _steps(
+    relations: Relations, node_facts: Facts, procedure: Procedure
+) -> Iterator[Arrow]:
+    """Yield the arrows of the steps. The first arrow of a loop says what it repeats."""
+    when: list[str] = []
+    blocks = procedure.blocks
+    for step in procedure.steps:
+        arrows: list[Arrow] = []
+        match step:
+            case NextBlock():
+                when.append("for each block")
+            case NextRound():
+                when.append("while packets are missing")
+            case NextPacket():
+                when.append("for each missing packet")
+            case SkipUnless():
+                when.append(f"if {_test(procedure, step.test)}")
+            case Send():
+                arrows = [_arrow(relations, True, step.message)]
+            case Get() | Poll():
+                asked = f"request for {step.message.name}"
+                note = until = ""
+                if isinstance(step, Poll):
+                    note = f"every {step.interval} ms, for {step.timeout} ms at most"
+                    tests = (_test(procedure, test) for test in step.until)
+                    until = f"until {', '.join(tests)}"
+                arrows = [
+                    _arrow(relations, True, step.message, asked, note),
+                    _arrow(relations, False, step.message, note=until),
+                ]
+            case Receive():
+                note = f"until all are there, or none is new for {step.silence} ms"
+                arrows = [
+                    _arrow(
+                        relations, False, step.message, note=_ways(node_facts, step)
+                    ),
+                    Arrow(False, "… one packet after another", note),
+                ]
+            case SendMap() if blocks and blocks.map:
+                first = blocks.map.messages[0]
+                about = "the map of received packets"
+                arrows = [_arrow(relations, True, first, about)]
+            case GetMap() if blocks and blocks.map:
+                first = blocks.map.messages[0]
+                about = "request for the map of received packets"
+                arrows = [
+                    _arrow(relations, True, first, about),
+                    _arrow(relations, False, first, "the map"),
+                ]
+        if arrows and when:
+            note = "; ".join([*when, arrows[0].note] if arrows[0].note else when)
+            arrows[0], when = replace(arrows[0], note=note), []
+        yield from arrows
 
 
-def _packets(relations: Relations, node_facts: Facts) -> Iterator[Arrow]:
-    """Yield the packets of a download, whose ids can differ between buses."""
-    files = node_facts.files
-    assert files is not None
-    # Buses with equal ids share an arrow.
-    buses: dict[int, list[str]] = defaultdict(list)
-    for bus, id in files.packet_ids.items():
-        buses[id].append(BUSES[bus])
-    ids_by_bus = "; ".join(
-        f"id {id} on {', '.join(names)}" for id, names in buses.items()
-    )
-    message = next(
-        (node_facts.telemetry[id] for id in buses if id in node_facts.telemetry), None
-    )
-    url = relations.links.message(message) if message else ""
-    counter = (
-        f"{count(files.counter_bytes, 'byte')} of counter, "
-        if files.counter_bytes
-        else ""
-    )
-    yield Arrow(
-        False, message.name if message else "packets of the file", ids_by_bus, url
-    )
-    note = f"{counter}{count(files.packet_bytes, 'byte')} of the file each"
-    yield Arrow(False, "… one packet after another", note, url)
+def _ways(node_facts: Facts, step: Receive) -> str:
+    """Return how packets come: under the id of another message, or on request."""
+    ways = [
+        f"under id {head} on {BUSES['uart']}"
+        for head, id in node_facts.unsolicited.items()
+        if id == step.message.telemetry_id
+    ]
+    if step.requested_on:
+        buses = (BUSES[bus] for bus in step.requested_on)
+        ways.append(f"requested one by one on {', '.join(buses)}")
+    return "; ".join(ways)
 
 
-def _limits(procedure: object) -> list[str]:
-    """Return times and counts of a procedure as text."""
-    limits = []
-    for fact in facts_of(procedure):
-        value = getattr(procedure, fact.name)
-        if fact.kind is Kind.TIME:
-            limits.append(f"{fact.about}: {value} ms")
-        elif fact.kind is Kind.NUMBER and value is not None:
-            limits.append(f"{fact.about}: {value}")
-    return list(map(capitalized, limits))
+def _arrow(
+    relations: Relations, out: bool, message: Message, text: str = "", note: str = ""
+) -> Arrow:
+    """Return an arrow that links to a message, with its name or another text."""
+    return Arrow(out, text or message.name, note, relations.links.message(message))
+
+
+def _test(procedure: Procedure, test: Test) -> str:
+    """Return a test as text, such as ``Busy = 0``."""
+    value = test.value
+    names = procedure.register_names
+    wanted = names[value.number] if value.in_register else value.number
+    return f"{names[test.register]} = {wanted}"
+
+
+def _limits(procedure: Procedure) -> Iterator[str]:
+    """Yield the limits of a procedure as text."""
+    if procedure.blocks:
+        blocks = procedure.blocks
+        yield f"Blocks of up to {blocks.size} bytes, in packets of {blocks.packet_bytes}"
+        yield f"Rounds of a block: {blocks.rounds}"
+        yield f"Bytes in all: {blocks.most}"
+    if procedure.most_entries:
+        yield f"Entries: {procedure.most_entries}"
+    yield f"Longest duration: {procedure.time // 1000} s"
+    yield f"Requests: {procedure.requests}"
