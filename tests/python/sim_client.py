@@ -14,14 +14,11 @@ from typing import TYPE_CHECKING
 
 from icdgen_messages import bootloader, cubeacp
 from icdgen_messages.wire import (
-    Download,
     FailedError,
-    ProgramCopy,
-    ProgramInformation,
+    Procedure,
     RefusedError,
     ReplyTimeoutError,
     Session,
-    Upload,
     crc16,
     identify,
 )
@@ -61,9 +58,8 @@ def main(host: str, number: str, size: str) -> int:
                 device.get(message)
             every_setting(device)
             insist(device, LOGS())  # none during the transfers
-            data = transfer(
-                device, lambda: Download(LINK, "uart", 2, 1, int(size))
-            ).data
+            file = {"type": 2, "counter": 1, "size": int(size)}
+            data = transfer(device, lambda: Procedure(LINK, "download", file)).data
             every_telecommand(device)
             started(device, Session(BOOT, port.sendall, read, settings=FAST), data)
         except (Failed, FailedError, RefusedError, ReplyTimeoutError) as failure:
@@ -77,13 +73,16 @@ def started(device: Session, boot: Session, data: bytes) -> None:
 
     The boot program runs.
     """
-    data = data[: BOOT.files.upload.destination_bytes]
-    transfer(boot, lambda: Upload(BOOT, DESTINATION, data))
-    transfer(boot, lambda: ProgramCopy(BOOT, DESTINATION))
-    told = transfer(boot, lambda: ProgramInformation(BOOT, RUNNING))
-    if (told.size, told.checksum) != (len(data), crc16(BOOT, data)):
+    data = data[: BOOT.procedures["upload"].blocks.most]
+    to, program = {"destination": DESTINATION}, {"program": DESTINATION}
+    transfer(boot, lambda: Procedure(BOOT, "upload", to, data))
+    transfer(boot, lambda: Procedure(BOOT, "program_copy", program))
+    running = {"program": RUNNING}
+    told = transfer(boot, lambda: Procedure(BOOT, "program_information", running))
+    size, checksum = told.output("size"), told.output("checksum")
+    if (size, checksum) != (len(data), crc16(BOOT, data)):
         raise Failed(
-            f"the program that can run has {told.size} bytes and the checksum {told.checksum:#x}"
+            f"the program that can run has {size} bytes and the checksum {checksum:#x}"
         )
     boot.send(bootloader.RunSelectedProgram())
     if not identity(device).matches:

@@ -10,6 +10,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from icdgen.protocol import facts
+from icdgen.protocol.procedures import Send
 from tests import documents
 from tests.conftest import ROOT
 from tests.python import packages
@@ -71,14 +73,13 @@ def test_every_setting_reads_back_what_was_set(shipped):
 
 def test_every_telecommand_has_an_outcome(shipped, wire):
     acp, icd = shipped.module("cubeacp"), packages.shipped()
-    steps = icd.protocol_of(icd.node("cubeacp"))["file_transfer"][
-        "upload"
-    ]  # which the ICD gives to another program
-    uploads = {
-        step["message"]
-        for step in steps.values()
-        if isinstance(step, dict) and "message" in step
-    }
+    # Only another program has the upload.
+    (upload,) = (
+        p
+        for p in facts.of(icd, icd.node("bootloader")).procedures
+        if p.name == "upload"
+    )
+    uploads = {step.message.name for step in upload.steps if isinstance(step, Send)}
     talking, _ = session(shipped)
     for _, message in acp.TELECOMMANDS.items():
         if message.NAME not in RESETS:
@@ -139,10 +140,11 @@ def test_a_file_arrives_byte_for_byte(shipped, wire, file, loss):
         faults=[f"drop={loss}%@packet"] * bool(loss),
         seed=loss,
     )
-    (entry,) = talking.run(wire.FileList(shipped.module("cubeacp").LINK)).entries
-    assert (entry.type, entry.counter, entry.size) == (2, 5, 61_441)
+    acp = shipped.module("cubeacp")
+    (entry,) = talking.run(acp.procedures.List()).entries
+    assert (entry.file_type, entry.file_ctr, entry.file_size) == (2, 5, 61_441)
     shown = []
-    download = wire.Download(shipped.module("cubeacp").LINK, "uart", 2, 5, entry.size)
+    download = acp.procedures.Download(type=2, counter=5, size=entry.file_size)
     talking.run(download, lambda *now: shown.append(now))
     assert download.data == file.read_bytes()
     assert [one for one, _ in shown] == [0, 20480, 40960, 61440, 61441]
@@ -163,7 +165,7 @@ def test_a_program_arrives_byte_for_byte(shipped, wire, file, tmp_path, loss):
         seed=loss,
         boot=10**9,
     )
-    upload = wire.Upload(shipped.module("bootloader").LINK, 3, file.read_bytes())
+    upload = shipped.module("bootloader").procedures.Upload(3, file.read_bytes())
     talking.run(upload)
     assert upload.progress == (61_441, 61_441)
     (program,) = tmp_path.glob("3.bin")
@@ -173,7 +175,7 @@ def test_a_program_arrives_byte_for_byte(shipped, wire, file, tmp_path, loss):
 def test_a_node_that_loses_every_packet_is_given_up(shipped, wire, file):
     talking, _ = session(shipped, files=[f"2:5={file}"], faults=["drop=100%@packet"])
     with pytest.raises(wire.FailedError, match="rounds"):
-        talking.run(wire.Download(shipped.module("cubeacp").LINK, "uart", 2, 5, 100))
+        talking.run(shipped.module("cubeacp").procedures.Download(2, 5, 100))
 
 
 def refusing(shipped, name: str, times: int, code: int = 0x55):
@@ -200,7 +202,7 @@ def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(
     shipped, wire, times
 ):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", times)
-    talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
+    talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
     assert [(event.code, event.reason) for event in heard] == [(0x55, None)] * times
     assert port.acknowledged == times + 1
 
@@ -210,7 +212,7 @@ def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_wit
 ):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", 100)
     with pytest.raises(wire.FailedError, match="timeout") as caught:
-        talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
+        talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
     assert caught.value.result == "timeout" and {event.code for event in heard} == {
         0x55
     }
@@ -224,7 +226,7 @@ def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_wit
 def test_a_refusal_that_the_icd_knows_is_not_asked_again(shipped, wire):
     talking, heard, port = refusing(shipped, "InitiateFileUpload", 1, code=2)
     with pytest.raises(wire.FailedError) as caught:
-        talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
+        talking.run(shipped.module("bootloader").procedures.Upload(3, bytes(100)))
     assert (
         caught.value.event.code,
         caught.value.event.reason,

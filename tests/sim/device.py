@@ -103,13 +103,15 @@ def session(*options: str, node: str = "cubeacp", **more: Any) -> Iterator[Talki
 
 def hasty(link: Any) -> Any:
     """The link with short waits, for a device that is never slow."""
-    names = ("list", "download", "upload", "erase", "format")
-    procedures = {name: getattr(link.files, name) for name in names}
-    operations = {
-        name: getattr(link, name) for name in ("program_copy", "program_information")
-    }
-    for forms in (procedures, operations):
-        for name, form in forms.items():
-            forms[name] = form and form._replace(poll_interval=5)
-    procedures["download"] = procedures["download"]._replace(silence=60)
-    return link._replace(files=link.files._replace(**procedures), **operations)
+    return link._replace(
+        procedures={
+            name: form._replace(steps=tuple(map(_hasty_step, form.steps)))
+            for name, form in link.procedures.items()
+        }
+    )
+
+
+def _hasty_step(step: Any) -> Any:
+    if hasattr(step, "interval"):
+        return step._replace(interval=5)
+    return step._replace(silence=60) if hasattr(step, "silence") else step

@@ -17,6 +17,9 @@ from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION
+from icdgen.procedures.run import steps_of
+from icdgen.protocol import facts
+from icdgen.protocol.procedures import Send
 from icdgen.sim.run import Options, build
 from icdgen.sim.serve import Server
 from icdgen.sim.values import allowed_values
@@ -69,13 +72,17 @@ def refusable(client) -> set[str]:
     """Telecommands that may be refused: for what the device holds just now, for a
     destination, or by the node.
     """
-    upload = ICD.protocol_of(client.node)["file_transfer"]["upload"]
-    found = {
-        upload[step]["message"] for step in ("initiate", "begin", "packet", "finalize")
+    boot = facts.of(ICD, ICD.node("bootloader"))
+    burst = client.known.telecommands[next(iter(client.known.unsolicited))]
+    return {
+        burst.name,
+        *(
+            step.message.name
+            for procedure in boot.procedures
+            if procedure.name in ("upload", "program_copy")
+            for step in steps_of(procedure, Send)
+        ),
     }
-    if client.known.program_copy:
-        found.add(client.known.program_copy.request.message.name)
-    return {client.known.files.steps["download.burst"].message.name, *found}
 
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():

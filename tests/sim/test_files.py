@@ -12,15 +12,28 @@ from random import Random
 import pytest
 from icdgen_runtime.wire.failures import FailedError
 from icdgen_runtime.wire.files import read_index
-from icdgen_runtime.wire.transfer import Download, Erase, FileList, Format, Upload
+from icdgen_runtime.wire.procedures import Procedure
 
+from icdgen import codec
 from tests.sim.device import session
 
 LOSSES = ["0", "1%", "10%", "30%"]
+NAMES = ("File Ctr", "File Size", "File CRC16 Checksum", "File Date and Time")
+
+
+def ran(client, name, data=b"", **inputs) -> Procedure:
+    return client.run(Procedure(client.link, name, inputs, data))
 
 
 def downloaded(client, type, counter, size) -> bytes:
-    return client.run(Download(client.link, "uart", type, counter, size)).data
+    return ran(client, "download", type=type, counter=counter, size=size).data
+
+
+def listed(client) -> list[dict[str, int]]:
+    """The files of the list: the fields of its entries."""
+    message = client.known.telemetry[client.link.procedures["list"].entry]
+    frames = ran(client, "list").frames
+    return [codec.decode(client.node, message, frame) for frame in frames]
 
 
 @pytest.mark.parametrize("way", [("--tcp", "0"), ("--pty",)], ids=lambda way: way[0])
@@ -41,7 +54,8 @@ def test_a_file_is_downloaded_and_a_program_uploaded(tmp_path, loss, way):
     )
     with session(*way, *options, "--seed", "5", node="bootloader") as client:
         assert downloaded(client, 2, 7, len(stored)) == stored
-        assert client.run(Upload(client.link, 3, image)).sent == len(image)
+        upload = ran(client, "upload", image, destination=3)
+        assert upload.progress == (len(image), len(image))
     assert (tmp_path / "up" / "3.bin").read_bytes() == image
 
 
@@ -68,7 +82,7 @@ def test_files_survive_what_happens_to_acknowledges_and_packets(tmp_path, faults
         node="bootloader",
     ) as client:
         assert downloaded(client, 2, 7, len(stored)) == stored
-        client.run(Upload(client.link, 4, stored))
+        ran(client, "upload", stored, destination=4)
     assert (tmp_path / "4.bin").read_bytes() == stored
 
 
@@ -78,22 +92,32 @@ def test_the_list_and_the_index_hold_every_file_until_they_are_erased(tmp_path):
         (tmp_path / str(number)).write_bytes(bytes([number]) * (100 + number))
         options += ["--file", f"2:{number}={tmp_path / str(number)}"]
     with session(*options, "--fault", "drop=10%@acknowledge") as client:
-        listed = client.run(FileList(client.link)).entries
-        assert [(e.counter, e.size) for e in listed] == [(n, 100 + n) for n in range(5)]
-        data = downloaded(client, client.link.index_file.file_type, 0, None)
-        entries, truncated = read_index(client.link, data)
-        assert truncated == 0
-        assert [(e.counter, e.size, e.checksum) for e in entries] == [
-            (e.counter, e.size, e.checksum) for e in listed
+        entries = listed(client)
+        assert [(e["File Ctr"], e["File Size"]) for e in entries] == [
+            (n, 100 + n) for n in range(5)
         ]
-        client.run(Erase(client.link, 2, 3))
-        left = client.run(FileList(client.link)).entries
-        assert [e.counter for e in left] == [0, 1, 2, 4]
-        client.run(Format(client.link))
-        assert client.run(FileList(client.link)).entries == []
+        assert all(e["File Date and Time"] for e in entries)
+        data = downloaded(client, client.link.index_file.file_type, 0, None)
+        index, truncated = read_index(client.link, data)
+        assert truncated == 0
+        assert [(e.counter, e.size, e.checksum, e.time) for e in index] == [
+            tuple(entry[name] for name in NAMES) for entry in entries
+        ]
+        ran(client, "erase", type=2, counter=3, all=0)
+        assert [e["File Ctr"] for e in listed(client)] == [0, 1, 2, 4]
+        ran(client, "erase", type=0, counter=0, all=1)
+        assert listed(client) == []
+
+
+def test_a_formatted_device_has_no_files(tmp_path):
+    (tmp_path / "file").write_bytes(b"content")
+    with session("--file", f"2:1={tmp_path / 'file'}") as client:
+        assert len(listed(client)) == 1
+        ran(client, "format")
+        assert listed(client) == []
 
 
 def test_a_file_that_is_not_there_cannot_be_loaded():
     with session() as client, pytest.raises(FailedError) as caught:
         downloaded(client, 2, 99, 100)
-    assert caught.value.result == "parameter"
+    assert caught.value.result == "failed"

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen.procedures.run import steps_of
 from icdgen.protocol import facts
+from icdgen.protocol.procedures import Poll, Send
 from icdgen.sim.computer import Computer
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
@@ -13,17 +15,19 @@ from tests.sim.device import ICD
 
 BOOT = facts.of(ICD, ICD.node("bootloader"))
 REASONS = BOOT.errors
+PROCEDURES = {procedure.name: procedure for procedure in BOOT.procedures}
 INITIATE, BEGIN, PACKET, FINALIZE = (
-    BOOT.files.steps[f"upload.{step}"].message.telecommand_id
-    for step in ("initiate", "begin", "packet", "finalize")
+    step.message.telecommand_id for step in steps_of(PROCEDURES["upload"], Send)
 )
-COPY, COPIED = (
-    step.message.ids[0]
-    for step in (BOOT.program_copy.request, BOOT.program_copy.progress)
+_, FINALIZED = (
+    step.message.telemetry_id for step in steps_of(PROCEDURES["upload"], Poll)
 )
-READ, INFORMATION = (
-    step.message.ids[0]
-    for step in (BOOT.program_information.request, BOOT.program_information.progress)
+(COPY, COPIED), (READ, INFORMATION) = (
+    (
+        steps_of(PROCEDURES[name], Send)[0].message.telecommand_id,
+        steps_of(PROCEDURES[name], Poll)[0].message.telemetry_id,
+    )
+    for name in ("program_copy", "program_information")
 )
 
 
@@ -70,11 +74,10 @@ def test_a_program_that_cannot_be_copied_and_a_destination_that_is_not_supported
 
 def test_a_block_beyond_the_end_of_the_destination_is_not_committed(device):
     uploaded(device, 3, b"x")
-    finalized = BOOT.files.steps["upload.finalized"].message.telemetry_id
     assert code(device, 0, FINALIZE, 3, 0xFF, 0xFF, 7, 0, 1, 0) == 0  # the last byte
-    assert device.frame(20, finalized) == b"\x00"
+    assert device.frame(20, FINALIZED) == b"\x00"
     assert code(device, 30, FINALIZE, 3, 0, 0, 8, 0, 1, 0) == 0
-    assert device.frame(50, finalized) == b"\x02"
+    assert device.frame(50, FINALIZED) == b"\x02"
 
 
 def test_a_program_that_takes_no_uploads_refuses_their_telecommands():

@@ -90,15 +90,16 @@ class RecordedDevice:
         is_packet = self.counterpart.is_packet(message)
         loss = self.packet_loss if is_packet else self.loss
         packets: Iterable[Packet] = ()
-        is_received = not self._is_lost(loss)
-        if is_received:
+        is_lost = self._is_lost(loss)
+        # Either the telecommand or its acknowledge is lost.
+        if not is_lost or (message.acknowledge and self._is_lost(0.5)):
             try:
                 self.counterpart.telecommand(now, message, request.data)
             except Refused:
                 outcome = REFUSED
             packets = self.counterpart.packets(self.bus)
         # A telecommand without acknowledge always succeeds, even if it is lost.
-        if message.acknowledge and (not is_received or self._is_lost(loss)):
+        if is_lost and message.acknowledge:
             outcome = TIMEOUT
         arrived = [each for each in packets if not self._is_lost(self.packet_loss)]
         return [Report(event) for event in (*map(arrival, arrived), outcome)]
