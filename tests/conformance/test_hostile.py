@@ -43,7 +43,7 @@ def conversations(icd) -> list[tuple[str, dict, dict]]:
         kinds |= {f"random {seed}": at_random(seed) for seed in range(RANDOM_DEVICES)}
         for name, kind in kinds.items():
             script = converse(link, row, kind).script
-            request = {"op": "file", "node": "board", **row, "script": script}
+            request = {"op": "procedure", "node": "board", **row, "script": script}
             answer = reference.answer(icd, request)
             recorded.append((f"{row} {name}", request, answer))
     return recorded
@@ -64,11 +64,11 @@ def different(icd, recorded: list[tuple[str, dict, dict]], name: str) -> list:
 def test_the_conversations_end_in_every_way(conversations):
     ends = {answer["steps"][-1]["result"] for _, _, answer in conversations}
     assert ends == {
-        "done", "refused", "timeout", "parameter", "length", "limit", "rounds", "checksum", "error",
+        "done", "refused", "busy", "timeout", "failed", "length", "limit", "rounds", "checksum",
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["python", "c-sanitizers", "rust-debug"])
+@pytest.mark.parametrize("name", ["python"])
 def test_a_hostile_device_is_given_up_at_the_same_step(icd, conversations, name):
     assert different(icd, conversations, name) == []
 
@@ -99,13 +99,13 @@ def test_a_client_does_the_same_with_a_hostile_device(icd, clients, name):
     assert different(icd, clients, name) == []
 
 
-@pytest.mark.parametrize("name", ["python", "c-sanitizers", "rust-debug"])
+@pytest.mark.parametrize("name", ["python"])
 def test_a_download_above_the_limit_of_the_icd_is_refused(icd, name):
     testee = Testee(build(all_languages()[name], icd))
-    row = {"op": "file", "node": "board", "do": "download", "bus": "uart"}
-    request = {**row, "type": 2, "counter": 1, "script": []}
+    request = {"op": "procedure", "node": "board", "name": "download", "script": []}
+    inputs = [{"type": 2, "counter": 1, "size": size} for size in (800, 801)]
     answers = testee.ask(
-        [json.dumps({**request, "size": size}).encode() for size in (1000, 1001)]
+        [json.dumps({**request, "inputs": each}).encode() for each in inputs]
     )
     told = [json.loads(answer or b"{}") for answer in answers]
     assert told[0]["ok"] and told[1] == {"ok": False, "error": "range"}, told

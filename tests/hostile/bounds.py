@@ -5,12 +5,23 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from icdgen_runtime.wire.file_procedures import RoleProcedure as Procedure
-from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.programs import ProgramOperation
-from icdgen_runtime.wire.transfer import Download, Erase, FileList, Format, Upload
+from icdgen_runtime.wire.procedure_forms import (
+    BLOCK_OFFSET,
+    Get,
+    GetMap,
+    Jump,
+    NextBlock,
+    NextPacket,
+    NextRound,
+    Poll,
+    ProcedureStep,
+    Receive,
+    Send,
+    SendMap,
+)
+from icdgen_runtime.wire.procedures import Procedure
 
 
 class Bound(NamedTuple):
@@ -37,58 +48,75 @@ def poll(timeout: int, interval: int) -> Bound:
 
 
 def most_of(procedure: Procedure) -> Bound:
-    """Return the bound of a procedure.
+    """Return the bound of a procedure: of each step as often as it can be reached, and
+    the limit of requests.
 
     Each request can be damaged as often as it can be repeated.
     """
-    most = _most_of(procedure, procedure.link)
-    return most._replace(requests=most.requests * (1 + procedure.link.settings.retries))
+    form, retries = procedure.form, procedure.link.settings.retries
+    most = Bound(0, 0, _stored(procedure))
+    for index, step in enumerate(form.steps):
+        most += _bound_of(procedure, step) * _times(procedure, index)
+    requests = min(most.requests * (1 + retries), form.requests)
+    return most._replace(requests=requests)
 
 
-def _most_of(procedure: Procedure, link: Link[Any]) -> Bound:
-    files = link.files
-    assert files
-    if isinstance(procedure, FileList):
-        listing = files.list
-        assert listing
-        # Each file, its repetitions because the advance was lost, and the end.
-        frames = listing.max_entries * (1 + link.settings.retries) + 1
-        each = poll(listing.timeout, listing.poll_interval) + Bound(1)
-        return Bound(1, 0, listing.max_entries) + each * frames
-    if isinstance(procedure, Download):
-        return _download(procedure, link)
-    if isinstance(procedure, Upload):
-        return _upload(procedure, link)
-    if isinstance(procedure, (Erase, Format)):
-        form = files.erase if isinstance(procedure, Erase) else files.format
-        assert form
-        return Bound(1) + poll(form.timeout, form.poll_interval)
-    assert isinstance(procedure, ProgramOperation)
-    operation = procedure._form
-    return Bound(1) + poll(operation.timeout, operation.poll_interval)
+def _stored(procedure: Procedure) -> int:
+    """Return the most bytes or entries that a procedure stores."""
+    blocks, total = procedure.form.blocks, procedure.progress[1]
+    if blocks is None or blocks.sends:
+        return procedure.form.most_entries
+    return blocks.most if total is None else total
 
 
-def _download(procedure: Download, link: Link[Any]) -> Bound:
-    files, size = link.files, procedure.size
-    assert files and files.download and link.hole_map
-    form, block = files.download, procedure._block_bytes
-    packets = files.packets_of(block)
-    load = Bound(1) + poll(form.ready_timeout, form.poll_interval)
-    # Each new packet prolongs a round.
-    one_round = Bound(
-        len(link.hole_map.telecommands) + 1 + packets, (packets + 1) * form.silence
-    )
-    each = load * (form.rounds + 1) + one_round * form.rounds
-    most = form.max_bytes if size is None else size
-    return each * (most // block + 1) + Bound(0, 0, most)
+def _bound_of(procedure: Procedure, step: ProcedureStep) -> Bound:
+    """Return the bound of a step that is reached once."""
+    packets = _packets(procedure)
+    if isinstance(step, (Send, Get)):
+        return Bound(1)
+    if isinstance(step, Poll):
+        return poll(step.timeout, step.interval)
+    if isinstance(step, (SendMap, GetMap)):
+        blocks = procedure.form.blocks
+        assert blocks and blocks.map
+        return Bound(-(-packets // (8 * blocks.map.bytes)))
+    if isinstance(step, Receive):
+        # Each new packet prolongs a round.
+        return Bound(packets, (packets + 1) * step.silence)
+    return Bound(0)
 
 
-def _upload(procedure: Upload, link: Link[Any]) -> Bound:
-    files = link.files
-    assert files and files.upload and link.hole_map
-    form, block = files.upload, procedure._block_bytes
-    requests = 3 + files.packets_of(block) + len(link.hole_map.telemetry)
-    each = Bound(requests) + poll(form.finalize_timeout, form.poll_interval)
-    blocks = -(-len(procedure._data) // block)
-    start = Bound(1) + poll(form.erase_timeout, form.poll_interval)
-    return start + each * (form.rounds * blocks)
+def _packets(procedure: Procedure) -> int:
+    """Return the most packets of a block."""
+    blocks = procedure.form.blocks
+    return -(-procedure.block_bytes // blocks.packet_bytes) if blocks else 0
+
+
+def _times(procedure: Procedure, index: int) -> int:
+    """Return how often a step can be reached: the product of its loops."""
+    form, times, rounds = procedure.form, 1, 0
+    for end, jump in enumerate(form.steps):
+        if not isinstance(jump, Jump) or not jump.to <= index <= end:
+            continue
+        first = form.steps[jump.to]
+        if isinstance(first, NextPacket):
+            times *= _packets(procedure)
+        elif isinstance(first, NextRound):
+            rounds = 1
+        elif isinstance(first, NextBlock):
+            assert form.blocks
+            most, total = form.blocks.most, procedure.progress[1]
+            most = most if total is None else total
+            times *= most // procedure.block_bytes + 1
+            # The block is transferred once, and again after each round.
+            times *= form.blocks.rounds + 1 - rounds
+        else:
+            # Each entry, its repetitions because the advance was lost, and the end.
+            repetitions = 1 + procedure.link.settings.retries
+            times *= form.most_entries * repetitions + 1
+    return times
+
+
+def begin_at(procedure: Procedure, offset: int) -> None:
+    """Let the first block of a procedure begin at this offset."""
+    procedure._registers[BLOCK_OFFSET] = offset

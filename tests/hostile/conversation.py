@@ -7,32 +7,30 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 from icdgen_runtime.wire.client import Request
-from icdgen_runtime.wire.events import Done, Event, Packet, Refused, Timeout
+from icdgen_runtime.wire.events import Arrived, Done, Event, Refused, Timeout
 from icdgen_runtime.wire.failures import FailedError
-from icdgen_runtime.wire.file_procedures import RoleProcedure as Procedure
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.procedures import Procedure
 from icdgen_runtime.wire.session import Session
-from icdgen_runtime.wire.transfer import Download, FileList
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from icdgen.runtime_objects.file_procedures import procedure_of
+from icdgen.runtime_objects.procedures import procedure_of, row_of
 from tests.hostile.bounds import most_of
 from tests.hostile.devices import Device, Kind
 
 Row = dict[str, Any]
 IDLE = 60  # ms between events of a device while the line is idle
 
+FILE = {"type": 2, "counter": 1}
 PROCEDURES: tuple[Row, ...] = (
-    {"do": "list"},
-    {"do": "download", "bus": "uart", "type": 2, "counter": 1},
-    {"do": "download", "bus": "uart", "type": 2, "counter": 1, "size": 130},
-    {"do": "download", "bus": "i2c", "type": 2, "counter": 1, "block": 20},
-    {"do": "download", "bus": "can", "type": 2, "counter": 1, "size": 130},
-    {"do": "upload", "destination": 1, "bytes": bytes(range(90)).hex()},
-    {"do": "erase", "type": 2, "counter": 1, "all": True},
-    {"do": "format"},
-    {"do": "program_copy", "program": 1},
-    {"do": "program_information", "program": 1},
+    {"name": "list"},
+    {"name": "download", "inputs": FILE},
+    {"name": "download", "inputs": {**FILE, "size": 130}},
+    {"name": "download", "bus": "i2c", "inputs": FILE, "block": 20},
+    {"name": "download", "bus": "can", "inputs": {**FILE, "size": 130}},
+    {"name": "upload", "inputs": {"store": 1}, "bytes": bytes(range(90)).hex()},
+    {"name": "erase", "inputs": {**FILE, "all": 1}},
+    {"name": "program_information", "inputs": {"program": 1}},
 )
 
 
@@ -50,16 +48,17 @@ class Conversation(NamedTuple):
 
     procedure: Procedure
     script: list[Row]
-    requests: int
+    request_times: list[int]
+
+    @property
+    def requests(self) -> int:
+        """Number of requests."""
+        return len(self.request_times)
 
 
 def stored(procedure: Procedure) -> int:
     """Return the number of bytes or entries that a procedure stores."""
-    if isinstance(procedure, FileList):
-        return len(procedure.entries)
-    if isinstance(procedure, Download):
-        return len(procedure.data)
-    return 0
+    return len(procedure.frames) + len(procedure.data)
 
 
 def converse(link: Link[Any], row: Row, kind: Kind, latency: int = 1) -> Conversation:
@@ -68,22 +67,23 @@ def converse(link: Link[Any], row: Row, kind: Kind, latency: int = 1) -> Convers
     Fail as soon as the procedure exceeds its bound.
     """
     procedure = procedure_of(link, row)
-    device = Device(link, row["do"], kind, row.get("bus", "uart"))
+    device = Device(link, row["name"], kind, row.get("bus", "uart"))
     most, longest = most_of(procedure), longest_request(link)
-    now, requests, waited = 0, 0, 0
+    now, waited = 0, 0
+    request_times: list[int] = []
     script: list[Row] = []
 
     def pass_on(event: Event | None) -> Request | None:
         if event is not None:
             procedure.event(now, event)
         asked = procedure.next(now)
-        script.append({"at": now, **({"event": _row(event)} if event else {})})
+        script.append({"at": now, **({"event": row_of(event)} if event else {})})
         return asked
 
     asked = pass_on(None)
     while procedure.result is None:
         if asked:
-            requests += 1
+            request_times.append(now)
             events, asked = device.answer(asked), None
             for event in events:
                 now += longest if isinstance(event, Timeout) else latency
@@ -97,22 +97,11 @@ def converse(link: Link[Any], row: Row, kind: Kind, latency: int = 1) -> Convers
             now = max(now, until)
             for event in events or [None]:
                 asked = pass_on(event) or asked
-        assert requests <= most.requests, "too many requests"
+        assert len(request_times) <= most.requests, "too many requests"
         assert waited <= most.waiting, "too long"
         assert stored(procedure) <= most.stored, "too much"
     assert procedure.next(now) is None and procedure.deadline is None
-    return Conversation(procedure, script, requests)
-
-
-def _row(event: Event) -> Row:
-    if isinstance(event, Packet):
-        return {"event": "packet", "number": event.number, "bytes": event.data.hex()}
-    if isinstance(event, Done):
-        return {"event": "done", "bytes": event.data.hex()}
-    if isinstance(event, Refused):
-        return {"event": "damaged" if event.may_be_damaged else "refused"}
-    assert isinstance(event, Timeout)
-    return {"event": "timeout"}
+    return Conversation(procedure, script, request_times)
 
 
 def _request_row(request: Request) -> Row:
@@ -159,12 +148,9 @@ class Line:
         link, form = self.link, self.link.acknowledge
         assert form
         for event in events:
-            if isinstance(event, Packet):
-                number = event.number.to_bytes(
-                    self.device.files.counter_bytes, link.order
-                )
-                id = self.device.files.packet_ids["uart"]
-                yield uart_encode(link, bytes((id,)) + number + event.data)
+            if isinstance(event, Arrived):
+                heads = {telemetry: id for id, telemetry in link.unsolicited.items()}
+                yield uart_encode(link, bytes((heads[event.id],)) + event.data)
             elif isinstance(event, Done) and event.id in link.frames:
                 yield uart_encode(link, bytes((event.id,)) + event.data)
             elif isinstance(event, (Done, Refused)):
@@ -191,7 +177,7 @@ def over_a_session(
     Fail as soon as the procedure exceeds its bound.
     """
     procedure = procedure_of(link, row)
-    line = Line(link, Device(link, row["do"], kind))
+    line = Line(link, Device(link, row["name"], kind))
     session = Session(link, line.write, line.read, clock=line.clock)
     script: list[Row] = []
     client, most = session.client, most_of(procedure)

@@ -8,27 +8,37 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from icdgen_runtime._errors import RangeError
-from icdgen_runtime.wire.transfer import Download
+from icdgen_runtime.wire.procedures import Procedure
 
 from icdgen.loading import load
 from icdgen.protocol import facts
 from icdgen.runtime_objects.links import link_of
 from tests.conftest import ROOT
+from tests.hostile.bounds import begin_at
 from tests.hostile.conversation import PROCEDURES, converse, over_a_session
 from tests.hostile.devices import KINDS, Device, at_random, honest
 from tests.hostile.requests import end_of_request
 
+FAR = (1 << 32) - 1
 BOARD = ROOT / "tests" / "protocol" / "keys" / "board.yaml"
 
 
 @pytest.fixture(scope="module")
 def board():
+    """A link whose procedures have no other limits than those of their steps."""
     icd = load([BOARD]).icd
-    return link_of(icd, facts.of(icd, icd.node("board")))
+    return limited(link_of(icd, facts.of(icd, icd.node("board"))), FAR, FAR)
+
+
+def limited(link, time: int, requests: int):
+    """Return a link with these limits of its procedures."""
+    forms = link.procedures.items()
+    changed = {n: form._replace(time=time, requests=requests) for n, form in forms}
+    return link._replace(procedures=changed)
 
 
 def about(row: dict) -> str:
-    return " ".join(str(row[key]) for key in ("do", "bus", "size") if key in row)
+    return " ".join(str(row[key]) for key in ("name", "bus", "inputs") if key in row)
 
 
 @pytest.mark.parametrize("row", PROCEDURES, ids=about)
@@ -54,6 +64,31 @@ def test_random_frames_end_each_procedure_within_its_limits(board, seed, row, la
     converse(board, row, at_random(seed), latency)
 
 
+@pytest.mark.parametrize("row", PROCEDURES, ids=about)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_no_procedure_sends_more_requests_than_the_limit_of_the_icd(board, row, kind):
+    free = converse(board, row, kind)
+    for most in (1, 5, free.requests - 1, free.requests):
+        limits = max(most, 1)
+        conversation = converse(limited(board, FAR, limits), row, kind)
+        assert conversation.requests == min(limits, free.requests)
+        is_ended = limits >= free.requests
+        result = free.procedure.result if is_ended else "limit"
+        assert conversation.procedure.result == result
+
+
+@pytest.mark.parametrize("row", PROCEDURES, ids=about)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_no_procedure_sends_a_request_after_the_time_of_the_icd(board, row, kind):
+    for time in (0, 50, 2000):
+        conversation = converse(limited(board, time, FAR), row, kind)
+        result, times = conversation.procedure.result, conversation.request_times
+        assert max(times) <= time
+        if conversation.script[-1]["at"] > time:
+            # An outcome can end it before the time is compared.
+            assert result in ("limit", "refused", "busy", "timeout", "failed")
+
+
 @given(st.integers(0, 1 << 32), st.sampled_from(["uart", "i2c", "can"]))
 @settings(max_examples=300)
 def test_a_request_ends_in_its_time_whatever_else_the_device_sends(board, seed, bus):
@@ -63,22 +98,24 @@ def test_a_request_ends_in_its_time_whatever_else_the_device_sends(board, seed, 
 
 @pytest.mark.parametrize("left", [0, 1, 100])
 def test_a_download_near_4_gib_ends_at_the_limit_of_the_icd(board, left):
-    files = board.files
-    form = files.download._replace(max_bytes=(1 << 32) - 2)
-    link = board._replace(files=files._replace(download=form))
-    download = Download(link, "uart", 2, 1)
-    download._offset = form.max_bytes - left
+    form = board.procedures["download"]
+    blocks = form.blocks._replace(most=(1 << 32) - 2)
+    form = form._replace(blocks=blocks)
+    link = board._replace(procedures={"download": form})
+    download = Procedure(link, "download", {"type": 2, "counter": 1})
+    begin_at(download, blocks.most - left)
     device, now = Device(link, "download", honest), 0
     while download.result is None:
         for event in device.answer(download.next(now)):
             now += 1
             download.event(now, event)
     assert download.result == "limit"
-    assert len(download.data) == left // files.block_bytes * files.block_bytes
+    assert len(download.data) == left // blocks.size * blocks.size
 
 
 def test_a_size_above_the_limit_of_the_icd_is_refused(board):
-    most = board.files.download.max_bytes
-    Download(board, "uart", 2, 1, most)
-    with pytest.raises(RangeError, match=f"0 to {most}"):
-        Download(board, "uart", 2, 1, most + 1)
+    inputs = {"type": 2, "counter": 1}
+    form = next(i for i in board.procedures["download"].inputs if i.name == "size")
+    Procedure(board, "download", {**inputs, "size": form.most})
+    with pytest.raises(RangeError, match=f"0 to {form.most}"):
+        Procedure(board, "download", {**inputs, "size": form.most + 1})

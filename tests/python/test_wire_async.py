@@ -103,7 +103,7 @@ def test_a_file_is_downloaded_while_the_loop_goes_on(wire, acp, place):
     async def talk():
         async with session(wire, acp, place) as device:
             counting = asyncio.create_task(count())
-            download = wire.Download(acp.LINK, "uart", 2, 5, 768)
+            download = acp.procedures.Download(type=2, counter=5, size=768)
             done = await device.run(download, lambda *progress: shown.append(progress))
             counting.cancel()
             return done.data

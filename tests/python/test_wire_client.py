@@ -114,15 +114,13 @@ def test_what_comes_unasked_is_told(shipped, wire):
     events = client.received(0, stream + b"\x1f\x7f\x80\x1f\x00")
     assert [type(event) for event in events] == [
         wire.Log,
-        wire.Packet,
+        wire.Arrived,
         wire.Stray,
         wire.LineError,
     ]
-    assert (events[0].log.frames, events[1].number, events[1].data) == (
-        (),
-        5,
-        bytes(range(20)),
-    )
+    assert events[0].log.frames == ()
+    arrived = events[1].of(acp.FileDownloadBufferWithFileContents)
+    assert (arrived.packet_counter, arrived.file_bytes) == (5, bytes(range(20)))
     assert events[3] == wire.LineError("protocol_error")
 
 

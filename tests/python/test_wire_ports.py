@@ -49,7 +49,7 @@ def test_a_session_goes_on_after_an_error_of_its_port(shipped, wire, fails, what
         "get": lambda: talking.get(acp.Identification),
         "send": lambda: talking.send(acp.ClearErrors()),
         "start": lambda: talking.start(wire.Request("telemetry", 128)),
-        "run": lambda: talking.run(wire.FileList(acp.LINK)),
+        "run": lambda: talking.run(acp.procedures.List()),
     }
     port.fails = fails
     for _ in range(2):

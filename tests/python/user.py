@@ -9,15 +9,16 @@ from icdgen_messages.cubeacp import (
     ConModeSelect,
     CurrentAdcsState,
     EstimatedAttitudeAngles,
+    FileType,
     decode_telecommand,
     decode_telemetry,
 )
+from icdgen_messages.cubeacp.procedures import Download, List
 from icdgen_messages.cubewheel import *  # noqa: F403
 from icdgen_messages.wire import (
     AsyncSession,
     Client,
     Done,
-    Download,
     Event,
     Refused,
     Session,
@@ -106,8 +107,13 @@ def wait(session: Session) -> tuple[float, bytes]:
     session.send(Reset())
     decoder = UartDecoder(cubeacp.LINK)
     print([event.event for event in decoder.feed(b"")], cubeacp.LINK.assumptions[0].why)
-    download = session.run(Download(cubeacp.LINK, "uart", 2, 0, 100))
+    download = session.run(Download(FileType.TELEMETRY_LOG, 0, 100))
     return session.get(EstimatedAttitudeAngles).estimated_roll_angle_deg, download.data
+
+
+def sizes(session: Session) -> list[int]:
+    """The sizes of all files."""
+    return [entry.file_size for entry in session.run(List()).entries]
 
 
 def ask(session: Session) -> float:
@@ -125,7 +131,7 @@ async def wait_async(session: AsyncSession) -> tuple[float, float, bytes]:
     asked = (
         outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
     )
-    download = await session.run(Download(cubeacp.LINK, "uart", 2, 0, 100))
+    download = await session.run(Download(FileType.TELEMETRY_LOG, 0, 100))
     return (
         (await session.get(EstimatedAttitudeAngles)).estimated_roll_angle_deg,
         asked,

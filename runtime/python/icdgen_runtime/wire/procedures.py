@@ -101,9 +101,10 @@ class Procedure:
         self._set_inputs(inputs or {}, bytes(data))
         if block is not None and block < 1:
             raise RangeError("block", f"1 to {need(form.blocks, 'blocks').size}", block)
-        self._block_bytes = 0
+        self.block_bytes = 0
+        """Largest number of bytes of a block."""
         if form.blocks:
-            self._block_bytes = min(block or form.blocks.size, form.blocks.size)
+            self.block_bytes = min(block or form.blocks.size, form.blocks.size)
         self._receives = {
             step.telemetry: step for step in form.steps if isinstance(step, Receive)
         }
@@ -350,7 +351,7 @@ class Procedure:
         if is_last if total is None else offset >= total:
             self._go_to(step.to)
             return
-        length = self._block_bytes
+        length = self.block_bytes
         if total is not None:
             length = min(length, total - offset)
         self._is_block, self._requested_length, self._rounds = True, length, 0
