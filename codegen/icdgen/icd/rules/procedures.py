@@ -116,8 +116,9 @@ def _procedures(ctx: Context) -> Iterator[Names]:
     for node in ctx.icd.nodes:
         messages = {message.name: message for message in ctx.messages_of(node)}
         protocol = ctx.protocol_of(node)
-        named = _map(protocol, "checksums")
-        checksums = frozenset({*named, *({"crc8", "crc16"} & {*protocol})})
+        named = protocol.get("checksums")  # a copy, without places, if nodes include it
+        names = {*named} if isinstance(named, Mapping) else set()
+        checksums = frozenset({*names, *({"crc8", "crc16"} & {*protocol})})
         for procedure in (section_of(node, "procedures") or unread()).values():
             if not isinstance(procedure, Map):
                 continue  # the schema check reports it
