@@ -93,7 +93,7 @@ def refused(cases: list[dict]) -> Iterator[dict]:
 
 
 # Languages whose testees do not answer requests of `procedure` yet.
-WITHOUT_PROCEDURES = ("c", "rust")
+WITHOUT_PROCEDURES = ("c",)
 
 
 def _without_procedures(batch: Batch) -> Batch:

@@ -10,11 +10,10 @@ import re
 from collections.abc import Iterator
 
 from icdgen_runtime._errors import IcdError
-from icdgen_runtime.wire.client import Request
 
 from icdgen.icd.model import Icd
 from icdgen.runtime_objects import reference
-from icdgen.runtime_objects.file_procedures import event_of, procedure_of
+from icdgen.runtime_objects.procedures import event_of, procedure_of
 from icdgen.runtime_objects.refusals import Refusal
 from tests import links
 
@@ -42,7 +41,7 @@ def requests(
             len(packet.get("bytes", "")) > 2 * CAN_BYTES for packet in _packets(request)
         ):
             continue
-        if request["op"] == "file" and not _frames_are_whole(icd, request):
+        if request["op"] == "procedure" and not _frames_are_whole(icd, request):
             continue
         answer = reference.answer(icd, request)
         answer.pop("detail", None)  # words for people
@@ -138,12 +137,12 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
     except (Refusal, IcdError):
         return True
     for row in request["script"]:
-        event, asked = row.get("event"), procedure._action
+        event, asked = row.get("event"), procedure._request
         if (
             event
             and event["event"] == "done"
             and procedure._is_requested
-            and isinstance(asked, Request)
+            and asked is not None
             and asked.kind == "telemetry"
             and len(event["bytes"]) != 2 * link.frames[asked.id]
         ):

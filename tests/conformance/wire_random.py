@@ -8,14 +8,17 @@ import random
 from collections.abc import Iterator
 
 from icdgen_runtime.wire.can import CanMessage, can_split
-from icdgen_runtime.wire.crc import crc16
+from icdgen_runtime.wire.client import Request
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import Link
-from icdgen_runtime.wire.transfer import Download, Upload
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.icd.model import Icd
-from icdgen.runtime_objects.file_procedures import event_of, procedure_of
+from icdgen.procedures.actions import Listing
+from icdgen.procedures.blocks import Reading
+from icdgen.protocol import facts
+from icdgen.protocol.facts import Facts
+from icdgen.vectors.wire.recording import RecordedDevice, Report, record
 from tests import links
 
 MOST_PACKET_GAP_MS = 700
@@ -27,10 +30,11 @@ def requests(icd: Icd, count: int, seed: int = 1) -> Iterator[dict]:
     for node in icd.nodes:
         if not icd.protocol_of(node):
             continue
-        link = links.link(icd, node.name)
+        known, link = facts.of(icd, node), links.link(icd, node.name)
         for _ in range(count):
-            for make in (stream, _packets, _client, _transfer):
+            for make in (stream, _packets, _client):
                 yield {"node": node.name, **make(link, source)}
+            yield {"node": node.name, **_procedure(known, link, source)}
 
 
 def _cut(data: bytes, source: random.Random) -> list[bytes]:
@@ -212,117 +216,70 @@ def _heard(
     return data.hex()
 
 
-def _transfer(link: Link, source: random.Random) -> dict:
-    uploads = ["upload", "upload"] if link.files and link.files.upload else []
-    operations = (
-        ["program_copy", "program_information"]
-        if link.program_copy and link.program_information
-        else []
-    )
-    what = source.choice(
-        [
-            "list",
-            "download",
-            "download",
-            "download",
-            "erase",
-            "format",
-            *uploads,
-            *operations,
-        ]
-    )
-    request: dict = {"op": "file", "do": what}
-    if what == "download":
-        request |= {
-            "bus": source.choice(["uart", "uart", "i2c", "can"]),
-            "type": 2,
-            "counter": 1,
-        }
-        request |= source.choice([{}, {"size": source.choice([0, 5, 60, 90])}])
-    if what == "upload":
-        request |= {
-            "destination": 3,
-            "bytes": source.randbytes(source.choice([0, 1, 30, 85])).hex(),
-        }
-    if what in operations:
-        request["program"] = source.choice([3, 9])
-    if what == "erase":
-        request |= {"type": 1, "counter": 2, "all": source.random() < 0.5}
+def _procedure(known: Facts, link: Link, source: random.Random) -> dict:
+    """A procedure with a device that does something else now and then."""
+    procedure = source.choice(known.procedures)
+    form = link.procedures[procedure.name]
+    request: dict = {"op": "procedure", "name": procedure.name}
+    inputs = {}
+    for each in form.inputs:
+        if each.is_bytes:
+            size = source.choice([0, 1, 30, 85, 300])
+            request["bytes"] = source.randbytes(size).hex()
+        elif not each.is_optional or source.random() < 0.5:
+            values = each.values or (0, 1, 5, 60, 90)
+            inputs[each.name] = min(source.choice(values), each.most)
+    request |= {"inputs": inputs} if inputs else {}
+    if not known.stream:
+        request["bus"] = source.choice(["uart", "uart", "i2c", "can"])
     if source.random() < 0.6:
-        request["block"] = source.choice([1, 20, 45])
-    return {**request, "script": _played(link, request, source)}
+        request["block"] = source.choice([1, 20, 45, 100])
+    return {**request, "script": _played(known, link, request, source)}
 
 
-def _played(link: Link, request: dict, source: random.Random) -> list[dict]:
+def _played(
+    known: Facts, link: Link, request: dict, source: random.Random
+) -> list[dict]:
     """A script whose outcomes fit what the procedure asks for, most of the time."""
-    procedure = procedure_of(link, request)
-    script: list[dict] = []
-    now = 0
-    content: dict[int, bytes] = {}
-    pending: dict | None = None
-    loaded = b""
-    for _ in range(source.choice([10, 60, 150])):
-        now += source.choice([0, 1, 10, 50, 50, 500])
-        row: dict = {"at": now}
-        chance = source.random()
-        packets = isinstance(procedure, Download) and procedure._count and not pending
-        if pending and chance < 0.9:
-            row["event"], pending = pending, None
-        elif packets and chance < 0.9:
-            position = source.choice(
-                [n for n in range(procedure._count) if n not in procedure._packets]
-                or [0]
-            )
-            row["event"] = {
-                "event": "packet",
-                "number": position + (chance < 0.03),
-                "bytes": _piece(loaded, position).hex(),
-            }
-        if "event" in row:
-            procedure.event(now, event_of(row["event"]))
-        asked = procedure.next(now)
-        script.append(row)
-        if asked is None:
-            continue
-        pending = {"event": source.choice(["done"] * 30 + ["refused", "timeout"])}
-        if pending["event"] != "done":
-            continue
-        data = b""
-        if asked.kind == "telemetry":
-            length = link.frames[asked.id]
-            data = source.choice(
-                [bytes(length), source.randbytes(length), b"\xff" * length]
-            )
-            if (
-                isinstance(procedure, Download)
-                and length == 5
-                and source.random() < 0.9
-            ):
-                size, at = procedure.size, procedure.progress[0]
-                want = procedure._block_bytes
-                want = want if size is None else min(want, size - at)
-                short = size is None and source.random() < 0.5
-                size = source.randrange(want + 1) if short else want
-                loaded = content.setdefault(at, source.randbytes(size))[:want]
-                check = crc16(link, loaded) ^ (source.random() < 0.1)
-                data = (
-                    bytes([source.choice([1, 1, 0])])
-                    + check.to_bytes(2, "little")
-                    + len(loaded).to_bytes(2, "little")
-                )
-            elif isinstance(procedure, Download) and length == 22 and procedure._count:
-                position = source.randrange(procedure._count)
-                data = position.to_bytes(2, "little") + _piece(loaded, position)
-            elif (
-                isinstance(procedure, Upload) and length == 2 and source.random() < 0.8
-            ):
-                block = procedure._data[procedure.sent :][: procedure._block_bytes]
-                filled = block.ljust(-(-len(block) // 20) * 20, b"\xff")
-                data = crc16(link, filled).to_bytes(2, "little")
-        pending["bytes"] = data.hex()
-    return script
+    loss = source.choice([0, 0, 0.1, 0.5])
+    device = RecordedDevice(known, request.get("bus", "uart"), source, loss)
+    run = device.counterpart.runs[request["name"]]
+    if isinstance(run, Reading):
+        inputs = request.get("inputs", {})
+        key = tuple(inputs.get(name, 0) for name in run.effect.names)
+        content = source.randbytes(source.choice([0, 5, 60, 90]))
+        device.device.objects.put(run.effect.kind, key, content)
+    if isinstance(run, Listing):
+        length = known.telemetry[link.procedures[request["name"]].entry].length
+        run.entries = [source.randbytes(length) for _ in range(source.randrange(5))]
+        run.entries += run.entries[-1:] * source.choice([0, 0, 0, 9])
+    odd = source.choice([0, 0.02, 0.2])
+
+    def respond(now: int, asked: Request) -> list[Report]:
+        reports = device.respond(now, asked)
+        changed = [
+            _changed(report, asked, source) if source.random() < odd else report
+            for report in reports
+        ]
+        return [
+            report._replace(after=source.choice([0, 1, 10, 50, 500]))
+            for report in changed
+        ]
+
+    script, _ = record(link, request, respond)
+    return script[: source.choice([10, 60, 150])]
 
 
-def _piece(block: bytes, position: int) -> bytes:
-    """A packet of a block."""
-    return block[position * 20 :][:20].ljust(20, b"\xee")
+def _changed(report: Report, asked: Request, source: random.Random) -> Report:
+    """Another event in the place of one."""
+    data = bytes.fromhex(report.event.get("bytes", ""))
+    if report.event["event"] == "arrived":
+        data = source.choice([data[:-1], source.randbytes(len(data)), data + b"\0"])
+        return Report({**report.event, "bytes": data.hex()})
+    outcomes = ["refused", "timeout", "busy", "damaged", "sent", "done", "done"]
+    event: dict = {"event": source.choice(outcomes)}
+    if event["event"] == "done":
+        event["bytes"] = source.choice(
+            [bytes(len(data)), source.randbytes(len(data))]
+        ).hex()
+    return Report(event)

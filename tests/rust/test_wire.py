@@ -106,7 +106,7 @@ def test_a_node_of_which_the_icd_says_little(tmp_path):
     ]
     asked += [
         {"op": "crc8", "bytes": ""},
-        {"op": "file", "do": "list", "script": []},
+        {"op": "procedure", "name": "list", "script": []},
         {"op": "dos_time", "value": 3},
     ]
     assert harness.differences(icd, harness.build_testee(icd), asked) == []

@@ -61,7 +61,7 @@ def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failur
     )
     assert {op for op, ok in seen if ok} == set(reference.OPS)
     assert {op for op, ok in seen if not ok} >= {
-        "uart_encode", "can_split", "i2c_reply", "log_encode", "log_message_decode", "dos_time", "hole_map",
+        "uart_encode", "can_split", "i2c_reply", "log_encode", "log_message_decode", "dos_time",
         "index_encode", "identify", "stream_encode",
     }  # fmt: skip
 
@@ -144,8 +144,7 @@ def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
 def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_path):
     text = (
         "icdgen: 1\nnode: {name: demo, title: D, byte_order: big, bit_order: msb0}\n"
-        "protocol:\n  uart: {baud_rate: 9600}\n  "
-        "file_transfer: {packet_bytes: 8, packet_counter_bytes: 1, block_packets: 9, block_bytes: 72}\n"
+        "protocol:\n  uart: {baud_rate: 9600}\n"
         "messages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
     )
     (tmp_path / "demo.yaml").write_text(text, encoding="utf-8")
@@ -159,7 +158,6 @@ def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_
                 "i2c_reply",
                 "uart_encode",
                 "uart_events",
-                "file",
                 "link_data",
             ):
                 assert answer == {"ok": False, "error": "unsupported"}, case

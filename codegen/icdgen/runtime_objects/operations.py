@@ -1,4 +1,4 @@
-"""JSON requests on parts of a link: checksums, framing, packets, logs and files.
+"""JSON requests on parts of a link: checksums, framing, packets, logs and index files.
 
 ``tests/conformance/README.md`` describes the requests and their responses.
 """
@@ -12,7 +12,7 @@ from icdgen_runtime.wire import crc, stream
 from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
 from icdgen_runtime.wire.can import can_split as split
 from icdgen_runtime.wire.errors import need
-from icdgen_runtime.wire.files import HoleMap, IndexEntry, read_index, write_index
+from icdgen_runtime.wire.files import IndexEntry, read_index, write_index
 from icdgen_runtime.wire.i2c import i2c_read_length, i2c_write
 from icdgen_runtime.wire.i2c import i2c_reply as frame_of_reply
 from icdgen_runtime.wire.identity import identify as identity_of
@@ -192,22 +192,6 @@ def dos_time(link: AnyLink, request: Request) -> Response:
         return {"value": dos_time_pack(link, DosTime(**parts))}
 
 
-def hole_map(link: AnyLink, request: Request) -> Response:
-    packets = number(request, "packets")
-    if "bytes" in request:
-        received_map = HoleMap.from_bytes(link, packets, octets(request))
-        return {"missing": received_map.missing()}
-    received = rows(request, "received")
-    if any(type(item) is not int for item in received):
-        raise Refusal("request", detail="`received` holds numbers")
-    sent_map = HoleMap(link, packets, received)
-    return {
-        "bytes": sent_map.to_bytes().hex(),
-        "messages": [piece.hex() for piece in sent_map.messages()],
-        "missing": sent_map.missing(),
-    }
-
-
 def index_decode(link: AnyLink, request: Request) -> Response:
     entries, truncated = read_index(link, octets(request))
     return {
@@ -290,6 +274,6 @@ def _stream_row(event: stream.StreamEvent) -> Response:
 
 OPERATIONS: tuple[Operation, ...] = (
     crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
-    log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+    log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
     link_data, stream_encode, stream_events,
 )  # fmt: skip

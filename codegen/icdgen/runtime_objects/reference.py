@@ -14,7 +14,6 @@ from icdgen_runtime._errors import IcdError
 from icdgen.icd.model import Icd, Node
 from icdgen.icd.node_cache import cached_by_node
 from icdgen.protocol import facts
-from icdgen.runtime_objects.file_procedures import file
 from icdgen.runtime_objects.links import link_of
 from icdgen.runtime_objects.operations import OPERATIONS, AnyLink, Operation
 from icdgen.runtime_objects.procedures import procedure
@@ -24,7 +23,7 @@ from icdgen.runtime_objects.scripts import client, stream_client
 
 OPS: dict[str, Operation] = {
     operation.__name__: operation
-    for operation in (*OPERATIONS, client, stream_client, file, procedure)
+    for operation in (*OPERATIONS, client, stream_client, procedure)
 }
 
 

@@ -22,9 +22,7 @@ from icdgen.vectors.wire import (
     files,
     i2c,
     logs,
-    operations,
     packets,
-    procedure_scripts,
     procedures,
     streams,
     waits,
@@ -88,7 +86,7 @@ def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]
     if node_facts.stream:
         yield from envelopes.requests(link, node_facts.stream, source)
         yield from asking.scripts(link, node_facts)
-        yield from procedure_scripts.scripts(link, node_facts)
+        yield from procedures.scripts(link, node_facts)
         return
     yield from streams.checksums(node_facts, source)
     if node_facts.framing:
@@ -100,7 +98,5 @@ def _requests(icd: Icd, node_facts: Facts) -> Iterator[tuple[str, dict[str, Any]
     yield from logs.requests(link, node_facts, source)
     yield from files.requests(link, node_facts, source)
     yield from clients.scripts(link, node_facts)
-    yield from procedure_scripts.scripts(link, node_facts)
     yield from procedures.scripts(link, node_facts)
-    yield from operations.scripts(node_facts)
     yield from waits.scripts(link, node_facts)

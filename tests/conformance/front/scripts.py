@@ -185,69 +185,7 @@ def _stream_row(row: Request) -> tuple[object, ...]:
     )
 
 
-def file(to: Asking, request: Request) -> Answer:
-    what, start = _procedure(request)
-    words = [
-        word
-        for row in mappings(request, "script")
-        for word in (number(row, "at"), *_outcome(row.get("event")))
-    ]
-    reply = to.ask("file", what, *start, *words)
-    answer: Answer = {
-        "steps": [_file_step(step) for step in reply.of("step")],
-        **typed(reply.facts),
-    }
-    if what == "download":
-        answer["blocks"] = [typed(row) for row in reply.of("block")]
-    elif what == "list":
-        answer["entries"] = [typed(row) for row in reply.of("entry")]
-    elif what == "program_information":
-        answer = {"size": None, "checksum": None, **answer}
-    return answer
-
-
-def _procedure(request: Request) -> tuple[str, list[object]]:
-    """Its name, and what it is begun with."""
-    what = text(request, "do")
-    block = number(request, "block", 1) if "block" in request else ""
-    if what in ("list", "format"):
-        return what, []
-    if what in ("program_copy", "program_information"):
-        return what, [number(request, "program", 0, 255)]
-    if what == "upload":
-        times, destination = number(request, "times", 1, MOST_TIMES, 1), number(
-            request, "destination", 0, 255
-        )
-        return what, [destination, block, (octets(request) * times).hex()]
-    if what not in ("erase", "download"):
-        raise Refusal("request", detail="there is no such procedure")
-    entry = [number(request, "type", 0, 255), number(request, "counter", 0, 255)]
-    if what == "erase":
-        return what, [*entry, int(flag(request, "all"))]
-    return what, [
-        _bus(request),
-        *entry,
-        number(request, "size") if "size" in request else "",
-        block,
-    ]
-
-
-def _outcome(given: object) -> tuple[object, ...]:
-    if given is None:
-        return ("nothing",)
-    if not isinstance(given, dict):
-        raise Refusal("request", detail="`event` is no object")
-    name = text(given, "event")
-    if name == "done":
-        return name, octets(given).hex()
-    if name == "packet":
-        return name, number(given, "number", 0, 65535), octets(given).hex()
-    if name in ("refused", "damaged", "timeout"):
-        return (name,)
-    raise Refusal("request", detail="there is no such event")
-
-
-def _file_step(step: Facts) -> Answer:
+def _step_of_procedure(step: Facts) -> Answer:
     found = {"deadline": None, "result": None, **typed(step)}
     asked: Answer = {
         key: found.pop(key)
@@ -292,7 +230,7 @@ def procedure(to: Asking, request: Request) -> Answer:
     facts = dict(reply.facts)
     values = items(facts.pop("outputs", ""))
     answer: Answer = {
-        "steps": [_file_step(step) for step in reply.of("step")],
+        "steps": [_step_of_procedure(step) for step in reply.of("step")],
         **typed(facts),
     }
     if form["receives"]:
@@ -309,15 +247,18 @@ def procedure(to: Asking, request: Request) -> Answer:
 
 
 def _procedure_event(given: object) -> tuple[object, ...]:
-    if isinstance(given, dict):
-        name = text(given, "event")
-        if name == "arrived":
-            return name, number(given, "id"), octets(given).hex()
-        if name in ("sent", "busy"):
-            return (name,)
-        if name == "packet":
-            raise Refusal("request", detail="there is no such event")
-    return _outcome(given)
+    if given is None:
+        return ("nothing",)
+    if not isinstance(given, dict):
+        raise Refusal("request", detail="`event` is no object")
+    name = text(given, "event")
+    if name == "done":
+        return name, octets(given).hex()
+    if name == "arrived":
+        return name, number(given, "id"), octets(given).hex()
+    if name in ("sent", "busy", "refused", "damaged", "timeout"):
+        return (name,)
+    raise Refusal("request", detail="there is no such event")
 
 
 def _bus(request: Request) -> str:
@@ -341,6 +282,5 @@ def _steps(reply: Reply) -> list[tuple[Facts, list[tuple[str, Facts]]]]:
 OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     "client": client,
     "stream_client": stream_client,
-    "file": file,
     "procedure": procedure,
 }

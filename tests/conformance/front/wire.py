@@ -201,29 +201,6 @@ def dos_time(to: Asking, request: Request) -> Answer:
     )
 
 
-def hole_map(to: Asking, request: Request) -> Answer:
-    packets = number(request, "packets")
-    if "bytes" in request:
-        return _map(to.ask("hole_map_missing", packets, octets(request).hex()))
-    received = rows(request, "received")
-    if any(type(one) is not int for one in received):
-        raise Refusal("request", detail="`received` holds numbers")
-    numbers = (
-        one if 0 <= one <= MOST else MOST for one in received
-    )  # which no block has
-    return _map(to.ask("hole_map", packets, *numbers))
-
-
-def _map(reply: Reply) -> Answer:
-    found: Answer = {"missing": [int(one) for one in items(reply.facts["missing"])]}
-    if "bytes" in reply.facts:
-        found |= {
-            "bytes": reply.facts["bytes"],
-            "messages": items(reply.facts["messages"]),
-        }
-    return found
-
-
 def index_decode(to: Asking, request: Request) -> Answer:
     reply = to.ask("index_decode", octets(request).hex())
     return {**typed(reply.facts), "entries": [typed(row) for row in reply.of("entry")]}
@@ -296,7 +273,7 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
-        log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+        log_encode, log_message_decode, log_message_encode, dos_time, index_decode, index_encode, identify,
         link_data, stream_encode, stream_events,
     )
 }  # fmt: skip

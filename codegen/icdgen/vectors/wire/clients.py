@@ -265,10 +265,8 @@ def _uart(facts: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]
             "bytes": "00" * (plain.length + 1),
         }
     ]
-    if facts.files and UART in facts.files.packet_ids:
-        data = bytes([facts.files.packet_ids[UART]]) + s.source.randbytes(
-            facts.files.counter_bytes + facts.files.packet_bytes
-        )
+    for head, id in facts.unsolicited.items():
+        data = bytes([head]) + s.source.randbytes(facts.telemetry[id].length)
         yield "download packets", [{"at": 0, "receive": s.line(data) * 2}]
     if facts.mask and facts.log_message:
         log = LogMessage.encode(s.link, bytes(facts.mask.size), [])

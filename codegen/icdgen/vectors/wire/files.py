@@ -1,4 +1,4 @@
-"""Requests on packed times, hole maps and the index file."""
+"""Requests on packed times and the index file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from icdgen.vectors.wire import Requests
 
 
 def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
-    """Yield requests on packed times, hole maps and the index file."""
+    """Yield requests on packed times and the index file."""
     if facts.time:
         bits, some = (1 << bit for bit in range(32)), (
             source.getrandbits(32) for _ in range(20)
@@ -36,38 +36,6 @@ def requests(link: AnyLink, facts: Facts, source: Random) -> Requests:
                 "op": "dos_time",
                 **dict(zip(DosTime._fields, date, strict=True)),
             }
-    if facts.hole_map and facts.files:
-        most, first = facts.hole_map.bytes * 8, facts.files.first_packet
-        for count in (0, 1, 3, 8, 9, most - 1, most):
-            every = range(first, first + count)
-            for received in (
-                [],
-                list(every),
-                [n for n in every if n % 3],
-                source.sample(every, count // 2),
-            ):
-                yield f"{count} packets", {
-                    "op": "hole_map",
-                    "packets": count,
-                    "received": received,
-                }
-        yield "too many packets", {
-            "op": "hole_map",
-            "packets": most + 1,
-            "received": [],
-        }
-        yield "a packet beyond the end", {
-            "op": "hole_map",
-            "packets": 3,
-            "received": [first + 3],
-        }
-        for count in (0, 5, most):
-            yield "any map", {
-                "op": "hole_map",
-                "packets": count,
-                "bytes": source.randbytes(facts.hole_map.bytes).hex(),
-            }
-        yield "a map that is too short", {"op": "hole_map", "packets": 1, "bytes": "00"}
     if facts.index:
         index = facts.index
         sizes = {role: place.bytes for role, place in index.fields.items()}

@@ -1,229 +1,517 @@
-"""Scripts of procedures, recorded with a simulated node that loses messages, and
-scripts of failing procedures.
+"""Scripts of all procedures of a node: success with and without losses, failures, and
+limits.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from random import Random
 from typing import Any
 
-from icdgen_runtime.wire.file_procedures import RoleProcedure
+from icdgen_runtime.wire.client import Request
 
+from icdgen.icd.model import Message
+from icdgen.procedures.actions import Listing
+from icdgen.procedures.blocks import Packet, Reading
+from icdgen.procedures.numbers import put_number
+from icdgen.procedures.run import steps_of
+from icdgen.protocol.declared import U32
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import UART, Upload
-from icdgen.runtime_objects.file_procedures import LONGEST, event_of, procedure_of
+from icdgen.protocol.procedures import (
+    Get,
+    Input,
+    Poll,
+    Procedure,
+    Receive,
+    SetLength,
+    Take,
+    Verify,
+    VerifyChecksum,
+)
+from icdgen.protocol.sections import UART, Crc
 from icdgen.runtime_objects.operations import AnyLink
-from icdgen.vectors.wire import Requests, Script
-from icdgen.vectors.wire.node import FileNode
-from icdgen.vectors.wire.operations import neighbours
+from icdgen.runtime_objects.procedures import LONGEST
+from icdgen.vectors.wire import Requests, Row
+from icdgen.vectors.wire.recording import (
+    REFUSED,
+    TIMEOUT,
+    RecordedDevice,
+    Report,
+    Respond,
+    arrival,
+    record,
+)
 
-STEPS = 100_000  # limit above the steps of any procedure
-ATTEMPTS = 8  # attempts of a client
-MOST_FILES = 16  # of a list for a script of its limit, which would otherwise be long
-MOST_BYTES = 1 << 12  # of a file for the same
+NUMBER = 3  # of an input that may have any value
+PACKETS = 6  # complete packets of the bytes to transfer
+BLOCK_PACKETS = 4
+MOST_ENTRIES = 16  # of a list for a script of its limit, which would otherwise be long
+MOST_BYTES = 1 << 12  # of bytes for the same
+FAR = 1 << 40  # time at which no step is busy
+REPETITIONS = 3  # of a packet that arrives again and again
 
-
-def record(
-    link: AnyLink, request: dict[str, Any], node: FileNode
-) -> tuple[Script, RoleProcedure]:
-    """Return the script of a procedure with the simulated node.
-
-    Repeatable requests are repeated as by a client.
-    """
-    procedure, now = procedure_of(link, request), 0
-    script: Script = [{"at": 0}]
-    pending = procedure.next(now)
-    while procedure.result is None and len(script) < STEPS:
-        if pending is None:
-            now = now + 1 if procedure.deadline is None else int(procedure.deadline)
-            script.append({"at": now})
-            pending = procedure.next(now)
-            continue
-        events, tries = node.answer(pending), 1
-        # Only repeatable requests may be sent again, as by a real client.
-        while pending.repeat and events[-1]["event"] == "timeout" and tries < ATTEMPTS:
-            events, tries = events[:-1] + node.answer(pending), tries + 1
-        for event in events:
-            now += 1
-            script.append({"at": now, "event": event})
-            procedure.event(now, event_of(event))
-            pending = procedure.next(now)
-    return script, procedure
+Call = dict[str, Any]
+Prepare = Callable[[RecordedDevice], object]
 
 
 def scripts(link: AnyLink, facts: Facts) -> Requests:
     """Yield the scripts of all procedures."""
-    form = facts.files
-    if not form or not facts.hole_map or not facts.crc16:
-        return
-    if form.list:
-        for loss in (0.0, 0.3):
-            yield from _recorded(link, facts, "the list of files", {"do": "list"}, loss)
-        if form.list.max_entries <= MOST_FILES:
-            yield from _more_files_than_allowed(link, facts, form.list.max_entries)
-    if form.download:
-        yield from _downloads(link, facts, form.download.max_bytes)
-    if form.upload:
-        yield from _uploads(link, facts, form.upload)
-    else:
-        request = {
-            "op": "file",
-            "do": "upload",
-            "destination": 3,
-            "bytes": "00",
-            "script": [{"at": 0}],
-        }
-        yield "the node takes no uploads", request
-    if form.erase:
-        for all_ in (False, True):
-            yield from _recorded(
-                link,
-                facts,
-                "erased",
-                {"do": "erase", "type": 2, "counter": 3, "all": all_},
-                0.0,
+    yield "there is no such procedure", _request({"name": "none"})
+    for procedure in facts.procedures:
+        for why, request in _Scripts(link, facts, procedure).all():
+            yield f"{procedure.name}: {why}", request
+
+
+def _request(call: Call, script: list[dict[str, Any]] | None = None) -> dict[str, Any]:
+    return {"op": "procedure", **call, "script": script or [{"at": 0}]}
+
+
+class _Scripts:
+    """Scripts of a procedure."""
+
+    def __init__(self, link: AnyLink, facts: Facts, procedure: Procedure) -> None:
+        self.link, self.facts = link, facts
+        self.procedure, self.blocks = procedure, procedure.blocks
+        self.size, self.block = 0, {}
+        if self.blocks:
+            packet = self.blocks.packet_bytes
+            self.size = min(PACKETS * packet + packet // 2 + 1, self.blocks.most)
+            if BLOCK_PACKETS * packet < self.blocks.size:
+                self.block = {"block": BLOCK_PACKETS * packet}
+        source = Random(f"{facts.node.name} {procedure.name}")
+        self.content = source.randbytes(self.size)
+
+    def all(self) -> Requests:
+        """Yield all scripts."""
+        yield from self._successes()
+        yield from self._failures()
+        yield from self._waits()
+        yield from self._limits()
+        yield from self._numbers()
+        if self.blocks and self.blocks.sends:
+            yield from self._sizes_to_send()
+        elif self.blocks:
+            yield from self._sizes_to_receive()
+        if self.procedure.entry:
+            yield from self._lists()
+        if self.blocks:
+            yield from self._blocks()
+
+    # Calls and devices
+
+    def call(self, **changes: Any) -> Call:
+        """Return a call of the procedure, with these values of inputs."""
+        procedure, inputs = self.procedure, Call()
+        for number, each in enumerate(self._inputs, procedure.first_input):
+            inputs[each.name] = _sample(each)
+            if self.blocks and number == self.blocks.total:
+                inputs[each.name] = self.size
+        inputs |= {key: changes.pop(key) for key in [*changes] if key in inputs}
+        given = {key: value for key, value in inputs.items() if value is not None}
+        call = {"name": procedure.name, **({"inputs": given} if inputs else {})}
+        if self.blocks and self.blocks.sends:
+            call["bytes"] = self.content.hex()
+        return {**call, **self.block, **changes}
+
+    @property
+    def _inputs(self) -> list[Input]:
+        return [each for each in self.procedure.inputs if not each.is_bytes]
+
+    def device(
+        self, call: Call, loss: float = 0.0, content: bytes | None = None
+    ) -> RecordedDevice:
+        """Return a device with the bytes that the client receives, or with entries."""
+        bus = call.get("bus", UART)
+        source = Random(
+            f"{self.facts.node.name} {self.procedure.name} {bus}, {loss} lost"
+        )
+        device = RecordedDevice(self.facts, bus, source, loss)
+        run = device.counterpart.runs[self.procedure.name]
+        if isinstance(run, Reading):
+            given = call.get("inputs", {})
+            key = tuple(given.get(name, 0) for name in run.effect.names)
+            data = self.content if content is None else content
+            device.device.objects.put(run.effect.kind, key, data)
+        if isinstance(run, Listing) and self.procedure.entry:
+            run.entries = self._entries(min(4, self.procedure.most_entries))
+        return device
+
+    def _entries(self, count: int) -> list[bytes]:
+        assert self.procedure.entry
+        length = self.procedure.entry.length
+        source = Random(count)
+        return [bytes([source.randrange(1, 256)] * length) for _ in range(count)]
+
+    def case(
+        self,
+        why: str,
+        call: Call,
+        device: RecordedDevice | None = None,
+        respond: Respond | None = None,
+        early: bool = False,
+    ) -> tuple[str, dict[str, Any]]:
+        """Return a recorded script with its purpose."""
+        device = self.device(call) if device is None else device
+        script, _ = record(self.link, call, respond or device.respond, early)
+        return why, _request(call, script)
+
+    @property
+    def buses(self) -> list[str]:
+        """Buses on which the procedure differs."""
+        if self.facts.stream:
+            return [UART]
+        receives = steps_of(self.procedure, Receive)
+        return [UART, *(bus for step in receives for bus in step.requested_on)]
+
+    # Scripts
+
+    def _successes(self) -> Requests:
+        for bus in self.buses:
+            call = self.call(**({"bus": bus} if len(self.buses) > 1 else {}))
+            for loss in (0.0, 0.3):
+                where = f" over {bus}" if len(self.buses) > 1 else ""
+                yield self.case(
+                    f"{loss:.0%} lost{where}", call, self.device(call, loss)
+                )
+        for flag in (each for each in self._inputs if each.is_flag):
+            yield self.case(f"{flag.name} is set", self.call(**{flag.name: 1}))
+
+    def _failures(self) -> Requests:
+        call = self.call()
+        for outcome in (REFUSED, {"event": "busy"}, TIMEOUT, {"event": "damaged"}):
+            yield self._always(f"{outcome['event']} for ever", outcome)
+        requested = [*steps_of(self.procedure, Get), *steps_of(self.procedure, Poll)]
+        for outcome in (REFUSED, TIMEOUT) if requested else ():
+            yield self._of_telemetry(f"telemetry: {outcome['event']}", outcome)
+        damaged = iter([{"event": "damaged"}])
+        device = self.device(call)
+
+        def once(now: int, request: Request) -> list[Report]:
+            reports = device.respond(now, request)
+            is_first = request.kind == "telecommand" and request.repeat
+            event = next(damaged, None) if is_first else None
+            return [*reports[:-1], Report(event)] if event else reports
+
+        yield self.case("the first acknowledge is damaged", call, respond=once)
+        if any(
+            isinstance(step, Verify) or (isinstance(step, Poll) and step.fails)
+            for step in self.procedure.steps
+        ):
+            device = self.device(call)
+            device.device.fails = True
+            yield self.case("the device reports a failure", call, device)
+
+    def _always(self, why: str, outcome: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+        """Return the script of a procedure whose requests all have the same outcome."""
+        return self.case(
+            why, self.call(), respond=lambda now, request: [Report(outcome)]
+        )
+
+    def _of_telemetry(self, why: str, outcome: Row) -> tuple[str, Call]:
+        """Return the script of a procedure whose telemetry has always this outcome."""
+        device = self.device(self.call())
+
+        def respond(now: int, request: Request) -> list[Report]:
+            is_telecommand = request.kind == "telecommand"
+            return device.respond(now, request) if is_telecommand else [Report(outcome)]
+
+        return self.case(why, self.call(), device, respond)
+
+    def _waits(self) -> Requests:
+        """Yield scripts of polls for which the device is busy, until their time is
+        over.
+        """
+        flags = {each.name: 1 for each in self._inputs if each.is_flag}
+        ends = (
+            ("nothing new a millisecond before its time is over", 1, False),
+            ("nothing new when its time is over", 0, False),
+            ("done when its time is over", 0, True),
+        )
+        for poll in steps_of(self.procedure, Poll):
+            for end, early, is_done in ends:
+                call = self.call(**flags)
+                device = self.device(call)
+                device.device.busy = FAR - 1
+                respond = _waiting(device, poll, early, is_done)
+                why = f"{poll.message.name}: {end}"
+                yield self.case(why, call, device, respond, early=True)
+
+    def _limits(self) -> Requests:
+        last = self.procedure.time
+        moments = [{"at": at} for at in (0, last, last + 1)]
+        yield "the time is over", _request(self.call(), moments)
+
+    def _numbers(self) -> Requests:
+        """Yield the smallest and largest numbers of the inputs, and others."""
+        for each in self._inputs:
+            allowed = each.values or (0, each.most)
+            for number in allowed:
+                yield f"{each.name} is {number}", _request(
+                    self.call(**{each.name: number})
+                )
+            near = {number + step for number in allowed for step in (-1, 1)}
+            for number in sorted(near):
+                is_allowed = (
+                    number in each.values if each.values else number <= each.most
+                )
+                if not is_allowed and 0 <= number <= U32:
+                    why = f"{each.name} is {number}, which is not supported"
+                    yield why, _request(self.call(**{each.name: number}))
+            if each.is_optional:
+                yield f"{each.name} is not given", _request(
+                    self.call(**{each.name: None})
+                )
+
+    def _lists(self) -> Requests:
+        call, most = self.call(), self.procedure.most_entries
+        counts = [0] if most > MOST_ENTRIES else [0, most, most + 1]
+        for count in counts:
+            device = self.device(call)
+            _listing(device, self.procedure).entries = self._entries(count)
+            yield self.case(f"{count} entries", call, device)
+        device = self.device(call)
+        _listing(device, self.procedure).entries = self._entries(1) * MOST_ENTRIES
+        yield self.case("the same entry for ever", call, device)
+
+    def _blocks(self) -> Requests:
+        """Yield scripts of losses and damage within a block."""
+        assert self.blocks
+        call = self.call()
+        if steps_of(self.procedure, VerifyChecksum):
+            for wrong, why in ((1, "once"), (LONGEST, "for ever")):
+                device = self.device(call)
+                device.device.checksum = _wrong(device.device.checksum, wrong)
+                yield self.case(f"a checksum that is wrong {why}", call, device)
+        device = self.device(call)
+        device.packet_loss = 1.0
+        yield self.case("no packet arrives", call, device)
+        small = {**call, "block": 1}
+        device = self.device(small)
+        if self.blocks.sends:
+            yield self.case("the smallest blocks", small | {"bytes": "010203"}, device)
+        yield from self._long_maps()
+        for block in (self.blocks.size, self.blocks.size + 1):
+            yield f"blocks of {block} bytes", _request({**call, "block": block})
+
+    def _long_maps(self) -> Requests:
+        """Yield a script of a block whose map needs several messages."""
+        assert self.blocks
+        form = self.blocks.map
+        size = (8 * form.bytes + 2) * self.blocks.packet_bytes if form else 0
+        if form and len(form.messages) > 1 and size <= self.blocks.size:
+            content = Random(size).randbytes(size - 1)
+            if self.blocks.sends:
+                call = self.call(bytes=content.hex())
+            else:
+                call = self.call(**{self._total: len(content)} if self._total else {})
+            call.pop("block", None)
+            device = self.device(call, 0.1, content)
+            yield self.case("a map in several messages, 10% lost", call, device)
+
+    def _sizes_to_send(self) -> Requests:
+        assert self.blocks
+        most = self.blocks.most
+        yield self.case("no bytes", self.call(bytes=""))
+        if most < LONGEST:
+            for times in (most, most + 1):
+                yield f"{times} bytes", _request(self.call(bytes="00", times=times))
+
+    def _sizes_to_receive(self) -> Requests:
+        assert self.blocks
+        receive = steps_of(self.procedure, Receive)[0]
+        total = self._total
+        if total:
+            yield self.case("no bytes", self.call(**{total: 0}))
+            call = self.call(**{total: self.size + 1})
+            yield self.case("less than announced", call)
+        if total is None or self._input_of_total.is_optional:
+            unknown = {total: None} if total else {}
+            call = self.call(**unknown)
+            for content in (b"", self.content, self.content[: self.call()["block"]]):
+                device = self.device(call, content=content)
+                yield self.case(f"{len(content)} bytes of unknown number", call, device)
+            for bus in self.buses:
+                call = self.call(**unknown, bus=bus)
+                device = self.device(call, 0.3)
+                yield self.case(
+                    f"an unknown number of bytes over {bus}, 30% lost", call, device
+                )
+            for size in self._sizes_near_limit():
+                content = Random(size).randbytes(size)
+                call = self.call(**unknown)
+                device = self.device(call, content=content)
+                yield self.case(f"{size} bytes of unknown number", call, device)
+            small = {**self.call(**unknown), "block": 1}
+            device = self.device(small, content=b"\1\2\3")
+            yield self.case("the smallest blocks", small, device)
+        yield from self._longer_blocks()
+        call = self.call()
+        respond = self._foreign(call, receive)
+        yield self.case("packets of another block", call, respond=respond)
+        for bus in self.buses:
+            call = self.call(bus=bus)
+            yield self.case(
+                f"the same packet for ever over {bus}",
+                call,
+                respond=self._repeating(call, receive),
             )
-    if form.format:
-        yield from _recorded(link, facts, "formatted", {"do": "format"}, 0.0)
-        refusal = {"event": "refused", "code": 3}
-        yield "refused", {
-            "op": "file",
-            "do": "format",
-            "script": [{"at": 0}, {"at": 1, "event": refusal}],
-        }
-        busy = [{"at": 0}, {"at": 1, "event": {"event": "done", "bytes": ""}}]
-        frame = b"\xff".ljust(form.format.progress.message.length, b"\0").hex()
-        for at in (2, 2 + form.format.poll_interval, form.format.timeout + 1):
-            busy += [{"at": at}, {"at": at, "event": {"event": "done", "bytes": frame}}]
-        yield "busy for ever", {"op": "file", "do": "format", "script": busy}
+        yield self.case(
+            "there is nothing",
+            call,
+            RecordedDevice(self.facts, UART, Random(0)),
+        )
+
+    @property
+    def _input_of_total(self) -> Input:
+        assert self.blocks and self.blocks.total is not None
+        return self._inputs[self.blocks.total - self.procedure.first_input]
+
+    @property
+    def _total(self) -> str | None:
+        """Input with the number of bytes."""
+        assert self.blocks
+        return None if self.blocks.total is None else self._input_of_total.name
+
+    def _sizes_near_limit(self) -> Iterator[int]:
+        assert self.blocks
+        if self.blocks.most <= MOST_BYTES:
+            yield from (self.blocks.most, self.blocks.most + 1)
+
+    def _longer_blocks(self) -> Requests:
+        """Yield scripts of a device that has more than the client requests."""
+        lengths = [step.value.number for step in steps_of(self.procedure, SetLength)]
+        requests = [s for s in self.procedure.steps if isinstance(s, (Get, Poll))]
+        for step in requests:
+            for take in step.takes:
+                if take.register in lengths:
+                    call = self.call()
+                    respond = self._longer(self.device(call), step, take)
+                    yield self.case("a block is too long", call, respond=respond)
+
+    def _longer(self, device: RecordedDevice, step: Get | Poll, take: Take) -> Respond:
+        """Return the responses of a device that reports a block that is too long."""
+        assert self.blocks
+        length = self.blocks.size + 1
+
+        def respond(now: int, request: Request) -> list[Report]:
+            reports = device.respond(now, request)
+            if _requests(request, step.message):
+                frame = bytearray.fromhex(reports[-1].event["bytes"])
+                put_number(take.place, frame, length)
+                return [done(bytes(frame))]
+            return reports
+
+        return respond
+
+    def _foreign(self, call: Call, receive: Receive) -> Respond:
+        """Return the responses of a device that also sends packets of another block,
+        before each outcome.
+        """
+        assert self.blocks
+        device = self.device(call)
+        id, length = receive.message.telemetry_id, receive.message.length
+        numbers = (0, self.blocks.first_packet, (1 << receive.number.bits) - 1)
+
+        def respond(now: int, request: Request) -> list[Report]:
+            packets: list[Report] = []
+            for number in numbers:
+                frame = bytearray(length)
+                put_number(receive.number, frame, number)
+                packets.append(Report(arrival(Packet(receive.message, bytes(frame)))))
+            short = {**packets[1].event, "bytes": packets[1].event["bytes"][:-2]}
+            other = {**packets[1].event, "id": (id or 0) ^ 1}
+            strange = [*packets, Report(short), Report(other)]
+            is_before = request.kind == "telemetry"
+            return [
+                *(strange if is_before else strange[2:]),
+                *device.respond(now, request),
+            ]
+
+        return respond
+
+    def _repeating(self, call: Call, receive: Receive) -> Respond:
+        """Return the responses of a device that always sends the same packet."""
+        device = self.device(call)
+
+        def respond(now: int, request: Request) -> list[Report]:
+            reports = device.respond(now, request)
+            packets = [each for each in reports if each.event["event"] == "arrived"]
+            if packets:
+                again = packets[:1] * REPETITIONS
+                later = [Report(each.event, receive.silence - 1) for each in again]
+                return [packets[0], *reports[len(packets) :], *later]
+            if (
+                request.kind == "telemetry"
+                and request.id == receive.message.telemetry_id
+            ):
+                run = device.counterpart.runs[self.procedure.name]
+                assert isinstance(run, Reading)
+                return [done(run.packet(0).data)]
+            return reports
+
+        return respond
 
 
-def _node(link: AnyLink, facts: Facts, bus: str, loss: float, why: str) -> FileNode:
-    source = Random(f"{facts.node.name} {why} {bus} {loss}")
-    node = FileNode(link, facts, bus, source, loss)
-    assert node.form
-    for counter, size in enumerate((1, node.form.packet_bytes * 3, 130)):
-        node.files[2, counter] = node.source.randbytes(size)
-    return node
+def done(data: bytes, after: int = 1) -> Report:
+    """Return the report of requested telemetry."""
+    return Report({"event": "done", "bytes": data.hex()}, after)
 
 
-def _recorded(
-    link: AnyLink,
-    facts: Facts,
-    why: str,
-    request: dict[str, Any],
-    loss: float,
-    bus: str = UART,
-) -> Requests:
-    script, _ = record(link, request, _node(link, facts, bus, loss, why))
-    yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
+def _requests(request: Request, message: Message) -> bool:
+    """Return whether a request is one of this telemetry."""
+    return request.kind == "telemetry" and request.id == message.telemetry_id
 
 
-def _more_files_than_allowed(link: AnyLink, facts: Facts, most: int) -> Requests:
-    for files in (most, most + 1):
-        node = FileNode(link, facts, UART, Random(files))
-        node.files = {(2, counter): bytes(counter) for counter in range(files)}
-        script, _ = record(link, {"do": "list"}, node)
-        yield f"{files} files", {"op": "file", "do": "list", "script": script}
+def _sample(each: Input) -> int:
+    """Return a number that an input may have."""
+    if each.is_flag:
+        return 0
+    if each.values:
+        return each.values[0]
+    if each.enum:
+        return each.enum.members[-1].value
+    return min(NUMBER, each.most)
 
 
-def _downloads(link: AnyLink, facts: Facts, most: int) -> Requests:
-    assert facts.files
-    size = facts.files.packet_bytes
-    request: dict[str, Any] = {"do": "download", "bus": UART, "type": 2, "counter": 0}
-    for length in (most, most + 1):
-        first = {"op": "file", **request, "size": length, "script": [{"at": 0}]}
-        yield f"a file of {length} bytes", first
-        if length <= MOST_BYTES:
-            node = FileNode(link, facts, UART, Random(length))
-            node.files[2, 0] = node.source.randbytes(length)
-            script, _ = record(link, request, node)
-            why = f"a file of {length} bytes, of unknown size"
-            yield why, {"op": "file", **request, "script": script}
-    if most < max(131, 3 * size):
-        return
-    for bus in facts.files.packet_ids:
-        for loss in (0.0, 0.3):
-            request = {
-                "do": "download",
-                "bus": bus,
-                "type": 2,
-                "counter": 2,
-                "size": 130,
-                "block": 4 * size,
-            }
-            yield from _recorded(
-                link, facts, f"a file in two blocks over {bus}", request, loss, bus
-            )
-    request = {
-        "do": "download",
-        "bus": UART,
-        "type": 2,
-        "counter": 1,
-        "block": 2 * size,
-    }
-    yield from _recorded(link, facts, "a file of unknown size", request, 0.1)
-    request = {"do": "download", "bus": UART, "type": 2, "counter": 2, "size": 131}
-    yield from _recorded(link, facts, "a file shorter than announced", request, 0.0)
-    yield "an empty file", {"op": "file", **request, "size": 0, "script": [{"at": 0}]}
-    request = {"do": "download", "bus": UART, "type": 2, "counter": 1, "size": 3 * size}
-    yield from _recorded(link, facts, "nothing arrives", request, 1.0)
-    script, _ = record(
-        link, request, _NodeWithWrongChecksums(link, facts, UART, Random(1))
-    )
-    yield "a checksum that is never right", {"op": "file", **request, "script": script}
+def _listing(device: RecordedDevice, procedure: Procedure) -> Listing:
+    run = device.counterpart.runs[procedure.name]
+    assert isinstance(run, Listing)
+    return run
 
 
-class _NodeWithWrongChecksums(FileNode):
-    """Simulated node whose checksums are wrong."""
+def _wrong(
+    checksum: Callable[[Crc | None, bytes], int], times: int
+) -> Callable[[Crc | None, bytes], int]:
+    """Return a function whose first checksums are wrong."""
+    left = times
 
-    def __init__(self, link: AnyLink, facts: Facts, bus: str, source: Random) -> None:
-        super().__init__(link, facts, bus, source)
-        self.files[2, 1] = bytes(facts.files.packet_bytes * 3 if facts.files else 0)
+    def wrong(form: Crc | None, data: bytes) -> int:
+        nonlocal left
+        left -= 1
+        return checksum(form, data) ^ (left >= 0)
 
-    def _sum(self, data: bytes) -> int:
-        return super()._sum(data) ^ 1
+    return wrong
 
 
-def _uploads(link: AnyLink, facts: Facts, form: Upload) -> Requests:
-    assert facts.files
-    size, most, allowed = (
-        facts.files.packet_bytes,
-        form.destination_bytes,
-        form.destinations,
-    )
-    destination = allowed[0] if allowed else 3
-    first = {
-        "op": "file",
-        "do": "upload",
-        "destination": destination,
-        "bytes": "00",
-        "script": [{"at": 0}],
-    }
-    for number in allowed:
-        yield "a destination that is supported", {**first, "destination": number}
-    for number in neighbours(allowed):
-        yield "a destination that is not supported", {**first, "destination": number}
-    if most is not None and most < LONGEST:
-        yield "as much as a destination holds", {**first, "times": most}
-        yield "a byte more than a destination holds", {**first, "times": most + 1}
-    data = Random(f"{facts.node.name} program").randbytes(7 * size + 3)
-    if most is not None and most < len(data):
-        return
-    for loss in (0.0, 0.3):
-        request = {
-            "do": "upload",
-            "destination": destination,
-            "bytes": data.hex(),
-            "block": 4 * size,
-        }
-        yield from _recorded(link, facts, "a program in two blocks", request, loss)
-    request = {
-        "do": "upload",
-        "destination": destination,
-        "bytes": data[: 2 * size].hex(),
-    }
-    script, _ = record(
-        link, request, _NodeWithWrongChecksums(link, facts, UART, Random(1))
-    )
-    yield "a checksum that is never right", {"op": "file", **request, "script": script}
+def _waiting(device: RecordedDevice, poll: Poll, early: int, is_done: bool) -> Respond:
+    """Return the responses of a device that is busy with one poll only.
+
+    Its second response comes when the time of the poll is over, or ``early``.
+    ``is_done``: whether it is not busy then; otherwise it is busy for ever.
+    """
+    begin: int | None = None
+
+    def respond(now: int, request: Request) -> list[Report]:
+        nonlocal begin
+        if request.kind == "telecommand":
+            return device.respond(now, request)
+        if not _requests(request, poll.message):
+            return [done(device.telemetry(FAR + now, request.id))]
+        if begin is None:
+            begin = now
+            return [done(device.telemetry(0, request.id))]
+        after = max(1, begin + poll.timeout - early - now)
+        at = FAR + now if is_done else 0
+        return [done(device.telemetry(at, request.id), after)]
+
+    return respond

@@ -9,7 +9,6 @@ from icdgen_runtime.wire.logs import LogMessage
 from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.protocol.facts import Facts, need
-from icdgen.protocol.sections import UART
 from icdgen.runtime_objects.operations import AnyLink
 from icdgen.vectors.wire import Requests, pieces
 from icdgen.vectors.wire.logs import masks
@@ -156,12 +155,11 @@ def _kinds(link: AnyLink, facts: Facts, source: Random) -> Iterator[tuple[str, b
         yield "an acknowledge that is too long", bytes(
             [ids[0], *bytes(facts.acknowledge.length)]
         )
-    files = facts.files
-    if files and UART in files.packet_ids:
-        size = files.counter_bytes + files.packet_bytes
+    for head, id in facts.unsolicited.items():
         for more in (-1, 0, 1):
-            why = f"a download packet{('', ' too long', ' too short')[more]}"
-            yield why, bytes([files.packet_ids[UART]]) + source.randbytes(size + more)
+            why = f"unsolicited telemetry{('', ' too long', ' too short')[more]}"
+            size = facts.telemetry[id].length + more
+            yield why, bytes([head]) + source.randbytes(size)
     for id, message in list(facts.telemetry.items())[:3]:
         yield f"telemetry {id}", bytes([id]) + source.randbytes(message.length)
     first, last = facts.telemetry_ids.first, facts.telemetry_ids.last

@@ -5,7 +5,6 @@ millisecond before it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from random import Random
 from typing import Any
 
 from icdgen_runtime.wire.i2c import i2c_write
@@ -13,114 +12,12 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import CAN, I2C, UART, Step
-from icdgen.runtime_objects.file_procedures import event_of, procedure_of
 from icdgen.runtime_objects.operations import AnyLink
-from icdgen.vectors.wire import Requests, Script
-from icdgen.vectors.wire.node import FileNode
-
-Values = dict[str, Any]  # values of the frame of a step, by role
-
-# Waits of procedures: step, request, values of its frame during the wait, and attribute
-# of the time limit.
-PROCEDURES_THAT_WAIT: tuple[tuple[str, dict[str, Any], Values, str], ...] = (
-    ("list.information", {"do": "list"}, {"busy": 1}, "timeout"),
-    (
-        "download.ready",
-        {"do": "download", "bus": UART, "type": 2, "counter": 0, "size": 1},
-        {},
-        "ready_timeout",
-    ),
-    ("upload.initiated", {"do": "upload", "bytes": "00"}, {"busy": 1}, "erase_timeout"),
-    (
-        "upload.finalized",
-        {"do": "upload", "bytes": "00"},
-        {"busy": 1},
-        "finalize_timeout",
-    ),
-    (
-        "erase.progress",
-        {"do": "erase", "type": 2, "counter": 0, "all": True},
-        {"busy": 1},
-        "timeout",
-    ),
-    ("format.progress", {"do": "format"}, {"busy": 1}, "timeout"),
-)
+from icdgen.vectors.wire import Requests
 
 
 def scripts(link: AnyLink, facts: Facts) -> Requests:
-    """Yield scripts of a client and of procedures without settings."""
-    yield from _clients_without_settings(link, facts)
-    if not facts.files or not facts.hole_map or not facts.crc16:
-        return
-    for name, request, values, time in PROCEDURES_THAT_WAIT:
-        procedure = facts.files.procedures.get(name.partition(".")[0])
-        if procedure is None:
-            continue
-        if request["do"] == "upload":
-            request = {**request, "destination": next(iter(procedure.destinations), 0)}
-        for early in (1, 0):
-            why = (
-                "a millisecond before its time is over"
-                if early
-                else "when its time is over"
-            )
-            file_request = {"op": "file", **request}
-            script = _never_done(
-                link,
-                facts,
-                file_request,
-                name,
-                values,
-                getattr(procedure, time) - early,
-            )
-            yield f"{name}: nothing new {why}", {**file_request, "script": script}
-
-
-def _never_done(
-    link: AnyLink,
-    facts: Facts,
-    request: dict[str, Any],
-    name: str,
-    values: Values,
-    last: int,
-) -> Script:
-    """Return the script of a procedure whose frame has ``values`` until ``last`` ms
-    have passed.
-    """
-    assert facts.files
-    step = facts.files.steps[name]
-    node = FileNode(link, facts, UART, Random(f"{facts.node.name} {name}"))
-    node.files[2, 0] = bytes(1)
-    waiting = {"event": "done", "bytes": step.frame(facts.node, values).hex()}
-    procedure, now, first_frame_at = procedure_of(link, request), 0, -1
-    script: Script = [{"at": 0}]
-    pending = procedure.next(0)
-    while pending or procedure.deadline is not None:
-        if pending is None:
-            assert procedure.deadline is not None
-            now = int(procedure.deadline)
-            script += [{"at": now - 1}, {"at": now}]
-            # The procedure must have given up by now.
-            if first_frame_at >= 0 and now > first_frame_at + last:
-                break
-        elif pending.kind == "telemetry" and pending.id == step.message.telemetry_id:
-            first_frame_at, now = (
-                (now, now + 1)
-                if first_frame_at < 0
-                else (first_frame_at, first_frame_at + last)
-            )
-            script.append({"at": now, "event": waiting})
-            procedure.event(now, event_of(waiting))
-        else:
-            for event in node.answer(pending):
-                now += 1
-                script.append({"at": now, "event": event})
-                procedure.event(now, event_of(event))
-        pending = procedure.next(now)
-    return script
-
-
-def _clients_without_settings(link: AnyLink, facts: Facts) -> Requests:
+    """Yield scripts of a client without settings."""
     frame = next(iter(facts.telemetry.values()), None)
     if frame is None:
         return
