@@ -88,6 +88,18 @@ def test_every_kind_of_event_is_shown(files):
     }
 
 
+def test_every_end_of_a_procedure_is_shown(files):
+    ends = {
+        case["answer"]["steps"][-1]["result"]
+        for node in files["nodes"]
+        for case in node["cases"]
+        if case["request"]["op"] == "procedure" and case["answer"]["ok"]
+    }
+    assert ends - {None} == {
+        "done", "refused", "busy", "timeout", "failed", "length", "checksum", "rounds", "limit",
+    }  # fmt: skip
+
+
 def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
     text = protocol.text(icd)
     assert text == protocol.text(icd)
