@@ -280,7 +280,7 @@ class _Scripts:
         if steps_of(self.procedure, VerifyChecksum):
             for wrong, why in ((1, "once"), (LONGEST, "for ever")):
                 device = self.device(call)
-                device.device.checksum = _wrong(device.device.checksum, wrong)
+                _spoil_checksums(device, wrong)
                 yield self.case(f"a checksum that is wrong {why}", call, device)
         device = self.device(call)
         device.packet_loss = 1.0
@@ -479,18 +479,16 @@ def _listing(device: RecordedDevice, procedure: Procedure) -> Listing:
     return run
 
 
-def _wrong(
-    checksum: Callable[[Crc | None, bytes], int], times: int
-) -> Callable[[Crc | None, bytes], int]:
-    """Return a function whose first checksums are wrong."""
-    left = times
+def _spoil_checksums(device: RecordedDevice, times: int) -> None:
+    """Let the checksums in the first frames that have one be wrong."""
+    checksum, wrong = device.device.checksum, set[int]()
 
-    def wrong(form: Crc | None, data: bytes) -> int:
-        nonlocal left
-        left -= 1
-        return checksum(form, data) ^ (left >= 0)
+    def spoilt(form: Crc | None, data: bytes) -> int:
+        if len(wrong) < times:
+            wrong.add(device.requests)
+        return checksum(form, data) ^ (device.requests in wrong)
 
-    return wrong
+    device.device.checksum = spoilt
 
 
 def _waiting(device: RecordedDevice, poll: Poll, early: int, is_done: bool) -> Respond:

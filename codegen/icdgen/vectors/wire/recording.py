@@ -53,6 +53,7 @@ class RecordedDevice:
     ) -> None:
         self.facts, self.bus, self.source = facts, bus, source
         self.loss = self.packet_loss = loss
+        self.requests = 0  # of telemetry
         # The fill is not that of the ICD, because no client may rely on it.
         self.device = Device(Objects(), BUSY, facts.crc16, filler=0xEE)
         # An object is all that its procedure reads or writes, and has no other effect.
@@ -69,6 +70,7 @@ class RecordedDevice:
 
     def telemetry(self, now: int, id: int) -> bytes:
         """Return a frame, or the next packet that the client does not miss."""
+        self.requests += 1
         message = self.facts.telemetry[id]
         data = self.counterpart.requested(message, self.bus)
         tries = 0
@@ -91,8 +93,9 @@ class RecordedDevice:
         loss = self.packet_loss if is_packet else self.loss
         packets: Iterable[Packet] = ()
         is_lost = self._is_lost(loss)
-        # Either the telecommand or its acknowledge is lost.
-        if not is_lost or (message.acknowledge and self._is_lost(0.5)):
+        # Either the telecommand or its acknowledge is lost, unless all are lost.
+        is_acknowledge_lost = message.acknowledge and loss < 1 and self._is_lost(0.5)
+        if not is_lost or is_acknowledge_lost:
             try:
                 self.counterpart.telecommand(now, message, request.data)
             except Refused:
